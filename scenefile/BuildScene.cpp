@@ -27,8 +27,9 @@ using Kind = JsonValue::Kind;
 class SceneBuilder {
 public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program)
-      : description(description), program(*program), scene(std::move(program)), files(description) {
-  }
+      : description(description), program(*program), scene(std::move(program)), files(description),
+        images(description,
+               [this](const std::string &className) { return readsLevels(className); }) {}
 
   Scene build() {
     attempt([&] {
@@ -85,6 +86,8 @@ private:
   }
 
   RtslRef add(const ObjectDescription &object, const std::string &name) {
+    if (object.image)
+      return addImage(*object.image, object.className.text, name);
     const ClassInfo *classInfo = program.find(object.className.text);
     ObjectValues values;
     values.place = object.className.place;
@@ -124,6 +127,37 @@ private:
     return scene.addObject(object.className.text, values, name);
   }
 
+  /// Whether the program reads more of an image than level 0.
+  bool readsLevels(const std::string &className) const {
+    const ClassInfo *sampler = program.find(className);
+    const MemberInfo *starts = sampler ? find(sampler->members, "levelStarts") : nullptr;
+    return starts && starts->isRead;
+  }
+
+  /// Equal images are one object.
+  RtslRef addImage(const JsonValue &image, const std::string &className, const std::string &name) {
+    const std::size_t number = images.numberOf(image);
+    if (const auto found = samplers.find(number); found != samplers.end())
+      return found->second;
+    try {
+      std::size_t notFinite = 0;
+      runtime::Texels texels = images.take(number, notFinite);
+      if (notFinite != 0)
+        scene.addWarning({fmt::format("{}: {} numbers of the image are not finite, and count as 0",
+                                      name, notFinite),
+                          image.place()});
+      return samplers[number] =
+                 scene.addObject(className,
+                                 runtime::samplerValues(std::move(texels),
+                                                        description.imageValues.at(&image).sampling,
+                                                        className == "sampler3D"),
+                                 name);
+    } catch (Error &error) {
+      error.place = image.place();
+      throw;
+    }
+  }
+
   static const MemberInfo *find(const std::vector<MemberInfo> &members, const std::string &name) {
     for (const MemberInfo &member : members)
       if (member.name == name)
@@ -158,6 +192,13 @@ private:
       return Value::reference(named(json.string, json.place())).at(json.place());
     case Kind::Object: {
       refuseUnlessReference(json, type, what);
+      if (isImage(json))
+        return Value::reference(addImage(json, imageClass(json), what)).at(json.place());
+      if (type && isImageClass(type->className) && !json.find("class"))
+        throw Error(ErrorCode::MissingKey,
+                    fmt::format("{} is a `{}`: an image needs a `file`, `slices` or `raw`", what,
+                                type->className),
+                    json.place());
       ObjectDescription object = inPlace(json, what);
       return Value::reference(add(object, object.className.text)).at(json.place());
     }
@@ -229,7 +270,8 @@ private:
         object = &known->second;
     if (!object) {
       Error error(ErrorCode::UnknownName,
-                  fmt::format("no {}texture or material is named `{}`",
+                  fmt::format("no {}{}texture or material is named `{}`",
+                              description.images.empty() ? "" : "image, ",
                               description.helpers.empty() ? "" : "helper, ", name),
                   place);
       if (const std::string near = closestName(name, allNames()); !near.empty())
@@ -329,14 +371,17 @@ private:
   }
 
   const SceneDescription &description;
-  const std::array<const std::map<std::string, ObjectDescription> *, 3> sections = {
-      &description.helpers, &description.textures, &description.materials}; // of named objects
+  const std::array<const std::map<std::string, ObjectDescription> *, 4> sections = {
+      &description.images, &description.helpers, &description.textures,
+      &description.materials}; // of named objects
   const Program &program;
   Scene scene;
   std::map<std::string, RtslRef> made; // 0: being created
   std::set<std::string> refused;
   ErrorCollector errors;
   MeshFiles files;
+  ImageFiles images;
+  std::map<std::size_t, RtslRef> samplers;     // by their number in `images`
   std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
 };
 

@@ -32,14 +32,15 @@ public:
     errors.attempt([&] {
       refuseWhatComesLater();
       checkKeys(root,
-                {"$schema", "rtsl", "import", "camera", "rayGeneration", "helpers", "textures",
-                 "materials", "objects", "nodes", "root", "roots", "lights", "background",
-                 "ambient", "exception", "render"},
+                {"$schema", "rtsl", "import", "camera", "rayGeneration", "images", "helpers",
+                 "textures", "materials", "objects", "nodes", "root", "roots", "lights",
+                 "background", "ambient", "exception", "render"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
     readSingle("camera", scene.camera);
     readSingle("rayGeneration", scene.rayGeneration);
+    readImages();
     readNamed("helpers", scene.helpers);
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
@@ -158,6 +159,11 @@ private:
     expect(value, Kind::Object, what);
     ObjectDescription object;
     object.place = value.place();
+    if (isImage(value)) {
+      object.className = {imageClass(value), value.place()};
+      object.image = &value;
+      return object;
+    }
     const JsonValue &className = expect(require(value, "class", what), Kind::String, "`class`");
     object.className = {className.string, className.place()};
     if (className.string.empty())
@@ -182,6 +188,48 @@ private:
     return object;
   }
 
+  /// The images by name, and all that are written in place anywhere.
+  void readImages() {
+    section("images", [&](const JsonValue &value) {
+      expect(value, Kind::Object, "`images`");
+      for (const auto &[key, member] : value.members)
+        errors.attempt([&, &key = key, &member = member] {
+          refuseTakenName(key.text, value.place(key));
+          expect(member, Kind::Object, fmt::format("`{}`", key.text));
+          if (!isImage(member))
+            throw Error(ErrorCode::MissingKey,
+                        fmt::format("the image `{}` needs a `file`, `slices` or `raw`", key.text),
+                        member.place());
+          scene.images[key.text] = readObject(member, fmt::format("`{}`", key.text));
+        });
+    });
+    for (const auto &[key, value] : root.members) {
+      const bool isOfNames = key.text == "images" || key.text == "helpers" ||
+                             key.text == "textures" || key.text == "materials" ||
+                             key.text == "nodes";
+      if (isOfNames)
+        forEachValue(value, [&](const JsonValue &object) { readImagesIn(object); });
+      else if (key.text != "roots" && key.text != "render")
+        readImagesIn(value);
+    }
+    std::set<std::string> classes;
+    for (const auto &image : scene.imageValues)
+      classes.insert(imageClass(*image.first));
+    for (const std::string &className : classes)
+      scene.imports.push_back({{"std.images." + className, root.place()}, ""});
+  }
+
+  void readImagesIn(const JsonValue &value) {
+    if (isImage(value)) {
+      errors.attempt([&] {
+        scene.imageValues.emplace(
+            &value, readImage(value, [&](const JsonValue &path) { return resolve(path); }));
+      });
+      return;
+    }
+    forEachValue(value, [&](const JsonValue &inner) { readImagesIn(inner); });
+  }
+
   void readNamed(const char *section, std::map<std::string, ObjectDescription> &objects) {
     this->section(section, [&](const JsonValue &value) {
       expect(value, Kind::Object, fmt::format("`{}`", section));
@@ -193,7 +241,7 @@ private:
     });
   }
 
-  /// Helpers, textures and materials share one namespace.
+  /// Images, helpers, textures and materials share one namespace.
   void refuseTakenName(const std::string &name, const Place &place) const {
     const auto refuse = [&](const auto &objects, const char *what) {
       if (auto other = objects.find(name); other != objects.end())
@@ -201,6 +249,7 @@ private:
                     fmt::format("`{}` is already the name of a {}", name, what), place)
             .related(other->second.place, fmt::format("the {}", what));
     };
+    refuse(scene.images, "image");
     refuse(scene.helpers, "helper");
     refuse(scene.textures, "texture");
   }
@@ -327,6 +376,8 @@ using ObjectVisitor = std::function<void(
 
 /// Objects written in place of a reference are visited, too.
 void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
+  if (isImage(value))
+    return visit({imageClass(value), value.place()}, {});
   if (value.kind == Kind::Object) {
     if (const JsonValue *className = value.find("class");
         className && className->kind == Kind::String) {
@@ -335,17 +386,15 @@ void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
         members.push_back({{key.text, member.place()}, &member});
       visit({className->string, className->place()}, members);
     }
-    for (const auto &member : value.members)
-      forEachObject(member.second, visit);
   }
-  for (const JsonValue &element : value.elements)
-    forEachObject(element, visit);
+  forEachValue(value, [&](const JsonValue &inner) { forEachObject(inner, visit); });
 }
 
 void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) {
   visit(object.className, object.members);
   if (object.constructor)
-    forEachObject(*object.constructor, visit);
+    forEachValue(*object.constructor,
+                 [&](const JsonValue &argument) { forEachObject(argument, visit); });
   for (const auto &member : object.members)
     forEachObject(*member.second, visit);
 }
@@ -356,7 +405,8 @@ void forEachObject(const SceneDescription &description, const ObjectVisitor &vis
     forEachObject(*description.camera, visit);
   if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
     forEachObject(*description.rayGeneration, visit);
-  for (const auto *named : {&description.helpers, &description.textures, &description.materials})
+  for (const auto *named :
+       {&description.images, &description.helpers, &description.textures, &description.materials})
     for (const auto &object : *named)
       forEachObject(object.second, visit);
   for (const GeometryDescription &geometry : description.objects) {

@@ -17,6 +17,8 @@
 #include "runtime/scene/Scene.h"
 #include "scenefile/JsonValue.h"
 
+#include "scenefile/Images.h"
+
 #include <array>
 #include <cstdint>
 #include <map>
@@ -40,6 +42,7 @@ struct ObjectDescription {
   LocatedName className;
   const JsonValue *constructor = nullptr; // a list or an object
   std::vector<std::pair<LocatedName, const JsonValue *>> members;
+  const JsonValue *image = nullptr; // of an image, which has no members
   Place place;
 };
 
@@ -84,8 +87,9 @@ struct SceneDescription {
   std::vector<ImportDescription> imports;
   std::optional<ObjectDescription> camera;        // the classic engine needs it
   std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
-  std::map<std::string, ObjectDescription> helpers, textures, materials;
-  std::vector<GeometryDescription> objects; // those of nodes come last
+  std::map<std::string, ObjectDescription> images, helpers, textures, materials;
+  std::map<const JsonValue *, ImageDescription> imageValues; // all, those written in place too
+  std::vector<GeometryDescription> objects;                  // those of nodes come last
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class

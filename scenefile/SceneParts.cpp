@@ -14,6 +14,8 @@ public:
 
   std::vector<Part> run() {
     // Names first, so that they have indices before they are referred to.
+    for (const auto &[name, image] : scene.images)
+      named(name, "image ", image);
     for (const auto &[name, helper] : scene.helpers)
       named(name, "helper ", helper);
     for (const auto &[name, texture] : scene.textures)
@@ -21,7 +23,7 @@ public:
     for (const auto &[name, material] : scene.materials)
       named(name, "material ", material);
     std::size_t next = 0;
-    for (const auto *objects : {&scene.helpers, &scene.textures, &scene.materials})
+    for (const auto *objects : {&scene.images, &scene.helpers, &scene.textures, &scene.materials})
       for (const auto &[name, object] : *objects)
         add(object, parts[next++]);
     root("camera", scene.camera);
@@ -71,7 +73,7 @@ private:
   void add(const ObjectDescription &object, Part &part) {
     part.classes.push_back(object.className.text);
     if (object.constructor)
-      add(*object.constructor, part);
+      forEachValue(*object.constructor, [&](const JsonValue &argument) { add(argument, part); });
     for (const auto &member : object.members)
       add(*member.second, part);
   }
@@ -80,14 +82,17 @@ private:
   void add(const JsonValue &value, Part &part) {
     if (value.kind == Kind::String)
       refer(value.string, part);
-    for (const auto &[key, member] : value.members) {
-      if (key.text == "class" && member.kind == Kind::String)
-        part.classes.push_back(member.string);
-      else
-        add(member, part);
+    if (isImage(value)) {
+      part.classes.push_back(imageClass(value));
+      return;
     }
-    for (const JsonValue &element : value.elements)
-      add(element, part);
+    if (const JsonValue *className = value.find("class");
+        className && className->kind == Kind::String)
+      part.classes.push_back(className->string);
+    forEachValue(value, [&](const JsonValue &inner) {
+      if (&inner != value.find("class"))
+        add(inner, part);
+    });
   }
 
   void refer(const std::string &name, Part &part) {

@@ -17,6 +17,15 @@ static bool isInLibrary(const std::string &path) {
   return path.rfind(libraryFolder() + "/", 0) == 0;
 }
 
+/// The built-in types that are classes of the library, such as `sampler2D`, need no import.
+static void importBuiltInClasses(std::string_view text, ast::TranslationUnit &unit) {
+  for (const char *name : {"sampler2D", "sampler3D"})
+    if (text.find(name) != std::string_view::npos) {
+      unit.imports.emplace_back();
+      unit.imports.back().path = std::string("std.images.") + name;
+    }
+}
+
 const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRange importer) {
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
@@ -31,8 +40,10 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
   if (const std::optional<PreprocessedFile> preprocessed =
           preprocessFile(path, importer, isOurs ? PreprocessorOptions{} : options)) {
     unit = parseFile(*preprocessed);
+    const std::string_view text = sources.text(preprocessed->text);
     if (!isOurs)
-      addWords(sources.text(preprocessed->text), words);
+      addWords(text, words);
+    importBuiltInClasses(text, *unit);
   }
   return unit.get();
 }

@@ -7,6 +7,7 @@
 #include "codegen/passes/errors/BoundHitError.h"
 
 #include "mlir/IR/Verifier.h"
+#include "llvm/ADT/StringSet.h"
 
 namespace rtsl {
 
@@ -18,6 +19,17 @@ std::string constructSymbol(const std::string &className) {
 }
 std::string intersectSymbol(const std::string &className) {
   return className + ".intersect";
+}
+
+/// The names of the members that functions read, of any class.
+static llvm::StringSet<> membersRead(mlir::ModuleOp ir) {
+  llvm::StringSet<> names;
+  ir.walk([&](ir::MemberOp member) {
+    const auto isRead = [](mlir::Operation *user) { return !llvm::isa<ir::StoreOp>(user); };
+    if (llvm::any_of(member->getUsers(), isRead))
+      names.insert(member.getMember());
+  });
+  return names;
 }
 
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
@@ -47,10 +59,13 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 
   const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
+  const llvm::StringSet<> membersOfProgram = membersRead(ir);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
     info.needs = needs[index];
+    for (runtime::MemberInfo &member : info.members)
+      member.isRead = membersOfProgram.contains(member.name);
     if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);
     program.classes.push_back(std::move(info));

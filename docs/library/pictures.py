@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """pictures.py RTSLC FOLDER [--quick] [CLASS...]: renders a picture of each class of the standard library into FOLDER.
 
-docs/library.md shows them; --quick, for tests, renders few samples of few pixels. Each scene is written beside its
-picture while it is rendered, and removed after."""
+docs/library.md shows them; --quick, for tests, renders few samples of few pixels and compares them with the pictures of
+the document. Each scene is written beside its picture while it is rendered, and removed after."""
 import json
 import pathlib
+import struct
 import subprocess
 import sys
+import zlib
 
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 UP = [0, 1, 0]
 VIEW = {"class": "PerspectiveCamera", "constructor": [[2, 1.7, 4.2], [0, -0.05, 0], UP], "fieldOfView": 30}
 BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 1}
@@ -55,7 +58,9 @@ LIGHT_SCENES = {
 TEXTURES = {
     "Solid": {}, "Checker": {"scale": 4}, "Brick": {}, "Noise": {"kind": 3, "scale": 2}, "Marble": MARBLE, "Wood": {}, "Gradient": {},
     "TransformedPattern": {"pattern": {"class": "Checker", "scale": 4}, "rotation": 30}, "Triplanar": {"pattern": {"class": "Checker", "scale": 2}}}
-BACKGROUNDS = {"GradientSky": {}, "DaylightSky": {}, "UniformSky": {"radiance": [0.6, 0.7, 0.9]}}
+TEXTURES["ImageTexture"] = {"image": {"file": str(ROOT / "examples/cornell/picture.png"), "wrap": "mirror"}, "repeats": [4, 2]}
+BACKGROUNDS = {"EnvironmentMap": {"image": {"file": str(ROOT / "docs/library/PanoramaCamera.png"), "wrap": ["repeat", "clamp"]}},
+               "GradientSky": {}, "DaylightSky": {}, "UniformSky": {"radiance": [0.6, 0.7, 0.9]}}
 
 
 def scene(objects, camera=VIEW, lights=LIGHTS, background=SKY, ambient=0.3):
@@ -101,9 +106,31 @@ def scenes():
                           background={"class": name, **members})
 
 
+def cells(png):
+    """The mean colors, 0 to 255, of 4 x 3 equal parts of a picture as rtslc writes it: RGB of 8 bits."""
+    data, at, packed = png.read_bytes(), 8, b""
+    width, height = struct.unpack(">II", data[16:24])
+    while at < len(data):
+        size, = struct.unpack(">I", data[at:at + 4])
+        packed += data[at + 8:at + 8 + size] if data[at + 4:at + 8] == b"IDAT" else b""
+        at += 12 + size
+    raw = zlib.decompress(packed)
+    sums, row = [0] * 36, bytes(3 * width)
+    for y in range(height):
+        line = raw[y * (3 * width + 1):(y + 1) * (3 * width + 1)]
+        above, row = row, bytearray(line[1:])
+        for x in range(3 * width):
+            a, b, c = (row[x - 3], above[x], above[x - 3]) if x >= 3 else (0, above[x], 0)
+            p = a + b - c
+            paeth = a if abs(p - a) <= min(abs(p - b), abs(p - c)) else b if abs(p - b) <= abs(p - c) else c
+            row[x] = (row[x] + (0, a, b, (a + b) // 2, paeth)[line[0]]) % 256
+            sums[(y * 3 // height * 4 + x // 3 * 4 // width) * 3 + x % 3] += row[x]
+    return [s * 12 / (width * height) for s in sums]
+
+
 def main():
     rtslc, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    options = ["--size", "24x18", "--spp", "2"] if "--quick" in sys.argv else []
+    options = ["--size", "24x18", "--spp", "16"] if "--quick" in sys.argv else []
     wanted = [argument for argument in sys.argv[3:] if argument != "--quick"]
     failed = []
     for name, description in scenes():
@@ -118,6 +145,11 @@ def main():
         if done.returncode or done.stderr:
             failed.append(name)
             print(name, done.stderr)
+        elif options:
+            difference = max(abs(a - b) for a, b in zip(cells(folder / f"{name}.png"), cells(ROOT / f"docs/library/{name}.png")))
+            if difference > 25:
+                failed.append(name)
+                print(f"{name}: part of the picture differs by {difference:.0f} of 255 from docs/library/{name}.png")
     return 1 if failed else 0
 
 

@@ -40,7 +40,8 @@ def class_section(path):
 
 def reference():
     library = ROOT / "library/std"
-    for folder in sorted(path for path in library.iterdir() if path.is_dir()):
+    # std.images has the built-in types sampler2D and sampler3D, which docs/language.md describes.
+    for folder in sorted(path for path in library.iterdir() if path.is_dir() and path.name != "images"):
         yield f"## std.{folder.name}\n"
         for path in sorted(folder.glob("*.rtsl")):
             yield from class_section(path)

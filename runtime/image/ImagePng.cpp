@@ -68,9 +68,8 @@ bool write(PngError &error, std::string &out, const Image &image, std::vector<pn
   return true;
 }
 
-bool read(PngError &error, Source &source, std::vector<std::uint16_t> &samples,
-          std::vector<png_bytep> &rows, png_uint_32 &width, png_uint_32 &height,
-          png_uint_32 &channels) {
+/// Reads the pixels as they are in the file, at least 8 bits a channel, palettes as their colors.
+bool read(PngError &error, Source &source, Pixels &pixels, std::vector<png_bytep> &rows) {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &error, fail, ignoreWarning);
   if (!png)
     return false;
@@ -81,21 +80,24 @@ bool read(PngError &error, Source &source, std::vector<std::uint16_t> &samples,
   }
   png_set_read_fn(png, &source, take);
   png_read_info(png, info);
-  width = png_get_image_width(png, info);
-  height = png_get_image_height(png, info);
-  png_set_expand_16(png);
-  png_set_palette_to_rgb(png);
-  png_set_strip_alpha(png);
+  png_set_expand(png);
   png_set_swap(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, info);
-  channels = png_get_channels(png, info);
-  if (png_get_rowbytes(png, info) != png_size_t(width) * channels * 2)
+  pixels.width = png_get_image_width(png, info);
+  pixels.height = png_get_image_height(png, info);
+  pixels.channels = png_get_channels(png, info);
+  pixels.isSecondAlpha = true;
+  pixels.format = png_get_bit_depth(png, info) == 16 ? TexelFormat::Unorm16 : TexelFormat::Unorm8;
+  const png_size_t rowBytes = png_get_rowbytes(png, info);
+  if (rowBytes != png_size_t(pixels.width) * pixels.channels * bytesOf(pixels.format))
     png_error(png, "unexpected layout of rows");
-  samples.resize(std::size_t(width) * height * channels);
-  rows.resize(height);
-  for (png_uint_32 y = 0; y < height; ++y)
-    rows[y] = reinterpret_cast<png_bytep>(samples.data() + std::size_t(y) * width * channels);
+  if (pixels.height > mostImageBytes / rowBytes)
+    png_error(png, "the image is too large");
+  pixels.bytes.resize(pixels.height * rowBytes);
+  rows.resize(pixels.height);
+  for (std::uint32_t y = 0; y < pixels.height; ++y)
+    rows[y] = pixels.bytes.data() + y * rowBytes;
   png_read_image(png, rows.data());
   png_read_end(png, nullptr);
   png_destroy_read_struct(&png, &info, nullptr);
@@ -120,18 +122,30 @@ std::string encodePng(const Image &given, const std::string &path) {
   return out;
 }
 
-Image decodePng(const std::string &bytes, const std::string &path) {
+Pixels decodePngPixels(const std::string &bytes, const std::string &path) {
   PngError error;
   Source source{&bytes, 0};
-  std::vector<std::uint16_t> samples;
+  Pixels pixels;
   std::vector<png_bytep> rows;
-  png_uint_32 width = 0, height = 0, channels = 0;
-  if (!read(error, source, samples, rows, width, height, channels))
+  if (!read(error, source, pixels, rows))
     throw Error(ErrorCode::BadImage, fmt::format("cannot read `{}`: {}", path, error.message),
                 Place{path});
-  Image image(width, height, channels);
-  for (std::size_t i = 0; i < samples.size(); ++i)
-    image.pixels[i] = decodeSrgb(float(samples[i]) / 65535.0f);
+  return pixels;
+}
+
+Image decodePng(const std::string &bytes, const std::string &path) {
+  const Pixels pixels = decodePngPixels(bytes, path);
+  const bool isWide = pixels.format == TexelFormat::Unorm16;
+  const std::uint32_t colors = pixels.channels <= 2 ? 1 : 3; // without alpha
+  Image image(pixels.width, pixels.height, colors);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const std::size_t from = i / colors * pixels.channels + i % colors;
+    std::uint16_t wide = 0;
+    if (isWide)
+      std::memcpy(&wide, pixels.bytes.data() + 2 * from, 2);
+    image.pixels[i] =
+        decodeSrgb(isWide ? float(wide) / 65535.0f : float(pixels.bytes[from]) / 255.0f);
+  }
   return image;
 }
 

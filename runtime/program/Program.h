@@ -40,6 +40,7 @@ struct MemberInfo {
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
   bool isPublic = false;   // the scene may set it
   bool hasDefault = false; // for a reference: it may be empty
+  bool isRead = true;      // by some function of the program
 };
 
 struct ClassInfo {

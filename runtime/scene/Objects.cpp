@@ -136,6 +136,9 @@ StoreContext Objects::storeContext() {
     bufferMemory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
     return reinterpret_cast<std::uint8_t *>(bufferMemory.back().get());
   };
+  context.keep = [this](std::shared_ptr<const Value::Words> words) {
+    blocks.push_back(std::move(words));
+  };
   context.classMismatch = [this](RtslRef object,
                                  const std::string &className) -> const std::string * {
     const ClassInfo *classInfo = at(object).classInfo;

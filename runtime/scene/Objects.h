@@ -80,6 +80,7 @@ private:
   std::vector<std::uint8_t> records;
   std::vector<Object> objects; // ascending by reference
   std::vector<std::unique_ptr<std::uint32_t[]>> bufferMemory;
+  std::vector<std::shared_ptr<const Value::Words>> blocks;
   std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
   std::uint32_t longestChain = 0;
 };

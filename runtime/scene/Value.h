@@ -4,7 +4,9 @@
 #include "runtime/device/ray/Abi.h"
 #include "support/Error.h"
 
+#include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,10 +16,11 @@ namespace rtsl::runtime {
 
 /// A number, a truth value, a reference to an object, or a list of values: a vector, a color, a
 /// matrix (its columns one after the other, flat or nested), an array, a buffer (nested once a
-/// dimension).
+/// dimension). A buffer of one dimension may also be a block of memory in its own layout.
 class Value {
 public:
-  enum class Kind : std::uint8_t { Number, Boolean, Reference, List };
+  enum class Kind : std::uint8_t { Number, Boolean, Reference, List, Block };
+  using Words = std::vector<std::uint32_t>;
 
   Value(double number) : kind(Kind::Number), number(number) {}
   Value(float number) : Value(double(number)) {}
@@ -33,6 +36,14 @@ public:
     return value;
   }
 
+  /// Elements as they lie in memory, which the scene shares.
+  static Value block(std::shared_ptr<const Words> words) {
+    Value value(0.0);
+    value.kind = Kind::Block;
+    value.words = std::move(words);
+    return value;
+  }
+
   Value &at(Place where) {
     place = std::move(where);
     return *this;
@@ -43,7 +54,8 @@ public:
   bool boolean = false;
   RtslRef object = 0;
   std::vector<Value> list;
-  std::optional<Place> place; // for messages
+  std::shared_ptr<const Words> words; // of a block
+  std::optional<Place> place;         // for messages
 };
 
 /// A value with the name of the member or parameter that it is for.

@@ -22,6 +22,8 @@ const char *describe(const Value &value) {
     return "a reference to an object";
   case Value::Kind::List:
     return "a list";
+  case Value::Kind::Block:
+    return "a block of memory";
   }
   return "something else";
 }
@@ -205,6 +207,8 @@ private:
     }
     one.size = stride;
 
+    if (value.kind == Value::Kind::Block)
+      return block(type, value, stride, to);
     RtslBuffer header{};
     std::vector<const Value *> elements{&value};
     for (std::uint32_t level = 0; level < type.bufferRank; ++level) {
@@ -230,7 +234,27 @@ private:
     std::uint8_t *memory = context.allocate(std::size_t(stride) * elements.size());
     for (std::size_t i = 0; i < elements.size(); ++i)
       array(one, 0, *elements[i], memory + i * stride, stride);
-    std::uint64_t address = reinterpret_cast<std::uint64_t>(memory);
+    writeHeader(header, memory, to);
+  }
+
+  /// A buffer of one dimension whose elements lie in memory already.
+  void block(const ValueType &type, const Value &value, std::uint32_t stride, std::uint8_t *to) {
+    using Kind = ValueType::Kind;
+    const bool isOfNumbers = type.kind == Kind::Float || type.kind == Kind::Int ||
+                             type.kind == Kind::UInt || type.kind == Kind::Color;
+    const std::size_t bytes = 4 * value.words->size();
+    if (type.bufferRank != 1 || !isOfNumbers || bytes % stride != 0)
+      wrongType(type, value);
+    if (bytes / stride > 0xffffffffu)
+      fail(ErrorCode::OutOfRange, value, "has too many elements");
+    context.keep(value.words);
+    RtslBuffer header{};
+    header.size[0] = std::uint32_t(bytes / stride);
+    writeHeader(header, value.words->data(), to);
+  }
+
+  static void writeHeader(RtslBuffer &header, const void *elements, std::uint8_t *to) {
+    const auto address = reinterpret_cast<std::uint64_t>(elements);
     header.addressLow = std::uint32_t(address);
     header.addressHigh = std::uint32_t(address >> 32);
     std::memcpy(to, &header, sizeof header);

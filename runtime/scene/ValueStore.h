@@ -14,6 +14,8 @@ struct StoreContext {
   std::uint32_t colorComponents;
   /// Memory of the scene's own that stays where it is.
   std::function<std::uint8_t *(std::size_t bytes)> allocate;
+  /// Keeps a block as long as the scene.
+  std::function<void(std::shared_ptr<const Value::Words>)> keep;
   /// Null if the object may stand where `className` is expected; otherwise the name of the class
   /// that it has.
   std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;

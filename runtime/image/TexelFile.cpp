@@ -1,0 +1,142 @@
+//===- TexelFile.cpp - image files for samplers ---------------------------===//
+#include "runtime/image/Texels.h"
+
+#include "runtime/image/ImageFormats.h"
+#include "runtime/image/openimageio/ImageReader.h"
+#include "support/AtomicFile.h"
+#include "support/ProgramFolder.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <new>
+
+namespace rtsl::runtime {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Throws FileNotFound, FileUnreadable: the library that reads images has fewer words for these.
+void requireReadable(const std::string &path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status))
+    throw Error(ErrorCode::FileNotFound, fmt::format("there is no file `{}`", path));
+  if (fs::is_directory(status))
+    throw Error(ErrorCode::FileUnreadable, fmt::format("`{}` is a folder", path));
+  if (!std::ifstream(path, std::ios::binary))
+    throw Error(ErrorCode::FileUnreadable,
+                fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
+}
+
+ReadImageFile openReader() {
+  // Beside the library that this function is in, or where the programs have theirs.
+  Dl_info own{};
+  dladdr(reinterpret_cast<void *>(&openReader), &own);
+  const auto name = "rtsl-images.so";
+  const fs::path beside = fs::path(own.dli_fname ? own.dli_fname : "").parent_path() / name;
+  std::error_code error;
+  const fs::path file =
+      fs::exists(beside, error) ? beside : programFolder() / RTSL_LIBRARIES_FROM_PROGRAMS / name;
+  // Never closed: its libraries start threads of their own.
+  void *library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+  if (!library)
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("images cannot be read: {} (is OpenImageIO installed?)", dlerror()));
+  return reinterpret_cast<ReadImageFile>(dlsym(library, readImageFileSymbol));
+}
+
+void *allocateBytes(void *context, std::uint64_t bytes) {
+  auto &vector = *static_cast<std::vector<std::uint8_t> *>(context);
+  try {
+    vector.resize(bytes);
+  } catch (const std::bad_alloc &) {
+    return nullptr;
+  }
+  return vector.data();
+}
+
+/// Encoded colors of 16 bits, which the samplers do not decode, as linear floats.
+void decode16(Pixels &pixels) {
+  const std::size_t count = pixels.bytes.size() / 2;
+  const bool hasAlpha = pixels.channels == 4 || (pixels.channels == 2 && pixels.isSecondAlpha);
+  std::vector<std::uint8_t> floats(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint16_t bits;
+    std::memcpy(&bits, pixels.bytes.data() + 2 * i, 2);
+    const float encoded = static_cast<float>(bits) / 65535.0f;
+    const bool isAlpha = hasAlpha && i % pixels.channels == pixels.channels - 1;
+    const float value = isAlpha ? encoded : decodeSrgb(encoded);
+    std::memcpy(floats.data() + 4 * i, &value, 4);
+  }
+  pixels.format = TexelFormat::Float32;
+  pixels.bytes = std::move(floats);
+}
+
+/// Reads a file by OpenImageIO. `isEncoded`: it has, or implies, colors in sRGB.
+Pixels readByOpenImageIO(const std::string &path, bool &isEncoded) {
+  static const ReadImageFile read = openReader();
+  Pixels pixels;
+  ImageFile file;
+  read(path.c_str(), mostImageBytes, allocateBytes, &pixels.bytes, &file);
+  switch (file.problem) {
+  case ImageFile::Problem::None:
+    break;
+  case ImageFile::Problem::Bad:
+    throw Error(ErrorCode::BadImage,
+                fmt::format("cannot read `{}`: {}", path,
+                            file.message[0] ? file.message : "it is no image of a known format"));
+  case ImageFile::Problem::TooLarge:
+    throw Error(ErrorCode::OutOfRange,
+                fmt::format("the image `{}` of {} x {} pixels is too large: it may have {} GiB",
+                            path, file.width, file.height, mostImageBytes >> 30));
+  case ImageFile::Problem::NoMemory:
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("no memory for the image `{}` of {} x {} pixels", path, file.width,
+                            file.height));
+  }
+  pixels.width = file.width;
+  pixels.height = file.height;
+  pixels.channels = file.channels;
+  pixels.isSecondAlpha = file.isSecondAlpha;
+  if (file.bytesPerChannel == 4)
+    pixels.format = TexelFormat::Float32;
+  else if (file.bytesPerChannel == 2)
+    pixels.format = file.isFloat ? TexelFormat::Float16 : TexelFormat::Unorm16;
+  else
+    pixels.format = TexelFormat::Unorm8;
+  isEncoded = file.isSrgb;
+  return pixels;
+}
+
+} // namespace
+
+Pixels readPixels(const std::string &path, ColorSpace space) {
+  requireReadable(path);
+  const std::string signature = "\x89PNG";
+  std::string start(signature.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), std::streamsize(start.size()));
+  bool isEncoded = true;
+  Pixels pixels = start == signature ? decodePngPixels(readFile(path), path)
+                                     : readByOpenImageIO(path, isEncoded);
+  const bool isFloat =
+      pixels.format == TexelFormat::Float16 || pixels.format == TexelFormat::Float32;
+  if (space == ColorSpace::Srgb && isFloat)
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("`{}` has colors in floating point, which are linear: sRGB is for 8 "
+                            "and 16 bits",
+                            path));
+  if (space != ColorSpace::ByFile)
+    isEncoded = space == ColorSpace::Srgb;
+  if (isEncoded && pixels.format == TexelFormat::Unorm8)
+    pixels.format = TexelFormat::Srgb8;
+  else if (isEncoded && pixels.format == TexelFormat::Unorm16)
+    decode16(pixels);
+  return pixels;
+}
+
+} // namespace rtsl::runtime

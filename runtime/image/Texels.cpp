@@ -1,0 +1,136 @@
+#include "runtime/image/Texels.h"
+
+#include "support/AtomicFile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// A channel that is 1 or 0, in the bytes of its format.
+std::uint32_t bitsOf(TexelFormat format, bool isOne) {
+  if (!isOne)
+    return 0;
+  switch (format) {
+  case TexelFormat::Unorm8:
+  case TexelFormat::Srgb8:
+    return 0xff;
+  case TexelFormat::Unorm16:
+    return 0xffff;
+  case TexelFormat::Float16:
+    return 0x3c00;
+  case TexelFormat::Float32:
+    return 0x3f800000;
+  }
+  return 0;
+}
+
+/// Sets the size of the words. Indices of texels and words are `int` in RTSL.
+void allocate(Texels &texels) {
+  constexpr std::uint64_t most = 0x7fffffff;
+  const std::uint64_t rows = std::uint64_t(texels.height) * texels.depth;
+  const bool isTooLarge = rows > most / texels.width;
+  const std::uint64_t count = isTooLarge ? 0 : rows * texels.width;
+  const std::uint64_t words = (count * texels.channels * bytesOf(texels.format) + 3) / 4;
+  if (isTooLarge || words > most)
+    throw Error(ErrorCode::OutOfRange,
+                fmt::format("an image of {} x {} x {} texels is too large: it may have 2^31 - 1 "
+                            "texels and 8 GiB",
+                            texels.width, texels.height, texels.depth));
+  texels.words.assign(words, 0);
+}
+
+/// Copies a row of pixels, which may have fewer or more channels than the texels.
+void copyRow(const Pixels &pixels, const std::uint8_t *from, std::uint32_t channels,
+             std::uint8_t *to) {
+  const std::uint32_t bytes = bytesOf(pixels.format);
+  if (pixels.channels == channels) {
+    std::memcpy(to, from, std::size_t(pixels.width) * channels * bytes);
+    return;
+  }
+  const std::uint32_t shared = std::min(channels, pixels.channels);
+  for (std::uint32_t x = 0; x < pixels.width; ++x) {
+    std::memcpy(to, from, std::size_t(shared) * bytes);
+    for (std::uint32_t channel = shared; channel < channels; ++channel) {
+      const std::uint32_t bits = bitsOf(pixels.format, channel == 3);
+      std::memcpy(to + std::size_t(channel) * bytes, &bits, bytes);
+    }
+    from += std::size_t(pixels.channels) * bytes;
+    to += std::size_t(channels) * bytes;
+  }
+}
+
+} // namespace
+
+std::uint32_t bytesOf(TexelFormat format) {
+  switch (format) {
+  case TexelFormat::Unorm8:
+  case TexelFormat::Srgb8:
+    return 1;
+  case TexelFormat::Unorm16:
+  case TexelFormat::Float16:
+    return 2;
+  case TexelFormat::Float32:
+    return 4;
+  }
+  return 4;
+}
+
+Texels texelsOf(const std::vector<Pixels> &slices) {
+  const Pixels &first = slices.front();
+  Texels texels;
+  texels.format = first.format;
+  texels.width = first.width;
+  texels.height = first.height;
+  texels.depth = static_cast<std::uint32_t>(slices.size());
+  texels.channels =
+      first.channels == 1 || (first.channels == 2 && first.isSecondAlpha) ? first.channels : 4;
+  allocate(texels);
+  auto *to = reinterpret_cast<std::uint8_t *>(texels.words.data());
+  const std::size_t bytes = bytesOf(first.format);
+  for (const Pixels &slice : slices)
+    for (std::uint32_t y = slice.height; y-- > 0; to += slice.width * texels.channels * bytes)
+      copyRow(slice, slice.bytes.data() + std::size_t(y) * slice.width * slice.channels * bytes,
+              texels.channels, to);
+  return texels;
+}
+
+Texels readRawTexels(const std::string &path, Texels shape) {
+  allocate(shape);
+  const std::string bytes = readFile(path);
+  const std::size_t expected = std::size_t(shape.width) * shape.height * shape.depth *
+                               shape.channels * bytesOf(shape.format);
+  if (bytes.size() != expected)
+    throw Error(ErrorCode::BadImage,
+                fmt::format("`{}` has {} bytes, and {} x {} x {} texels of {} bytes take {}", path,
+                            bytes.size(), shape.width, shape.height, shape.depth,
+                            shape.channels * bytesOf(shape.format), expected));
+  std::memcpy(shape.words.data(), bytes.data(), bytes.size());
+  return shape;
+}
+
+std::size_t dropNotFinite(Texels &texels) {
+  std::size_t dropped = 0;
+  if (texels.format == TexelFormat::Float32) {
+    for (std::uint32_t &word : texels.words)
+      if ((word & 0x7f800000u) == 0x7f800000u) {
+        word = 0;
+        ++dropped;
+      }
+  } else if (texels.format == TexelFormat::Float16) {
+    for (std::uint32_t &word : texels.words)
+      for (const std::uint32_t shift : {0u, 16u})
+        if ((word >> shift & 0x7c00u) == 0x7c00u) {
+          word &= ~(0xffffu << shift);
+          ++dropped;
+        }
+  }
+  return dropped;
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,68 @@
+//===- Texels.h - images as samplers read them ----------------------------===//
+//
+// The memory of library/std/images/ImageTexels.rtsl: texels of 1, 2 or 4 channels, packed into
+// words, rows from the bottom, slices from the front, with the smaller levels after the image.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "support/Error.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// The numbers are those of ImageTexels.rtsl.
+enum class TexelFormat : std::uint8_t { Unorm8 = 0, Srgb8, Unorm16, Float16, Float32 };
+
+/// 1, 2 or 4.
+std::uint32_t bytesOf(TexelFormat format);
+
+struct Texels {
+  TexelFormat format = TexelFormat::Float32;
+  std::uint32_t width = 1, height = 1, depth = 1;
+  std::uint32_t channels = 4;
+  std::vector<std::uint32_t> words;
+  std::vector<std::uint32_t> levelStarts = {0}; // by level: the number of texels before it
+};
+
+/// The most bytes of the pixels of a file.
+constexpr std::uint64_t mostImageBytes = std::uint64_t(1) << 33;
+
+enum class ColorSpace : std::uint8_t { ByFile, Linear, Srgb };
+
+/// A plane of pixels, rows from the top, channels of a pixel side by side.
+struct Pixels {
+  TexelFormat format = TexelFormat::Float32;
+  std::uint32_t width = 0, height = 0, channels = 0;
+  bool isSecondAlpha = false; // of two channels
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Reads an image file in any format of OpenImageIO: PNG, JPEG, TIFF, Radiance HDR, OpenEXR and
+/// others. Channels keep 8 or 16 bits, half or float. ColorSpace::ByFile: what the file says, or
+/// its format implies; otherwise 8 bits are sRGB and all others linear. sRGB of 16 bits becomes
+/// float. Throws FileNotFound,
+/// FileUnreadable, BadImage, OutOfRange.
+Pixels readPixels(const std::string &path, ColorSpace space);
+
+/// The slices of an image, of equal size and kind, from front to back. Three channels get an alpha
+/// of 1, two without alpha a third one of 0, too; of more than four the first four are taken.
+/// Throws OutOfRange if there are more than 2^31 - 1 texels or words.
+Texels texelsOf(const std::vector<Pixels> &slices);
+
+/// The bytes of a file as texels, little-endian, in their order. Throws BadImage if there are more
+/// or fewer, and the errors of reading a file.
+Texels readRawTexels(const std::string &path, Texels shape);
+
+/// Sets texels that are not finite to 0; returns how many channels of texels were.
+std::size_t dropNotFinite(Texels &texels);
+
+/// Adds levels until one has a single texel. A texel is the mean of the area that it covers in the
+/// level before, of linear values, rounded to the format. Throws OutOfRange, like texelsOf.
+void addLevels(Texels &texels);
+
+} // namespace rtsl::runtime

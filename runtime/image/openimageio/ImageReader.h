@@ -1,0 +1,34 @@
+//===- ImageReader.h - reading image files, in a library of its own -------===//
+//
+// OpenImageIO depends on more than a hundred libraries, which take a third of a second to load. A
+// program does so only when it reads an image for a sampler that is no PNG: then it opens
+// `rtsl-images.so`.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <cstdint>
+
+namespace rtsl::runtime {
+
+struct ImageFile {
+  enum class Problem : std::uint8_t { None, Bad, TooLarge, NoMemory };
+
+  std::uint32_t width, height, channels;
+  std::uint32_t bytesPerChannel; // 1, 2 or 4
+  bool isFloat;                  // half or float; otherwise unsigned
+  bool isSecondAlpha;
+  bool isSrgb; // the file's own statement, or that of its format
+  // The rows from the top; `allocate` gives the memory.
+  void *pixels;
+  Problem problem;
+  char message[512]; // of a bad file
+};
+
+/// Reads the first image of a file, unless it has more bytes. `allocate(context, bytes)` returns null if there is no memory.
+using ReadImageFile = void (*)(const char *path, std::uint64_t mostBytes,
+                               void *(*allocate)(void *context, std::uint64_t), void *context,
+                               ImageFile *file);
+constexpr const char *readImageFileSymbol = "rtslReadImageFile";
+
+} // namespace rtsl::runtime
