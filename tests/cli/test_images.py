@@ -216,8 +216,8 @@ class Images(Case):
         super().setUp()
         self.write("probes.rtsl", PROBES)
 
-    def scene(self, generation, **more):
-        scene = {"rtsl": 1, "import": ["probes.rtsl"], "rayGeneration": generation,
+    def scene(self, generation, shaders="probes.rtsl", **more):
+        scene = {"rtsl": 1, "import": [shaders], "rayGeneration": generation,
                  "render": {"engine": "programs", "size": [1, 1], "spp": 1}}
         scene.update(more)
         return self.write("scene.json", json.dumps(scene))
@@ -346,6 +346,31 @@ class Images(Case):
                                "wrap": wrap}, 0.00003))
         self.check(cases, 3)
 
+    def test_all_numbers_of_8_and_16_bits(self):
+        """Each is the quotient by the largest one, correctly rounded."""
+        self.write("all.rtsl", """
+            class All : rt_RayGeneration {
+              public sampler2D small;
+              public sampler2D large;
+              void generate() {
+                int wrong = 0;
+                for (int i = 0; i < 256; ++i)
+                  wrong += small.load(ivec2(i, 0)) == vec4(vec3(float(i)), 255.0) / 255.0 ? 0 : 1;
+                for (int i = 0; i < 65536; ++i)
+                  wrong += large.load(ivec2(i & 255, i >> 8)) == vec4(vec3(float(i)), 65535.0) / 65535.0 ? 0 : 1;
+                print(wrong);
+              }
+            };""")
+        for channels in (1, 4):
+            small = b"".join(bytes([i, i, i, 255] if channels == 4 else [i]) for i in range(256))
+            large = b"".join(struct.pack("<4H", i, i, i, 65535) if channels == 4 else struct.pack("<H", i) for i in range(65536))
+            self.write("small.raw", small)
+            self.write("large.raw", large)
+            self.scene({"class": "All", "small": {"raw": "small.raw", "size": [256, 1], "format": "unorm8", "channels": channels},
+                        "large": {"raw": "large.raw", "size": [256, 256], "format": "unorm16", "channels": channels}},
+                       shaders="all.rtsl")
+            self.assertEqual(self.printed(), [[0]])
+
     def test_slices_and_their_levels(self):
         pixels = [self.integers(6, 5, 1, 255, z) for z in range(3)]
         for z in range(3):
@@ -433,10 +458,7 @@ class Images(Case):
                 print(image.sampleGrad(vec2(0.25), vec2(0.0), vec2(0.0)) - image.sample(vec2(0.25)));
               }
             };""")
-        self.scene({"class": "Strange", "image": {"file": "image.png", "filter": "anisotropic"}})
-        scene = json.loads((self.folder / "scene.json").read_text())
-        scene["import"] = ["nan.rtsl"]
-        self.write("scene.json", json.dumps(scene))
+        self.scene({"class": "Strange", "image": {"file": "image.png", "filter": "anisotropic"}}, shaders="nan.rtsl")
         for options in ([], ["--fp=fast"], ["--fp=double"]):
             for line in self.printed("-Wno-all", *options):
                 for value in line:
