@@ -139,6 +139,21 @@ def paths():
     }
 
 
+def images():
+    """Images with every filter and wrap, in sRGB and not, and a volume."""
+    picture = str(pathlib.Path(source, "examples/cornell/picture.png"))
+    kinds = [("nearest", "repeat", "srgb"), ("bilinear", "mirror", "linear"), ("trilinear", "clamp", "srgb"),
+             ("anisotropic", ["black", "repeat"], "linear")]
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Images.rtsl")],
+        "images": {"alone": {"file": picture}},
+        "rayGeneration": {"class": "Lookups", "alone": "alone", "volume": {"slices": [picture, picture, picture], "wrap": "mirror"},
+                          "images": [{"file": picture, "filter": filter, "wrap": wrap, "colorSpace": space} for filter, wrap, space in kinds]},
+        "render": {"engine": "programs", "size": [40, 30], "spp": 2},
+    }
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -155,6 +170,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--trace=recurse"], [nothing()]),
     ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
+    ("g++", ["-O1"], [], [images()]),
+    ("clang++-22", ["-O1"], ["--trace=recurse"], [images()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]
