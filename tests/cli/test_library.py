@@ -57,6 +57,33 @@ class Library(Case):
         self.assertIn(str(LIBRARY / "std/cameras/ViewCamera.rtsl"), rule)
         self.assertNotIn("PinholeCamera", rule)
 
+    def test_spaces(self):
+        """A ball with the center of object space, somewhere far away: points, vectors and normals of its hits."""
+        self.scene()
+        self.write("Spaces.rtsl", """import std.spaces;
+            class Spaces : rt_Material {
+              void shade() {
+                vec3 p = pointToObject(rt_HitPoint);
+                print(length(p), pointToWorld(p) - rt_HitPoint, cross(normalize(normalToWorld(p)), normalize(rt_GeometricNormal)),
+                      cross(normalize(normalToObject(rt_GeometricNormal)), p),
+                      pointToWorld(p + vectorToObject(vec3(0.0, 0.25, 0.0))) - rt_HitPoint, vectorToWorld(vectorToObject(p)) - p);
+              }
+            };""")
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("Spaces.rtsl")
+        scene["camera"] = {"class": "PerspectiveCamera", "constructor": [[1000, 2000, 3020], [1000, 2000, 3000], [0, 1, 0]], "fieldOfView": 10}
+        scene["objects"] = [{"primitive": {"class": "Sphere", "center": [0, 0, 0]}, "material": {"class": "Spaces"},
+                             "transform": [{"scale": [1, 3, 2]}, {"rotate": [20, 30, 40]}, {"translate": [1000, 2000, 3000]}]}]
+        self.write("scene.json", json.dumps(scene))
+        output, _ = self.run_rtslc("render", "scene.json", "-q", "--print", "-o", "x.exr")
+        lines = output.splitlines()
+        self.assertGreater(len(lines), 10)
+        for line in lines:
+            length, *rest = [float(n) for n in line.split(": ", 1)[1].replace("vec3(", "").replace(")", "").replace(",", " ").split()]
+            self.assertAlmostEqual(length, 1, delta=0.001)
+            for value, wanted in zip(rest, [0] * 10 + [0.25] + [0] * 4):
+                self.assertAlmostEqual(value, wanted, delta=0.001, msg=line)
+
     def test_an_object_may_be_of_a_class_far_below_that_of_a_member(self):
         # Gold : Conductor : Scatterer; no object is a Conductor, so the program does not have that class.
         self.scene(**{"import": ["std.primitives", "std.cameras", "std.materials"],
