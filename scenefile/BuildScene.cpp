@@ -127,6 +127,16 @@ private:
     return scene.addObject(object.className.text, values, name);
   }
 
+  Value bufferOf(const BufferDescription &buffer, const ValueType &type, const std::string &what,
+                 const Place &place) const {
+    try {
+      return readBuffer(buffer, type, program.colorComponents, what).at(place);
+    } catch (Error &error) {
+      error.place = place;
+      throw;
+    }
+  }
+
   /// Whether the program reads more of an image than level 0.
   bool readsLevels(const std::string &className) const {
     const ClassInfo *sampler = program.find(className);
@@ -191,6 +201,9 @@ private:
       refuseUnlessReference(json, type, what);
       return Value::reference(named(json.string, json.place())).at(json.place());
     case Kind::Object: {
+      if (const auto buffer = description.bufferValues.find(&json);
+          type && buffer != description.bufferValues.end())
+        return bufferOf(buffer->second, *type, what, json.place());
       refuseUnlessReference(json, type, what);
       if (isImage(json))
         return Value::reference(addImage(json, imageClass(json), what)).at(json.place());

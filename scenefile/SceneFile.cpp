@@ -188,7 +188,7 @@ private:
     return object;
   }
 
-  /// The images by name, and all that are written in place anywhere.
+  /// The images by name, and all images and buffers in files that are written in place anywhere.
   void readImages() {
     section("images", [&](const JsonValue &value) {
       expect(value, Kind::Object, "`images`");
@@ -208,9 +208,9 @@ private:
                              key.text == "textures" || key.text == "materials" ||
                              key.text == "nodes";
       if (isOfNames)
-        forEachValue(value, [&](const JsonValue &object) { readImagesIn(object); });
+        forEachValue(value, [&](const JsonValue &object) { readFilesIn(object); });
       else if (key.text != "roots" && key.text != "render")
-        readImagesIn(value);
+        readFilesIn(value);
     }
     std::set<std::string> classes;
     for (const auto &image : scene.imageValues)
@@ -219,7 +219,7 @@ private:
       scene.imports.push_back({{"std.images." + className, root.place()}, ""});
   }
 
-  void readImagesIn(const JsonValue &value) {
+  void readFilesIn(const JsonValue &value) {
     if (isImage(value)) {
       errors.attempt([&] {
         scene.imageValues.emplace(
@@ -227,7 +227,15 @@ private:
       });
       return;
     }
-    forEachValue(value, [&](const JsonValue &inner) { readImagesIn(inner); });
+    if (isBufferFile(value)) {
+      errors.attempt([&] {
+        scene.bufferValues.emplace(&value, readBufferDescription(value, [&](const JsonValue &path) {
+          return resolve(path);
+        }));
+      });
+      return;
+    }
+    forEachValue(value, [&](const JsonValue &inner) { readFilesIn(inner); });
   }
 
   void readNamed(const char *section, std::map<std::string, ObjectDescription> &objects) {
@@ -444,6 +452,22 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
   return parseScene(readFile(path), path, overrides);
+}
+
+std::vector<std::string> filesOf(const SceneDescription &description) {
+  std::vector<std::string> files;
+  const auto add = [&](const std::string &file) {
+    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end())
+      files.push_back(file);
+  };
+  for (const GeometryDescription &geometry : description.objects)
+    add(geometry.meshPath);
+  for (const auto &image : description.imageValues)
+    for (const std::string &file : image.second.files)
+      add(file);
+  for (const auto &buffer : description.bufferValues)
+    add(buffer.second.file);
+  return files;
 }
 
 std::vector<LocatedName> classMentions(const SceneDescription &description) {

@@ -17,6 +17,7 @@
 #include "runtime/scene/Scene.h"
 #include "scenefile/JsonValue.h"
 
+#include "scenefile/BufferFiles.h"
 #include "scenefile/Images.h"
 
 #include <array>
@@ -89,7 +90,8 @@ struct SceneDescription {
   std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
   std::map<std::string, ObjectDescription> images, helpers, textures, materials;
   std::map<const JsonValue *, ImageDescription> imageValues; // all, those written in place too
-  std::vector<GeometryDescription> objects;                  // those of nodes come last
+  std::map<const JsonValue *, BufferDescription> bufferValues;
+  std::vector<GeometryDescription> objects; // those of nodes come last
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
@@ -110,6 +112,9 @@ SceneDescription readSceneFile(const std::string &path,
 /// The same for a text in memory; `path` is for messages and for relative paths.
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides = {});
+
+/// The files that the scene reads besides shaders, each once: meshes, images, buffers.
+std::vector<std::string> filesOf(const SceneDescription &description);
 
 /// The classes that the scene names, each once, sorted. Linking keeps these.
 std::vector<std::string> classesUsed(const SceneDescription &description);

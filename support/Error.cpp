@@ -18,6 +18,8 @@ const char *name(ErrorCode code) {
     return "badMesh";
   case ErrorCode::BadImage:
     return "badImage";
+  case ErrorCode::BadBuffer:
+    return "badBuffer";
   case ErrorCode::BadPackage:
     return "badPackage";
   case ErrorCode::NotAScene:

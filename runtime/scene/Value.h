@@ -16,7 +16,7 @@ namespace rtsl::runtime {
 
 /// A number, a truth value, a reference to an object, or a list of values: a vector, a color, a
 /// matrix (its columns one after the other, flat or nested), an array, a buffer (nested once a
-/// dimension). A buffer of one dimension may also be a block of memory in its own layout.
+/// dimension). A buffer of numbers may also be a block of memory in its own layout.
 class Value {
 public:
   enum class Kind : std::uint8_t { Number, Boolean, Reference, List, Block };
@@ -36,9 +36,11 @@ public:
     return value;
   }
 
-  /// Elements as they lie in memory, which the scene shares.
-  static Value block(std::shared_ptr<const Words> words) {
+  /// Elements as they lie in memory, which the scene shares. `sizes` of each dimension; empty: one
+  /// dimension.
+  static Value block(std::shared_ptr<const Words> words, std::vector<std::uint32_t> sizes = {}) {
     Value value(0.0);
+    value.sizes = std::move(sizes);
     value.kind = Kind::Block;
     value.words = std::move(words);
     return value;
@@ -55,6 +57,7 @@ public:
   RtslRef object = 0;
   std::vector<Value> list;
   std::shared_ptr<const Words> words; // of a block
+  std::vector<std::uint32_t> sizes;   // of a block
   std::optional<Place> place;         // for messages
 };
 

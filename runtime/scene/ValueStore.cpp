@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -237,19 +238,22 @@ private:
     writeHeader(header, memory, to);
   }
 
-  /// A buffer of one dimension whose elements lie in memory already.
+  /// A buffer whose elements lie in memory already.
   void block(const ValueType &type, const Value &value, std::uint32_t stride, std::uint8_t *to) {
-    using Kind = ValueType::Kind;
-    const bool isOfNumbers = type.kind == Kind::Float || type.kind == Kind::Int ||
-                             type.kind == Kind::UInt || type.kind == Kind::Color;
+    const bool isOfObjects =
+        type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct;
     const std::size_t bytes = 4 * value.words->size();
-    if (type.bufferRank != 1 || !isOfNumbers || bytes % stride != 0)
+    std::vector<std::uint32_t> sizes = value.sizes;
+    if (sizes.empty() && bytes / stride <= 0xffffffffu)
+      sizes.push_back(std::uint32_t(bytes / stride));
+    double count = 1;
+    for (const std::uint32_t size : sizes)
+      count *= size;
+    if (isOfObjects || sizes.size() != type.bufferRank || count * stride != double(bytes))
       wrongType(type, value);
-    if (bytes / stride > 0xffffffffu)
-      fail(ErrorCode::OutOfRange, value, "has too many elements");
     context.keep(value.words);
     RtslBuffer header{};
-    header.size[0] = std::uint32_t(bytes / stride);
+    std::copy(sizes.begin(), sizes.end(), header.size);
     writeHeader(header, value.words->data(), to);
   }
 

@@ -581,6 +581,13 @@ class Images(Case):
         self.scene({"class": "Plain", "image": {"file": file}})
         return self.diagnose("render", "scene.json", "-o", "x.exr")
 
+    def test_inputs_are_not_overwritten(self):
+        self.write_exr("image.exr", 2, 2, 0.5)
+        before = (self.folder / "image.exr").read_bytes()
+        self.scene({"class": "Plain", "image": {"file": "image.exr"}})
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "image.exr"), "E0965")
+        self.assertEqual((self.folder / "image.exr").read_bytes(), before)
+
     def test_damaged_files_never_crash(self):
         chance = random.Random(5)
         files = [png(9, 7, self.integers(9, 7, 3, 255)), hdr(9, 7, lambda x, y: (x, y, 1, 128)),

@@ -54,7 +54,7 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
       loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
-  filesRead = withMeshes(description, filesRead);
+  filesRead = withFiles(description, filesRead);
   std::optional<runtime::Scene> scene;
   const LinkRequest request = linkRequest(description);
   CompileInput input;

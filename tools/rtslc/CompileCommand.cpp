@@ -37,7 +37,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options,
       loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return std::nullopt;
-  filesRead = withMeshes(description, filesRead);
+  filesRead = withFiles(description, filesRead);
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);

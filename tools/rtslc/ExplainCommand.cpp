@@ -53,7 +53,7 @@ struct LoadedScene {
             },
             scene)) {
     keep(options.common.keep, request, compile);
-    filesRead = withMeshes(description, filesRead);
+    filesRead = withFiles(description, filesRead);
   }
   LoadedScene(const LoadedScene &) = delete;
 

@@ -26,6 +26,8 @@ Code codeFor(ErrorCode code) {
     return Code::badMesh;
   case E::BadImage:
     return Code::badImage;
+  case ErrorCode::BadBuffer:
+    return Code::badBuffer;
   case E::NotAScene:
     return Code::notAScene;
   case E::JsonSyntax:

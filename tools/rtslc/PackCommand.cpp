@@ -34,7 +34,7 @@ void packScene(const PackOptions &options, Messages &messages) {
       loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
-  filesRead = withMeshes(description, filesRead);
+  filesRead = withFiles(description, filesRead);
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
   LinkRequest request = linkRequest(description);

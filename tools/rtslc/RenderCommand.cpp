@@ -258,7 +258,7 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
       loadShaders(description, options.common, messages, &filesRead);
   if (!module)
     return;
-  filesRead = withMeshes(description, filesRead);
+  filesRead = withFiles(description, filesRead);
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
   compile.threads = options.threads;

@@ -255,9 +255,8 @@ std::string fingerprint(const LoadedScene &loaded, const ReportOptions &options,
     all += readFile(loaded.description.file);
   for (const std::string &value : options.overrides)
     all += '\0' + value;
-  for (const scene::GeometryDescription &geometry : loaded.description.objects)
-    if (!geometry.meshPath.empty())
-      all += readFile(geometry.meshPath);
+  for (const std::string &file : scene::filesOf(loaded.description))
+    all += readFile(file);
   if (!options.reference.empty())
     all += readFile(options.reference);
   return fmt::format("{:016x}", report::hashOf(all));
@@ -403,7 +402,7 @@ std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages
   loaded.module = loadShaders(loaded.description, options.common, messages, &loaded.filesRead);
   if (!loaded.module)
     return std::nullopt;
-  loaded.filesRead = withMeshes(loaded.description, loaded.filesRead);
+  loaded.filesRead = withFiles(loaded.description, loaded.filesRead);
   if (!options.reference.empty())
     loaded.filesRead.push_back(options.reference);
   loaded.render = scene::renderOptions(loaded.description.render);

@@ -120,12 +120,11 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
   return module;
 }
 
-std::vector<std::string> withMeshes(const scene::SceneDescription &description,
+std::vector<std::string> withFiles(const scene::SceneDescription &description,
                                     std::vector<std::string> filesRead) {
-  for (const scene::GeometryDescription &geometry : description.objects)
-    if (!geometry.meshPath.empty() &&
-        std::find(filesRead.begin(), filesRead.end(), geometry.meshPath) == filesRead.end())
-      filesRead.push_back(geometry.meshPath);
+  for (const std::string &file : scene::filesOf(description))
+    if (std::find(filesRead.begin(), filesRead.end(), file) == filesRead.end())
+      filesRead.push_back(file);
   return filesRead;
 }
 

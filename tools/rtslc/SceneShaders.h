@@ -31,7 +31,7 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
 
 /// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and
 /// the meshes.
-std::vector<std::string> withMeshes(const scene::SceneDescription &description,
+std::vector<std::string> withFiles(const scene::SceneDescription &description,
                                     std::vector<std::string> filesRead);
 
 /// Which classes the scene has objects of, and which materials meet which primitives.

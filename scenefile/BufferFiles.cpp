@@ -1,0 +1,174 @@
+#include "scenefile/BufferFiles.h"
+
+#include "runtime/scene/ValueStore.h"
+#include "scenefile/NumberFiles.h"
+#include "scenefile/Reader.h"
+#include "support/AtomicFile.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+namespace rtsl::scene {
+
+using runtime::Value;
+using runtime::ValueType;
+using Kind = JsonValue::Kind;
+
+namespace {
+
+/// How many numbers an element has in a file: those of a color may be red, green and blue.
+std::size_t numbersOf(const ValueType &type, std::uint32_t colorComponents) {
+  std::size_t count =
+      type.kind == ValueType::Kind::Color ? colorComponents : std::size_t(type.rows) * type.columns;
+  for (const std::uint32_t size : type.arraySizes)
+    count *= size;
+  return count;
+}
+
+/// A number as the bits of a component.
+std::uint32_t wordOf(double number, const ValueType &type, const std::string &what) {
+  std::uint32_t word = 0;
+  switch (type.kind) {
+  case ValueType::Kind::Int:
+  case ValueType::Kind::UInt: {
+    const bool isSigned = type.kind == ValueType::Kind::Int;
+    const double lowest = isSigned ? -2147483648.0 : 0.0;
+    const double highest = isSigned ? 2147483647.0 : 4294967295.0;
+    if (!(number >= lowest && number <= highest && number == std::floor(number)))
+      throw Error(ErrorCode::OutOfRange,
+                  fmt::format("{} takes whole numbers from {:.0f} to {:.0f}, not {:g}", what,
+                              lowest, highest, number));
+    return isSigned ? std::uint32_t(std::int32_t(number)) : std::uint32_t(number);
+  }
+  case ValueType::Kind::Bool:
+    return number != 0;
+  default: {
+    const float single = static_cast<float>(number);
+    if (std::isinf(single) && !std::isinf(number))
+      throw Error(ErrorCode::OutOfRange,
+                  fmt::format("{} cannot be {:g}: the largest float is 3.4e38", what, number));
+    std::memcpy(&word, &single, sizeof word);
+    return word;
+  }
+  }
+}
+
+/// Numbers in the layout of the elements.
+std::shared_ptr<Value::Words> wordsOf(const std::vector<double> &numbers, std::size_t given,
+                                      const ValueType &type, std::uint32_t colorComponents,
+                                      const std::string &what) {
+  auto words = std::make_shared<Value::Words>();
+  const bool isColor = type.kind == ValueType::Kind::Color && given != colorComponents;
+  words->reserve(isColor ? numbers.size() / given * colorComponents : numbers.size());
+  for (std::size_t i = 0; i < numbers.size(); i += isColor ? given : 1) {
+    if (!isColor) {
+      words->push_back(wordOf(numbers[i], type, what));
+      continue;
+    }
+    std::vector<float> color;
+    for (std::size_t j = 0; j < given; ++j)
+      color.push_back(static_cast<float>(numbers[i + j]));
+    for (const float component : runtime::colorFromNumbers(color, colorComponents))
+      words->push_back(wordOf(double(component), type, what));
+  }
+  return words;
+}
+
+std::vector<std::uint32_t> sizesOf(const std::vector<std::size_t> &shape, std::size_t rank,
+                                   const std::string &what) {
+  std::vector<std::uint32_t> sizes;
+  for (std::size_t i = 0; i < rank; ++i) {
+    if (shape[i] > std::numeric_limits<std::uint32_t>::max())
+      throw Error(ErrorCode::OutOfRange, fmt::format("{} has too many elements", what));
+    sizes.push_back(static_cast<std::uint32_t>(shape[i]));
+  }
+  return sizes;
+}
+
+/// The elements of a file without a format.
+Value readElements(const BufferDescription &buffer, const ValueType &type, std::size_t numbers,
+                   const std::string &what) {
+  const std::string bytes = readFile(buffer.file);
+  const std::size_t stride = 4 * numbers;
+  std::vector<std::size_t> shape(buffer.shape.begin(), buffer.shape.end());
+  if (shape.empty() && type.bufferRank == 1)
+    shape.push_back(bytes.size() / stride);
+  if (shape.size() != type.bufferRank)
+    throw Error(ErrorCode::WrongType, fmt::format("{} is a `{}`: `shape` takes {} sizes", what,
+                                                  type.name, type.bufferRank));
+  const auto count = std::accumulate(shape.begin(), shape.end(), 1.0,
+                                     [](double a, auto b) { return a * double(b); });
+  if (count * double(stride) != double(bytes.size()))
+    throw Error(ErrorCode::BadBuffer,
+                fmt::format("`{}` has {} bytes, and {} elements of {} bytes take {:.0f}",
+                            buffer.file, bytes.size(), fmt::join(shape, " x "), stride,
+                            count * double(stride)));
+  auto words = std::make_shared<Value::Words>(bytes.size() / 4);
+  std::memcpy(words->data(), bytes.data(), 4 * words->size());
+  return Value::block(std::move(words), sizesOf(shape, shape.size(), what));
+}
+
+} // namespace
+
+bool isBufferFile(const JsonValue &value) {
+  if (value.kind != Kind::Object || value.find("class"))
+    return false;
+  const JsonValue *file = value.find("buffer");
+  return file && file->kind == Kind::String;
+}
+
+BufferDescription
+readBufferDescription(const JsonValue &buffer,
+                      const std::function<std::string(const JsonValue &)> &resolve) {
+  checkKeys(buffer, {"buffer", "columns", "shape"}, "a buffer");
+  BufferDescription description;
+  description.file = resolve(*buffer.find("buffer"));
+  if (const JsonValue *columns = buffer.find("columns"))
+    for (const JsonValue &column : expect(*columns, Kind::Array, "`columns`").elements)
+      description.columns.push_back(expect(column, Kind::String, "a column").string);
+  if (const JsonValue *shape = buffer.find("shape"))
+    for (const JsonValue &size : expect(*shape, Kind::Array, "`shape`").elements)
+      description.shape.push_back(readInteger(size, 0, 0xffffffff, "a size of `shape`"));
+  return description;
+}
+
+Value readBuffer(const BufferDescription &buffer, const ValueType &type,
+                 std::uint32_t colorComponents, const std::string &what) {
+  if (type.bufferRank == 0)
+    throw Error(ErrorCode::WrongType, fmt::format("{} is a `{}`, not a buffer", what, type.name));
+  if (type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct)
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("{} is a `{}`, which a file cannot hold", what, type.name));
+  const std::size_t numbers = numbersOf(type, colorComponents);
+  const std::string extension = std::filesystem::path(buffer.file).extension().string();
+  if (extension != ".npy" && extension != ".csv")
+    return readElements(buffer, type, numbers, what);
+  const NumberArray array =
+      extension == ".npy" ? readNpy(buffer.file) : readCsv(buffer.file, buffer.columns);
+  // The dimensions of the buffer come first, those of an element follow.
+  std::size_t given = 1;
+  for (std::size_t i = type.bufferRank; i < array.shape.size(); ++i)
+    given *= array.shape[i];
+  const bool isColor = type.kind == ValueType::Kind::Color && type.arraySizes.empty();
+  if (array.shape.size() < type.bufferRank ||
+      (given != numbers && !(isColor && (given == 1 || given == 3))))
+    throw Error(ErrorCode::WrongType,
+                fmt::format("{} is a `{}`: {} with {} {} each are needed, and `{}` has the shape "
+                            "({})",
+                            what, type.name,
+                            type.bufferRank == 1 ? "1 dimension"
+                                                 : fmt::format("{} dimensions", type.bufferRank),
+                            numbers, numbers == 1 ? "number" : "numbers", buffer.file,
+                            fmt::join(array.shape, ", ")));
+  return Value::block(wordsOf(array.numbers, given, type, colorComponents, what),
+                      sizesOf(array.shape, type.bufferRank, what));
+}
+
+} // namespace rtsl::scene

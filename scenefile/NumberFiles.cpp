@@ -1,0 +1,220 @@
+#include "scenefile/NumberFiles.h"
+
+#include "support/AtomicFile.h"
+#include "support/ClosestName.h"
+#include "support/Error.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <half.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace rtsl::scene {
+
+namespace {
+
+[[noreturn]] void fail(const std::string &path, const std::string &why) {
+  throw Error(ErrorCode::BadBuffer, fmt::format("cannot read `{}`: {}", path, why));
+}
+
+//===----------------------------------------------------------------------===//
+// .npy (https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html)
+//===----------------------------------------------------------------------===//
+
+/// What follows a key of the header, which is a dictionary in Python's notation.
+std::string_view valueOf(std::string_view header, std::string_view key) {
+  const std::size_t at = header.find(key);
+  if (at == header.npos)
+    return {};
+  std::string_view rest = header.substr(at + key.size());
+  const std::size_t begin = rest.find_first_not_of(": ");
+  return begin == rest.npos ? std::string_view() : rest.substr(begin);
+}
+
+std::vector<std::size_t> shapeOf(const std::string &path, std::string_view text) {
+  std::vector<std::size_t> shape;
+  if (text.empty() || text.front() != '(')
+    fail(path, "its header has no shape");
+  text.remove_prefix(1);
+  while (true) {
+    text.remove_prefix(std::min(text.find_first_not_of(", "), text.size()));
+    if (text.empty())
+      fail(path, "its header has no shape");
+    if (text.front() == ')')
+      return shape;
+    std::size_t size = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
+    if (error != std::errc())
+      fail(path, "the shape in its header is not a list of numbers");
+    shape.push_back(size);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+}
+
+template <typename Number>
+void convert(const char *bytes, std::vector<double> &numbers) {
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    Number number;
+    std::memcpy(&number, bytes + i * sizeof number, sizeof number);
+    numbers[i] = static_cast<double>(number);
+  }
+}
+
+struct ElementType {
+  const char *name;
+  std::size_t bytes;
+  void (*convert)(const char *, std::vector<double> &);
+};
+constexpr ElementType elementTypes[] = {
+    {"<f4", 4, convert<float>},         {"<f8", 8, convert<double>},
+    {"<f2", 2, convert<half>},          {"<i4", 4, convert<std::int32_t>},
+    {"<i8", 8, convert<std::int64_t>},  {"<u4", 4, convert<std::uint32_t>},
+    {"<u8", 8, convert<std::uint64_t>}, {"<i2", 2, convert<std::int16_t>},
+    {"<u2", 2, convert<std::uint16_t>}, {"|i1", 1, convert<std::int8_t>},
+    {"|u1", 1, convert<std::uint8_t>},  {"|b1", 1, convert<std::uint8_t>},
+};
+
+//===----------------------------------------------------------------------===//
+// .csv
+//===----------------------------------------------------------------------===//
+
+std::string_view trim(std::string_view text) {
+  const auto isSpace = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+  while (!text.empty() && isSpace(text.front()))
+    text.remove_prefix(1);
+  while (!text.empty() && isSpace(text.back()))
+    text.remove_suffix(1);
+  return text;
+}
+
+/// Removes the part of `text` up to the separator, and returns it.
+std::string_view next(std::string_view &text, char separator) {
+  const std::size_t end = std::min(text.find(separator), text.size());
+  const std::string_view part = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return part;
+}
+
+std::vector<std::string_view> cellsOf(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const bool isLast = line.find(',') == line.npos;
+    cells.push_back(trim(next(line, ',')));
+    if (isLast)
+      return cells;
+  }
+}
+
+bool isNumber(std::string_view text, double &number) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size();
+}
+
+/// The places of the chosen columns among the names of the file.
+std::vector<std::size_t> placesOf(const std::string &path, const std::vector<std::string> &columns,
+                                  const std::vector<std::string> &names) {
+  std::vector<std::size_t> places;
+  for (const std::string &column : columns) {
+    const auto found = std::find(names.begin(), names.end(), column);
+    if (found == names.end()) {
+      const std::string near = closestName(column, names);
+      throw Error(ErrorCode::UnknownName,
+                  fmt::format("`{}` has no column `{}`{}", path, column,
+                              names.empty() ? ": its first line has no names"
+                              : near.empty()
+                                  ? fmt::format("; it has `{}`", fmt::join(names, "`, `"))
+                                  : fmt::format("; did you mean `{}`?", near)));
+    }
+    places.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  return places;
+}
+
+} // namespace
+
+NumberArray readNpy(const std::string &path) {
+  const std::string file = readFile(path);
+  if (file.size() < 10 || file.compare(0, 6, "\x93NUMPY") != 0)
+    fail(path, "it is no .npy file");
+  const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(file[i])); };
+  const bool isLong = byte(6) >= 2; // the length of the header has 4 bytes
+  const std::size_t start = isLong ? 12 : 10;
+  std::size_t length = byte(8) | byte(9) << 8;
+  if (isLong && file.size() >= start)
+    length |= byte(10) << 16 | byte(11) << 24;
+  if (byte(6) < 1 || byte(6) > 3 || file.size() < start || file.size() - start < length)
+    fail(path, "its header is cut short, or of another version");
+  const std::string_view header = std::string_view(file).substr(start, length);
+
+  std::string_view type = valueOf(header, "'descr'");
+  const auto found =
+      std::find_if(std::begin(elementTypes), std::end(elementTypes), [&](const ElementType &known) {
+        return type.size() > 4 && type.front() == '\'' && type.substr(1, 3) == known.name;
+      });
+  if (found == std::end(elementTypes))
+    fail(path, "its elements are no little-endian integers or floats");
+  NumberArray array;
+  array.shape = shapeOf(path, valueOf(header, "'shape'"));
+  if (array.shape.size() > 1 && valueOf(header, "'fortran_order'").substr(0, 4) == "True")
+    fail(path, "it is in Fortran order; save numpy.ascontiguousarray(...)");
+  const std::size_t bytes = file.size() - start - length;
+  std::size_t count = 1;
+  for (const std::size_t size : array.shape) {
+    if (size != 0 && count > bytes / size)
+      fail(path, "it is cut short");
+    count *= size;
+  }
+  if (bytes / found->bytes < count)
+    fail(path, "it is cut short");
+  if (bytes != count * found->bytes)
+    fail(path, "it is longer than its header says");
+  array.numbers.resize(count);
+  found->convert(file.data() + start + length, array.numbers);
+  return array;
+}
+
+NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns) {
+  const std::string file = readFile(path);
+  std::string_view text = file;
+  NumberArray array;
+  std::vector<std::string> names;
+  std::vector<std::size_t> places;
+  std::size_t width = 0, rows = 0;
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::string_view written = trim(next(text, '\n'));
+    if (written.empty())
+      continue;
+    const std::vector<std::string_view> cells = cellsOf(written);
+    double number = 0;
+    if (width == 0) {
+      width = cells.size();
+      const bool hasNames = !isNumber(cells.front(), number);
+      if (hasNames)
+        names.assign(cells.begin(), cells.end());
+      places = placesOf(path, columns, names);
+      for (std::size_t i = 0; columns.empty() && i < width; ++i)
+        places.push_back(i);
+      if (hasNames)
+        continue;
+    }
+    if (cells.size() != width)
+      fail(path, fmt::format("line {} has {} columns, not {}", line, cells.size(), width));
+    for (const std::size_t place : places) {
+      if (!isNumber(cells[place], number))
+        fail(path, fmt::format("`{}` in line {} is no number", cells[place], line));
+      array.numbers.push_back(number);
+    }
+    ++rows;
+  }
+  array.shape = {rows};
+  if (places.size() != 1)
+    array.shape.push_back(places.size());
+  return array;
+}
+
+} // namespace rtsl::scene

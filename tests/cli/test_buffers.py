@@ -1,0 +1,173 @@
+"""Buffers from files: .npy, .csv and bytes, as members of every type, and files that are wrong."""
+
+import json
+import random
+import struct
+import unittest
+
+from harness import Case
+
+SHADERS = """
+class Show : rt_RayGeneration {
+  public float numbers[];
+  public float table[][];
+  public float block[][][];
+  public vec3 points[];
+  public mat2 turns[];
+  public float pairs[][2];
+  public int whole[];
+  public uint positive[];
+  public bool yes[];
+  public color tints[];
+  public color shades[];
+  void generate() {
+    for (int i = 0; i < numbers.length(); ++i) print(0, numbers[i]);
+    for (int i = 0; i < table.length(); ++i) for (int j = 0; j < table[i].length(); ++j) print(1, i, j, table[i][j]);
+    for (int i = 0; i < block.length(); ++i) for (int j = 0; j < block[i].length(); ++j)
+      for (int k = 0; k < block[i][j].length(); ++k) print(2, i, j, k, block[i][j][k]);
+    for (int i = 0; i < points.length(); ++i) print(3, points[i]);
+    for (int i = 0; i < turns.length(); ++i) print(4, turns[i][0], turns[i][1]);
+    for (int i = 0; i < pairs.length(); ++i) print(5, pairs[i][0], pairs[i][1]);
+    for (int i = 0; i < whole.length(); ++i) print(6, whole[i]);
+    for (int i = 0; i < positive.length(); ++i) print(7, positive[i]);
+    for (int i = 0; i < yes.length(); ++i) print(8, yes[i] ? 1 : 0);
+    for (int i = 0; i < tints.length(); ++i) print(9, luminance(tints[i]));
+    for (int i = 0; i < shades.length(); ++i) print(10, luminance(shades[i]));
+  }
+};
+class Objects : rt_RayGeneration { public rt_Texture textures[]; void generate() { } };
+"""
+
+
+def npy(form, shape, numbers, order="False", version=1, descr=None):
+    """A file of NumPy."""
+    kinds = {"f": "<f4", "d": "<f8", "e": "<f2", "i": "<i4", "q": "<i8", "I": "<u4", "Q": "<u8", "h": "<i2", "H": "<u2", "b": "|i1", "B": "|u1",
+             "?": "|b1"}
+    text = "{'descr': '%s', 'fortran_order': %s, 'shape': (%s), }" % (
+        descr or kinds[form], order, ", ".join(map(str, shape)) + ("," if len(shape) == 1 else ""))
+    length = struct.pack("<H" if version == 1 else "<I", len(text) + 1)
+    return b"\x93NUMPY" + bytes([version, 0]) + length + text.encode() + b"\n" + struct.pack(f"<{len(numbers)}{form}", *numbers)
+
+
+class Buffers(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("show.rtsl", SHADERS)
+
+    def scene(self, **members):
+        self.write("scene.json", json.dumps({"rtsl": 1, "import": ["show.rtsl"], "rayGeneration": {"class": "Show", **members},
+                                             "render": {"engine": "programs", "size": [1, 1], "spp": 1}}))
+
+    def printed(self, *options):
+        output, _ = self.run_rtslc("render", "scene.json", "--print", "-q", "-o", "x.exr", "-Wno-all", *options)
+        for name in ("vec2", "vec3"):
+            output = output.replace(name + "(", "")
+        return [[float(n) for n in line.split(": ", 1)[1].replace(")", "").replace(",", " ").split()] for line in output.splitlines()]
+
+    def test_every_type_as_a_list_and_as_a_file(self):
+        chance = random.Random(1)
+        numbers = lambda count: [chance.randrange(-64, 64) / 16 for _ in range(count)]
+
+        def nested(flat, *sizes):
+            part = len(flat) // sizes[0]
+            return flat if len(sizes) == 1 else [nested(flat[i * part:(i + 1) * part], *sizes[1:]) for i in range(sizes[0])]
+
+        shapes = {"numbers": (5,), "table": (3, 4), "block": (2, 3, 2), "points": (4, 3), "turns": (3, 2, 2), "pairs": (3, 2), "tints": (4, 3)}
+        lists, files = {}, {}
+        for member, shape in shapes.items():
+            count = 1
+            for size in shape:
+                count *= size
+            flat = numbers(count)
+            lists[member] = nested(flat, *shape)
+            self.write(f"{member}.npy", npy("f" if len(files) % 2 else "d", shape, flat, version=1 + len(files) % 3))
+            files[member] = {"buffer": f"{member}.npy"}
+        lists.update(whole=[-5, 7, 2147483647, -2147483648], positive=[0, 4294967295], yes=[True, False, True], shades=[0.25, 0.5])
+        self.write("whole.npy", npy("q", (4,), lists["whole"]))
+        self.write("positive.npy", npy("I", (2,), lists["positive"]))
+        self.write("yes.npy", npy("?", (3,), lists["yes"]))
+        self.write("shades.npy", npy("e", (2,), lists["shades"]))
+        files.update({member: {"buffer": f"{member}.npy"} for member in ("whole", "positive", "yes", "shades")})
+        for color in ("rgb", "spectral:5"):
+            self.scene(**lists)
+            expected = self.printed(f"--color={color}")
+            self.assertEqual({line[0] for line in expected}, set(range(11)))
+            self.scene(**files)
+            for options in ([], ["--target=host-megakernel"]):
+                self.assertEqual(self.printed(f"--color={color}", *options), expected)
+
+    def test_columns_of_csv(self):
+        self.write("points.csv", "time, x,y , z\r\n0,1,2,3\n\n1,-4.5,5e-1,6\n")
+        self.scene(points={"buffer": "points.csv", "columns": ["z", "x", "y"]}, numbers={"buffer": "points.csv", "columns": ["time"]},
+                   table={"buffer": "points.csv"})
+        self.assertEqual(self.printed(), [[0, 0], [0, 1], *[[1, i, j, v] for i, row in enumerate([[0, 1, 2, 3], [1, -4.5, 0.5, 6]])
+                                                             for j, v in enumerate(row)], [3, 3, 1, 2], [3, 6, -4.5, 0.5]])
+        self.write("plain.csv", "1,2\n3,4\n")
+        self.scene(table={"buffer": "plain.csv"})
+        self.assertEqual([line[3] for line in self.printed()], [1, 2, 3, 4])
+
+    def test_bytes(self):
+        self.write("numbers.raw", struct.pack("<4f", 1, 2, 3, 4))
+        self.scene(numbers={"buffer": "numbers.raw"}, table={"buffer": "numbers.raw", "shape": [2, 2]}, whole={"buffer": "numbers.raw"})
+        self.assertEqual(self.printed(), [[0, 1], [0, 2], [0, 3], [0, 4], [1, 0, 0, 1], [1, 0, 1, 2], [1, 1, 0, 3], [1, 1, 1, 4],
+                                          *[[6, v] for v in struct.unpack("<4i", struct.pack("<4f", 1, 2, 3, 4))]])
+
+    def test_empty(self):
+        self.write("none.npy", npy("f", (0,), []))
+        self.write("none.raw", b"")
+        self.write("none.csv", "x\n")
+        for name in ("none.npy", "none.raw", "none.csv"):
+            self.scene(numbers={"buffer": name})
+            self.assertEqual(self.printed(), [])
+
+    def test_inputs_are_not_overwritten(self):
+        self.write("numbers.exr", struct.pack("<4f", 1, 2, 3, 4))
+        self.scene(numbers={"buffer": "numbers.exr"})
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "numbers.exr"), "E0965")
+        self.assertEqual(len((self.folder / "numbers.exr").read_bytes()), 16)
+
+    def wrong(self, member, value, code, containing):
+        self.scene(**{member: value})
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "x.exr", "-Wno-all"), code, containing, line=1, file="scene.json")
+        self.assertFalse((self.folder / "x.exr").exists())
+
+    def test_wrong_files(self):
+        good = npy("f", (4,), [1, 2, 3, 4])
+        for name, data, code, containing in (
+                ("a.npy", b"", "E0906", "no .npy file"), ("a.npy", b"PK" + bytes(50), "E0906", "no .npy file"),
+                ("a.npy", good[:9], "E0906", "no .npy file"), ("a.npy", good[:30], "E0906", "cut short"),
+                ("a.npy", good[:-1], "E0906", "cut short"), ("a.npy", good + b"x", "E0906", "longer than its header"),
+                ("a.npy", npy("f", (2 ** 62, 8), []), "E0906", "cut short"),
+                ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr=">f4"), "E0906", "no little-endian"),
+                ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr="<c8"), "E0906", "no little-endian"),
+                ("a.npy", good.replace(b"'shape': (4,)", b"'shape': [4 ]"), "E0906", "no shape"),
+                ("a.npy", good.replace(b"'shape': (4,)", b"'shape': (x,)"), "E0906", "not a list of numbers"),
+                ("a.npy", npy("f", (2, 2), [1, 2, 3, 4]), "E0804", "is a `float[]`: 1 dimension with 1 number each are needed"),
+                ("a.npy", npy("d", (1,), [1e39]), "E0805", "the largest float"),
+                ("a.csv", b"x,y\n1,2\n", "E0804", "has the shape (1, 2)"), ("a.csv", b"x\n1\n2,3\n", "E0906", "line 3 has 2 columns, not 1"),
+                ("a.csv", b"x\n1\nfish\n", "E0906", "`fish` in line 3 is no number"), ("a.raw", b"12345", "E0906", "5 bytes")):
+            self.write(name, data)
+            self.wrong("numbers", {"buffer": name}, code, containing)
+        self.wrong("numbers", {"buffer": "none.npy"}, "E0900", "none.npy")
+        self.write("a.npy", npy("f", (2, 2), [1, 2, 3, 4], order="True"))
+        self.wrong("table", {"buffer": "a.npy"}, "E0906", "Fortran order")
+        self.wrong("whole", {"buffer": "b.npy", "column": []}, "E0802", "has no key `column`")
+        self.write("a.npy", npy("f", (1,), [1.5]))
+        self.wrong("whole", {"buffer": "a.npy"}, "E0805", "takes whole numbers")
+        self.write("a.npy", npy("i", (1,), [-1]))
+        self.wrong("positive", {"buffer": "a.npy"}, "E0805", "from 0 to 4294967295")
+        self.write("a.csv", "x,y\n1,2\n")
+        self.wrong("numbers", {"buffer": "a.csv", "columns": ["z"]}, "E0806", "no column `z`; it has `x`, `y`")
+        self.write("a.raw", bytes(16))
+        self.wrong("table", {"buffer": "a.raw"}, "E0804", "`shape` takes 2 sizes")
+        self.wrong("table", {"buffer": "a.raw", "shape": [3, 3]}, "E0906", "3 x 3 elements of 4 bytes take 36")
+
+    def test_what_takes_no_file(self):
+        self.write("a.npy", npy("f", (1,), [1]))
+        self.write("scene.json", json.dumps({"rtsl": 1, "import": ["show.rtsl"], "rayGeneration": {"class": "Objects", "textures": {"buffer": "a.npy"}},
+                                             "render": {"engine": "programs", "size": [1, 1]}}))
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "x.exr"), "E0808", "a file cannot hold")
+
+
+if __name__ == "__main__":
+    unittest.main()
