@@ -1,6 +1,5 @@
 #include "scenefile/BufferFiles.h"
 
-#include "runtime/scene/ValueStore.h"
 #include "scenefile/NumberFiles.h"
 #include "scenefile/Reader.h"
 #include "support/AtomicFile.h"

@@ -6,8 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/program/Program.h"
-#include "runtime/scene/Value.h"
+#include "runtime/scene/ValueStore.h"
 #include "scenefile/JsonValue.h"
 
 #include <cstdint>

@@ -25,7 +25,7 @@ enum class ErrorCode : std::uint8_t {
   // Meshes and images.
   BadMesh, // truncated, empty, not finite, an index out of range
   BadImage,
-  BadBuffer, // a file of numbers that is truncated, damaged, or of another size
+  BadBuffer,  // a file of numbers that is truncated, damaged, or of another size
   BadPackage, // not a package, of another version, truncated, damaged
   // Scene files.
   NotAScene, // shaders where a scene is expected

@@ -121,7 +121,7 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
 }
 
 std::vector<std::string> withFiles(const scene::SceneDescription &description,
-                                    std::vector<std::string> filesRead) {
+                                   std::vector<std::string> filesRead) {
   for (const std::string &file : scene::filesOf(description))
     if (std::find(filesRead.begin(), filesRead.end(), file) == filesRead.end())
       filesRead.push_back(file);

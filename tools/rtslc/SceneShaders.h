@@ -30,9 +30,9 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
                                            std::vector<std::string> *filesRead = nullptr);
 
 /// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and
-/// the meshes.
+/// meshes, images and buffers.
 std::vector<std::string> withFiles(const scene::SceneDescription &description,
-                                    std::vector<std::string> filesRead);
+                                   std::vector<std::string> filesRead);
 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);
