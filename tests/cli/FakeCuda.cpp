@@ -224,7 +224,9 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
       isAllocated(launch.records, 16) &&
       (launch.lightCount == 0 || isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef)));
   isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
-  isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
+  isFine &= launch.rootIsLeaf
+                ? isAllocated(launch.leafItems, launch.nodeCount * sizeof(RtslLeafItem))
+                : isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
   for (std::uint32_t i = 0; i < launch.meshCount; ++i)
     isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
               isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);

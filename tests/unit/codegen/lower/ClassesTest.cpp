@@ -344,7 +344,7 @@ TEST(Examples, AreLowered) {
     std::ifstream file(entry.path());
     std::stringstream text;
     text << file.rdbuf();
-    if (text.str().find("import \"") != std::string::npos)
+    if (text.str().find("import ") != std::string::npos)
       continue; // needs other files; the image tests lower it
     SCOPED_TRACE(entry.path().string());
     EXPECT_TRUE(Lowered(text.str()).succeeded());
