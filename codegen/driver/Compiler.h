@@ -113,15 +113,16 @@ struct SceneExplanation {
   Findings findings;
   ProgramSize size;
   std::map<Item, ProgramSize> sizeKeeping; // if this one item were kept
+  bool hasSavings = true;                  // sizeKeeping was measured
   /// The linked program without code: needed to determine the objects to keep.
   std::shared_ptr<const runtime::Program> program;
 };
 
-/// Compiles a scene's program, and once more for each item with that item kept. Nothing if there
-/// were errors.
+/// Compiles a scene's program, and, with savings, once more for each item with that item kept.
+/// Nothing if there were errors.
 std::optional<SceneExplanation>
 explainScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-             Diagnostics &diagnostics, const MakeObjects &makeObjects);
+             Diagnostics &diagnostics, const MakeObjects &makeObjects, bool withSavings = true);
 
 /// Splits the module at `trace` and warns where more than CompileOptions::largeLiveState bytes are
 /// saved: -Wlive-state. Does nothing if that warning is off, or if the module cannot be lowered.

@@ -142,9 +142,10 @@ bool leavesOut(Item item, const Findings &findings) {
 
 std::optional<SceneExplanation>
 explainScene(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
-             Diagnostics &diagnostics, const MakeObjects &makeObjects) {
+             Diagnostics &diagnostics, const MakeObjects &makeObjects, bool withSavings) {
   const SourceManager &sources = diagnostics.sources();
   SceneExplanation explanation;
+  explanation.hasSavings = withSavings;
   runtime::SceneFacts facts; // made once: omitting items from a program changes no object
   CompileInput input;
   input.module = &module;
@@ -163,7 +164,7 @@ explainScene(const typed::Module &module, const LinkRequest &request, const Comp
   for (Item item : allItems) {
     if (request.keep.has(item))
       continue;
-    if (item == Item::Meshes || !leavesOut(item, explanation.findings))
+    if (!withSavings || item == Item::Meshes || !leavesOut(item, explanation.findings))
       explanation.sizeKeeping[item] = explanation.size; // the program is the same
     else if (const auto size = measureKeeping(item, input, options, sources, facts))
       explanation.sizeKeeping[item] = *size;

@@ -221,7 +221,7 @@ class Explain(Case):
                 shutil.copy(example.parent / other, self.folder)
                 text = text.replace(f'"{other}"', f'"{pathlib.Path(other).name}"')
             self.write("scene.json", text)
-            items = self.entries()
+            items = self.entries("--no-savings")
             before = self.ptx()
             here = self.change_methods(items)
             scene = json.loads((self.folder / "scene.json").read_text())
@@ -237,11 +237,11 @@ class Explain(Case):
     def test_lights_are_used_where_a_shader_looks_for_them(self):
         lights = [{"class": "Lamp", "position": [3, 1, 2]}]
         self.write_scene(lights=lights)
-        lit = self.entries()
+        lit = self.entries("--no-savings")
         self.assertEqual(lit["objects"]["lights.0 (Lamp)"][:2], (False, "no `illuminance` runs"))
         self.assertFalse(lit["classes"]["Lamp"][0])
         self.write_scene(lights=lights, materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
-        lit = self.entries()
+        lit = self.entries("--no-savings")
         self.assertTrue(lit["objects"]["lights.0 (Lamp)"][0])
         self.assertTrue(lit["classes"]["Lamp"][0])
 
@@ -255,7 +255,7 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
                                        "c": {"class": "Twice", "inner": "b"}, "d": {"class": "Plain", "value": [3, 2, 1]}},
                  "materials": {"red": {"class": "Papered", "paper": "b"}, "rest": {"class": "Papered", "paper": "c"}}}
         self.write("scene.json", json.dumps(scene))
-        objects = self.entries()["objects"]
+        objects = self.entries("--no-savings")["objects"]
         self.assertEqual({name: entry[0] for name, entry in objects.items()},
                          {"texture a": True, "texture b": True, "texture c": False, "texture d": False,
                           "material red": True, "material rest": False})
@@ -284,12 +284,12 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
             self.write_scene()
             self.write("all.rtsl", shade(index))
             self.assertEqual(self.ptx() != self.ptx("--unchecked"), isNeeded, index)
-            self.assertEqual(self.entries()["events"]["index checks"][0], isNeeded, index)
+            self.assertEqual(self.entries("--no-savings")["events"]["index checks"][0], isNeeded, index)
 
     def test_prints_are_needed_where_a_shader_that_runs_prints(self):
         self.write_scene()
         self.write("all.rtsl", SHADERS.replace("illuminance (rt_HitPoint)", 'print("paint"); illuminance (rt_HitPoint)'))
-        self.assertEqual(self.entries()["events"]["print"][:2], (False, "no `print` runs"))
+        self.assertEqual(self.entries("--no-savings")["events"]["print"][:2], (False, "no `print` runs"))
 
     def test_ptx_of_a_scene_is_bound_to_it(self):
         self.write_scene()
@@ -315,11 +315,23 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
         (message,) = self.diagnose("explain", "--states", "--format=svg", "all.rtsl", prepare=without_programs)
         self.assert_message([message], "E0901", "failed: syntax error in line 1")
 
+    def test_without_savings(self):
+        self.write_scene()
+        whole = self.entries()
+        self.assertTrue(all("saved" in item for item in self.document["items"]))
+        self.assertEqual(self.entries("--no-savings"), whole)
+        self.assertFalse(any("saved" in item for item in self.document["items"]))
+        text, _ = self.run_rtslc("explain", "scene.json", "--no-savings")
+        self.assertIn("What its program needs:\n", text)
+        self.assertNotIn("savings", text)
+        self.assertIn("needed    Answering", text)
+
     def test_usage(self):
         self.write_scene()
         for arguments, text in ((("explain", "all.rtsl"), "give a scene, or --states"),
                                 (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
                                 (("explain", "scene.json", "--measure", "--states"), "cannot be combined with --states"),
+                                (("explain", "scene.json", "--no-savings", "--states"), "cannot be combined with --states"),
                                 (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
                                 (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|objects|classes"),
                                 (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):

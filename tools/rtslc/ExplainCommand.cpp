@@ -23,7 +23,7 @@ struct ExplainOptions {
   CommonOptions common;
   std::vector<std::string> files, overrides;
   std::string output = "-";
-  bool states = false, measure = false;
+  bool states = false, measure = false, noSavings = false;
   unsigned pairs = 11;
   std::optional<PictureSize> size; // of pictures that are measured
   std::uint32_t samples = 1;
@@ -116,8 +116,9 @@ std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &o
 std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded,
                                         SceneBuilder buildScene, ItemMeasurer measure,
                                         Messages &messages) {
-  const std::optional<SceneExplanation> explanation = explainScene(
-      *loaded.module, loaded.request, loaded.compile, messages.diagnostics, loaded.makeObjects);
+  const std::optional<SceneExplanation> explanation =
+      explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics,
+                   loaded.makeObjects, !options.noSavings);
   if (!explanation)
     return std::nullopt;
   for (const Warning &warning : loaded.scene->warnings())
@@ -182,6 +183,10 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
   command->add_flag("--measure", options->measure,
                     "render alternately with each item left out and kept: time, instructions, and "
                     "whether the picture is the same");
+  command->add_flag(
+      "--no-savings", options->noSavings,
+      "only list what is needed and what is left out: the program is compiled once, and "
+      "not once more for each item");
   addWhole(*command, "--pairs", options->pairs, 10, 10000,
            "with --measure: pairs of renderings per item; default 11");
   addSizeOption(*command, options->size);
@@ -220,6 +225,8 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
       throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
     if (options->states && options->measure)
       throw CLI::ValidationError("--measure", "cannot be combined with --states");
+    if (options->states && options->noSavings)
+      throw CLI::ValidationError("--no-savings", "cannot be combined with --states");
     if (!options->states &&
         (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");

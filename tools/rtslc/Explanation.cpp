@@ -36,7 +36,8 @@ std::int64_t difference(std::uint64_t kept, std::uint64_t now) {
 
 Explanation::Explanation(std::string scene, const SceneExplanation &program,
                          const std::vector<runtime::Scene::MeshAttribute> &meshes)
-    : scene(std::move(scene)), size(program.size), findings(program.findings) {
+    : scene(std::move(scene)), size(program.size), hasSavings(program.hasSavings),
+      findings(program.findings) {
   std::int64_t meshBytes = 0;
   for (const runtime::Scene::MeshAttribute &attribute : meshes) {
     findings.push_back(
@@ -69,21 +70,24 @@ Explanation::Explanation(std::string scene, const SceneExplanation &program,
 }
 
 std::string Explanation::table() const {
-  std::string text =
-      fmt::format("{:<38}{:>7}{:>9}   {:>12}{:>11}{:>8}{:>8}{:>9}\n", "", "needed", "left out",
-                  "instructions", "constants", "frame", "states", "memory");
+  std::string text = fmt::format("{:<38}{:>7}{:>9}", "", "needed", "left out");
+  text += hasSavings ? fmt::format("   {:>12}{:>11}{:>8}{:>8}{:>9}\n", "instructions", "constants",
+                                   "frame", "states", "memory")
+                     : "\n";
   for (const Entries &entries : items) {
     const auto number = [](std::int64_t saved) {
       return saved == 0 ? std::string("-") : grouped(saved);
     };
     const Saved &saved = entries.saved;
-    text += fmt::format("{:<38}{:>7}{:>9}   ", titleOf(entries.item), count(entries.needed.size()),
+    text += fmt::format("{:<38}{:>7}{:>9}", titleOf(entries.item), count(entries.needed.size()),
                         count(entries.leftOut.size()));
-    text += entries.isKept
-                ? "kept\n"
-                : fmt::format("{:>12}{:>11}{:>8}{:>8}{:>9}\n", number(saved.instructions),
-                              number(saved.constantBytes), number(saved.frameBytes),
-                              number(saved.states), number(saved.memoryBytes));
+    if (entries.isKept)
+      text += "   kept";
+    else if (hasSavings)
+      text += fmt::format("   {:>12}{:>11}{:>8}{:>8}{:>9}", number(saved.instructions),
+                          number(saved.constantBytes), number(saved.frameBytes),
+                          number(saved.states), number(saved.memoryBytes));
+    text += "\n";
   }
   return text;
 }
@@ -139,8 +143,9 @@ std::string Explanation::text() const {
       "{}: {} instructions, {} bytes of constants, {} states with frames of up to {} bytes\n\n",
       scene, grouped(static_cast<std::int64_t>(size.instructions)),
       grouped(static_cast<std::int64_t>(size.constantBytes)), size.states, size.frameBytes);
-  text += "What its program needs, and the savings of leaving out the rest (in bytes, except "
-          "instructions and states):\n\n";
+  text += hasSavings ? "What its program needs, and the savings of leaving out the rest (in bytes, "
+                       "except instructions and states):\n\n"
+                     : "What its program needs:\n\n";
   text += table();
   text += measurementsText();
   for (const Entries &entries : items)
@@ -160,7 +165,7 @@ std::string Explanation::json() const {
   for (const Entries &entries : items) {
     nlohmann::ordered_json item = {
         {"item", nameOf(entries.item)}, {"title", titleOf(entries.item)}, {"kept", entries.isKept}};
-    if (!entries.isKept)
+    if (!entries.isKept && hasSavings)
       item["saved"] = {{"instructions", entries.saved.instructions},
                        {"constantBytes", entries.saved.constantBytes},
                        {"frameBytes", entries.saved.frameBytes},

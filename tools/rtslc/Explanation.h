@@ -42,6 +42,7 @@ private:
 
   std::string scene;
   ProgramSize size;
+  bool hasSavings;
   Findings findings;
   std::vector<Entries> items;
   std::vector<ItemMeasurement> measurements;

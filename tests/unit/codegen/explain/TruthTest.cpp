@@ -38,7 +38,8 @@ public:
 
   Findings findings() {
     const auto explanation =
-        explainScene(*module, request, options.compile, messages.diagnostics, makeObjects());
+        explainScene(*module, request, options.compile, messages.diagnostics, makeObjects(),
+                     /*withSavings=*/false);
     EXPECT_TRUE(explanation);
     return explanation ? explanation->findings : Findings();
   }
