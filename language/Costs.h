@@ -30,6 +30,7 @@ inline constexpr unsigned trace = 1000;
 inline constexpr unsigned memberLoad = 2; // of the object or the scene: likely in a cache
 inline constexpr unsigned load = 4;       // of the ray's state or a variable
 inline constexpr unsigned bufferLoad = 16;
+inline constexpr unsigned atomic = 64; // one element may have many lanes waiting for it
 // Addresses and sizes
 inline constexpr unsigned elementAddress = 2;
 inline constexpr unsigned bufferElementAddress = 6;

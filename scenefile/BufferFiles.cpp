@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <new>
 #include <numeric>
 
 namespace rtsl::scene {
@@ -116,18 +117,27 @@ Value readElements(const BufferDescription &buffer, const ValueType &type, std::
 
 } // namespace
 
-bool isBufferFile(const JsonValue &value) {
+bool isBuffer(const JsonValue &value) {
   if (value.kind != Kind::Object || value.find("class"))
     return false;
-  const JsonValue *file = value.find("buffer");
-  return file && file->kind == Kind::String;
+  const JsonValue *file = value.find("buffer"), *size = value.find("size");
+  if (file)
+    return file->kind == Kind::String;
+  return size && size->kind == Kind::Array && value.members.size() == 1;
 }
 
 BufferDescription
 readBufferDescription(const JsonValue &buffer,
                       const std::function<std::string(const JsonValue &)> &resolve) {
-  checkKeys(buffer, {"buffer", "columns", "shape"}, "a buffer");
   BufferDescription description;
+  if (const JsonValue *size = buffer.find("size"); size && !buffer.find("buffer")) {
+    if (size->elements.empty() || size->elements.size() > 3)
+      throw Error(ErrorCode::OutOfRange, "`size` takes 1 to 3 numbers", size->place());
+    for (const JsonValue &one : size->elements)
+      description.shape.push_back(readInteger(one, 0, 0xffffffff, "a number of `size`"));
+    return description;
+  }
+  checkKeys(buffer, {"buffer", "columns", "shape"}, "a buffer");
   description.file = resolve(*buffer.find("buffer"));
   if (const JsonValue *columns = buffer.find("columns"))
     for (const JsonValue &column : expect(*columns, Kind::Array, "`columns`").elements)
@@ -138,10 +148,31 @@ readBufferDescription(const JsonValue &buffer,
   return description;
 }
 
+Value zeros(const std::vector<std::uint32_t> &sizes, const ValueType &type,
+            const std::string &what) {
+  if (sizes.size() != type.bufferRank)
+    throw Error(ErrorCode::WrongType,
+                fmt::format("{} is a `{}`: `size` takes {} number{}, not {}", what, type.name,
+                            type.bufferRank, type.bufferRank == 1 ? "" : "s", sizes.size()));
+  const double bytes = std::accumulate(sizes.begin(), sizes.end(), double(type.elementSize),
+                                       [](double a, std::uint32_t b) { return a * double(b); });
+  try {
+    if (bytes > double(std::numeric_limits<std::int64_t>::max()))
+      throw std::bad_alloc();
+    auto words = std::make_shared<Value::Words>(static_cast<std::size_t>(bytes) / 4);
+    return Value::block(std::move(words), sizes);
+  } catch (const std::bad_alloc &) {
+    throw Error(ErrorCode::OutOfMemory,
+                fmt::format("not enough memory for {}: {:.1f} GiB", what, bytes / (1 << 30)));
+  }
+}
+
 Value readBuffer(const BufferDescription &buffer, const ValueType &type,
                  std::uint32_t colorComponents, const std::string &what) {
   if (type.bufferRank == 0)
     throw Error(ErrorCode::WrongType, fmt::format("{} is a `{}`, not a buffer", what, type.name));
+  if (buffer.file.empty())
+    return zeros(buffer.shape, type, what);
   if (type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct)
     throw Error(ErrorCode::NotSupported,
                 fmt::format("{} is a `{}`, which a file cannot hold", what, type.name));

@@ -1,7 +1,7 @@
-//===- BufferFiles.h - buffers that a scene takes from files --------------===//
+//===- BufferFiles.h - buffers of a scene that are no lists ---------------===//
 //
 // {"buffer": "points.npy"} in place of a list (docs/scene-format.md#buffers): NumPy's .npy, columns
-// of .csv, or elements as they lie in memory.
+// of .csv, or elements as they lie in memory. {"size": [480, 640]}: zeros.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -17,22 +17,27 @@
 namespace rtsl::scene {
 
 struct BufferDescription {
-  std::string file;                 // resolved
+  std::string file;                 // resolved; empty: zeros
   std::vector<std::string> columns; // of .csv; empty: all
-  std::vector<std::uint32_t> shape; // of a file without a format; empty: one dimension
+  // of zeros, or of a file without a format: then empty is one dimension
+  std::vector<std::uint32_t> shape;
 };
 
-/// Is it a buffer in a file? For the value of a member.
-bool isBufferFile(const JsonValue &value);
+/// Is it a buffer in a file, or of zeros? For the value of a member.
+bool isBuffer(const JsonValue &value);
 
 /// `resolve` makes a path as written one to open. Throws UnknownKey, WrongType, OutOfRange.
 BufferDescription
 readBufferDescription(const JsonValue &buffer,
                       const std::function<std::string(const JsonValue &)> &resolve);
 
-/// The file as a block of memory for a member of this type. `what` names the member in messages.
+/// As a block of memory for a member of this type. `what` names the member in messages.
 /// Throws WrongType, OutOfRange, BadBuffer, and the errors of reading a file.
 runtime::Value readBuffer(const BufferDescription &buffer, const runtime::ValueType &type,
                           std::uint32_t colorComponents, const std::string &what);
+
+/// Zeros for a member of this type.
+runtime::Value zeros(const std::vector<std::uint32_t> &sizes, const runtime::ValueType &type,
+                     const std::string &what);
 
 } // namespace rtsl::scene

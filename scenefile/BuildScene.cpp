@@ -26,17 +26,19 @@ using Kind = JsonValue::Kind;
 
 class SceneBuilder {
 public:
-  SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program)
-      : description(description), program(*program), scene(std::move(program)), files(description),
-        images(description,
-               [this](const std::string &className) { return readsLevels(className); }) {}
+  SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
+               NamedBuffers &buffers)
+      : description(description), program(*program), buffers(buffers), scene(std::move(program)),
+        files(description), images(description, [this](const std::string &className) {
+          return readsLevels(className);
+        }) {}
 
   Scene build() {
     attempt([&] {
       if (description.camera)
         scene.setCamera(add(*description.camera, "camera"));
       if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
-        scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration"));
+        scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration", true));
     });
     // Named objects are created in the order of their names, after those that they refer to.
     for (const auto *section : sections)
@@ -85,7 +87,8 @@ private:
     }
   }
 
-  RtslRef add(const ObjectDescription &object, const std::string &name) {
+  /// `isLaunched`: its output buffers that are not set get the size of the launch.
+  RtslRef add(const ObjectDescription &object, const std::string &name, bool isLaunched = false) {
     if (object.image)
       return addImage(*object.image, object.className.text, name);
     const ClassInfo *classInfo = program.find(object.className.text);
@@ -123,6 +126,12 @@ private:
                      fmt::format("member `{}` of `{}`", key.text, name), mayBeEmpty),
              key.place});
       });
+    if (isLaunched && classInfo)
+      for (const MemberInfo &member : classInfo->members)
+        if (member.type.isOutput && !isGiven(object, member.name))
+          ofMembers.attempt([&] {
+            values.members.push_back({member.name, outputOf(member, name), object.place});
+          });
     ofMembers.throwIfAny();
     return scene.addObject(object.className.text, values, name);
   }
@@ -135,6 +144,60 @@ private:
       error.place = place;
       throw;
     }
+  }
+
+  static bool isGiven(const ObjectDescription &object, const std::string &member) {
+    return std::any_of(object.members.begin(), object.members.end(),
+                       [&](const auto &one) { return one.first.text == member; });
+  }
+
+  /// An element for each launch index.
+  Value outputOf(const MemberInfo &member, const std::string &name) const {
+    const auto &[width, height] = std::pair(description.render.width, description.render.height);
+    const std::string what = fmt::format("member `{}` of `{}`", member.name, name);
+    if (member.type.bufferRank == 1 && height == 1)
+      return zeros({width}, member.type, what);
+    if (member.type.bufferRank == 2)
+      return zeros({height, width}, member.type, what);
+    throw Error(
+        ErrorCode::MissingMember,
+        fmt::format("{}, a `{}`, needs a size: {{\"size\": [...]}}", what, member.type.name),
+        description.rayGeneration->place);
+  }
+
+  /// The buffer of this name, made on first use.
+  Value namedBuffer(const JsonValue &json, const ValueType &type, const std::string &what) {
+    const auto described = description.buffers.find(json.string);
+    if (described == description.buffers.end()) {
+      Error error(
+          ErrorCode::UnknownName,
+          fmt::format("{} is a `{}`, and no buffer is named `{}`", what, type.name, json.string),
+          json.place());
+      std::vector<std::string> names;
+      for (const auto &buffer : description.buffers)
+        names.push_back(buffer.first);
+      if (const std::string near = closestName(json.string, names); !near.empty())
+        error.fix(near);
+      throw error;
+    }
+    auto made = buffers.made.find(json.string);
+    if (made == buffers.made.end()) {
+      const JsonValue &value = *described->second;
+      made = buffers.made
+                 .emplace(json.string,
+                          NamedBuffers::Buffer{type,
+                                               bufferOf(description.bufferValues.at(&value), type,
+                                                        fmt::format("the buffer `{}`", json.string),
+                                                        value.place())})
+                 .first;
+    }
+    if (made->second.type.name != type.name)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("{} is a `{}`, and the buffer `{}` a `{}`", what, type.name,
+                              json.string, made->second.type.name),
+                  json.place());
+    Value value = made->second.value;
+    return value.at(json.place());
   }
 
   /// Whether the program reads more of an image than level 0.
@@ -196,8 +259,10 @@ private:
       return Value(std::move(list)).at(json.place());
     }
     case Kind::String:
-      if (type && type->kind == ValueType::Kind::Int)
+      if (type && type->kind == ValueType::Kind::Int && type->bufferRank == 0)
         return Value(numberOfRoot(json, what)).at(json.place());
+      if (type && type->bufferRank != 0 && type->kind != ValueType::Kind::Reference)
+        return namedBuffer(json, *type, what);
       refuseUnlessReference(json, type, what);
       return Value::reference(named(json.string, json.place())).at(json.place());
     case Kind::Object: {
@@ -388,6 +453,7 @@ private:
       &description.images, &description.helpers, &description.textures,
       &description.materials}; // of named objects
   const Program &program;
+  NamedBuffers &buffers;
   Scene scene;
   std::map<std::string, RtslRef> made; // 0: being created
   std::set<std::string> refused;
@@ -401,7 +467,13 @@ private:
 } // namespace
 
 Scene buildScene(const SceneDescription &description, std::shared_ptr<const Program> program) {
-  return SceneBuilder(description, std::move(program)).build();
+  NamedBuffers buffers;
+  return buildScene(description, std::move(program), buffers);
+}
+
+Scene buildScene(const SceneDescription &description, std::shared_ptr<const Program> program,
+                 NamedBuffers &buffers) {
+  return SceneBuilder(description, std::move(program), buffers).build();
 }
 
 } // namespace rtsl::scene

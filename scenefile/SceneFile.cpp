@@ -31,16 +31,17 @@ public:
     readVersion();
     errors.attempt([&] {
       refuseWhatComesLater();
-      checkKeys(root,
-                {"$schema", "rtsl", "import", "camera", "rayGeneration", "images", "helpers",
-                 "textures", "materials", "objects", "nodes", "root", "roots", "lights",
-                 "background", "ambient", "exception", "render"},
+      checkKeys(root, {"$schema", "rtsl",      "import",   "camera",    "rayGeneration",
+                       "images",  "helpers",   "textures", "materials", "objects",
+                       "nodes",   "root",      "roots",    "lights",    "background",
+                       "ambient", "exception", "render",   "buffers",   "passes"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
     readSingle("camera", scene.camera);
     readSingle("rayGeneration", scene.rayGeneration);
     readImages();
+    readBuffers();
     readNamed("helpers", scene.helpers);
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
@@ -62,6 +63,7 @@ public:
     errors.attempt([&] {
       if (const JsonValue *render = root.find("render"))
         readRender(*render);
+      readPasses();
       requireStart();
       if (libraryEngine)
         useLibraryEngine(scene, *libraryEngine);
@@ -105,6 +107,8 @@ private:
   void requireStart() const {
     if (scene.render.engine == runtime::Engine::Classic)
       require(root, "camera", "a scene");
+    else if (root.find("passes"))
+      return;
     else if (libraryEngine)
       require(root, "camera", fmt::format("a scene for the engine `{}`", libraryEngine->string));
     else
@@ -227,7 +231,7 @@ private:
       });
       return;
     }
-    if (isBufferFile(value)) {
+    if (isBuffer(value)) {
       errors.attempt([&] {
         scene.bufferValues.emplace(&value, readBufferDescription(value, [&](const JsonValue &path) {
           return resolve(path);
@@ -236,6 +240,46 @@ private:
       return;
     }
     forEachValue(value, [&](const JsonValue &inner) { readFilesIn(inner); });
+  }
+
+  void readBuffers() {
+    section("buffers", [&](const JsonValue &value) {
+      expect(value, Kind::Object, "`buffers`");
+      for (const auto &[key, member] : value.members)
+        errors.attempt([&, &key = key, &member = member] {
+          if (!isBuffer(member))
+            throw Error(
+                ErrorCode::MissingKey,
+                fmt::format("the buffer `{}` needs a `size`, or a file: `buffer`", key.text),
+                member.place());
+          scene.buffers[key.text] = &member;
+        });
+    });
+  }
+
+  /// Each pass has what `render` says, but for what it says itself.
+  void readPasses() {
+    readList("passes", [&](const JsonValue &value) {
+      expect(value, Kind::Object, "a pass");
+      checkKeys(value, {"rayGeneration", "size", "spp", "depth", "seed"}, "a pass");
+      PassDescription pass;
+      pass.place = value.place();
+      pass.rayGeneration = readObject(require(value, "rayGeneration", "a pass"), "`rayGeneration`");
+      pass.render = scene.render;
+      pass.render.engine = runtime::Engine::Programs;
+      readSettings(value, pass.render);
+      scene.passes.push_back(std::move(pass));
+    });
+    const JsonValue *passes = root.find("passes");
+    if (!passes || scene.passes.empty())
+      return;
+    if (libraryEngine || root.find("rayGeneration"))
+      throw Error(ErrorCode::UnknownKey,
+                  libraryEngine ? "a scene with `passes` has no other engine"
+                                : "a scene has `rayGeneration` or `passes`, not both",
+                  libraryEngine ? libraryEngine->place() : root.find("rayGeneration")->place());
+    scene.rayGeneration = scene.passes.back().rayGeneration;
+    scene.render = scene.passes.back().render;
   }
 
   void readNamed(const char *section, std::map<std::string, ObjectDescription> &objects) {
@@ -359,13 +403,25 @@ private:
       if (engine->string != "classic")
         render.engine = runtime::Engine::Programs;
     }
+    readSettings(value, render);
+  }
+
+  /// What `render` and a pass may both say.
+  static void readSettings(const JsonValue &value, RenderSettings &render) {
     if (const JsonValue *size = value.find("size")) {
-      readNumbers(*size, 2, "`size`");
-      render.width = readInteger(size->elements[0], 1, 65536, "the width");
-      render.height = readInteger(size->elements[1], 1, 65536, "the height");
+      if (size->kind == Kind::Array && size->elements.size() == 1) {
+        render.width = readInteger(size->elements[0], 1, runtime::mostLaunchWidth, "the size");
+        render.height = 1;
+      } else {
+        readNumbers(*size, 2, "`size`");
+        render.width = readInteger(size->elements[0], 1, runtime::mostPixelsOfSide, "the width");
+        render.height = readInteger(size->elements[1], 1, runtime::mostPixelsOfSide, "the height");
+      }
     }
-    if (const JsonValue *spp = value.find("spp"))
+    if (const JsonValue *spp = value.find("spp")) {
       render.samplesPerPixel = readInteger(*spp, 1, runtime::mostSamplesPerPixel, "`spp`");
+      render.hasSamples = true;
+    }
     if (const JsonValue *depth = value.find("depth"))
       render.depth = readInteger(*depth, 0, runtime::maxRayDepth, "`depth`");
     if (const JsonValue *seed = value.find("seed"))
@@ -411,7 +467,10 @@ void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) 
 void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
   if (description.camera)
     forEachObject(*description.camera, visit);
-  if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
+  for (const PassDescription &pass : description.passes)
+    forEachObject(pass.rayGeneration, visit);
+  if (description.passes.empty() && description.rayGeneration &&
+      description.render.engine != runtime::Engine::Classic)
     forEachObject(*description.rayGeneration, visit);
   for (const auto *named :
        {&description.images, &description.helpers, &description.textures, &description.materials})
@@ -452,6 +511,20 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
   return parseScene(readFile(path), path, overrides);
+}
+
+std::size_t launchCount(const SceneDescription &description) {
+  return std::max<std::size_t>(description.passes.size(), 1);
+}
+
+SceneDescription launchOf(const SceneDescription &description, std::size_t pass) {
+  SceneDescription launch = description;
+  if (!description.passes.empty()) {
+    launch.rayGeneration = description.passes[pass].rayGeneration;
+    launch.render = description.passes[pass].render;
+    launch.passes.clear();
+  }
+  return launch;
 }
 
 std::vector<std::string> filesOf(const SceneDescription &description) {

@@ -71,8 +71,16 @@ struct RenderSettings {
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t width = 960, height = 540;
   std::uint32_t samplesPerPixel = 16;
+  bool hasSamples = false; // the scene gives samplesPerPixel
   std::uint32_t depth = 8;
   std::uint32_t seed = 1;
+};
+
+/// An element of `passes`: a launch with a ray generation of its own.
+struct PassDescription {
+  ObjectDescription rayGeneration;
+  RenderSettings render;
+  Place place;
 };
 
 /// The options of the renderer for these settings; the others keep their defaults.
@@ -91,7 +99,9 @@ struct SceneDescription {
   std::map<std::string, ObjectDescription> images, helpers, textures, materials;
   std::map<const JsonValue *, ImageDescription> imageValues; // all, those written in place too
   std::map<const JsonValue *, BufferDescription> bufferValues;
-  std::vector<GeometryDescription> objects; // those of nodes come last
+  std::map<std::string, const JsonValue *> buffers; // by name; in bufferValues
+  std::vector<PassDescription> passes;              // empty: the one launch that `render` describes
+  std::vector<GeometryDescription> objects;         // those of nodes come last
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
@@ -126,8 +136,26 @@ std::vector<LocatedName> classMentions(const SceneDescription &description);
 /// included. Null, or a list of nulls, does not count.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
 
+/// How many launches the scene has: its passes, or one.
+std::size_t launchCount(const SceneDescription &description);
+/// The scene of one launch, which has no passes.
+SceneDescription launchOf(const SceneDescription &description, std::size_t pass);
+
+/// The buffers of a scene that have names. Its launches share them.
+struct NamedBuffers {
+  struct Buffer {
+    runtime::ValueType type; // of the first member that uses it
+    runtime::Value value;
+  };
+  std::map<std::string, Buffer> made;
+};
+
 /// Loads the meshes, creates the objects and checks all names and types against the program.
+/// An output buffer of the ray generation that is not set gets the size of the launch.
 runtime::Scene buildScene(const SceneDescription &description,
                           std::shared_ptr<const runtime::Program> program);
+/// The same for one of several launches that share buffers: uses those made before, and adds others.
+runtime::Scene buildScene(const SceneDescription &description,
+                          std::shared_ptr<const runtime::Program> program, NamedBuffers &buffers);
 
 } // namespace rtsl::scene

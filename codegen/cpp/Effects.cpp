@@ -195,7 +195,9 @@ void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
     effects.writes.insert(variable->variable);
   } else if (auto *member = dynCast<typed::MemberExpr>(root)) {
     effects.writes.insert(member->member);
-    if (member->member->access == ast::Access::Scratch)
+    if (member->member->type->is(TypeKind::Buffer))
+      effects.usesRay = true; // has an exception ended the sample?
+    else if (member->member->access == ast::Access::Scratch)
       effects.writesScratch = true;
     else
       effects.writesMembers = true;
@@ -248,6 +250,8 @@ void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effec
     effects.usesRay = effects.hasOutput = true;
     break;
   default:
+    if (typed::isAtomic(builtin.builtin))
+      collectWrite(*builtin.args.front(), effects);
     if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
       for (std::size_t i = 0; i < builtin.args.size(); ++i)
         if (isOutArgument(builtin.builtin, i))
@@ -274,6 +278,7 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     effects.usesRay = true;
     break;
   case ExprKind::Index:
+    effects.usesRay |= typed::isInOutputBuffer(expr);
     effects.usesRay |= raises && cast<typed::IndexExpr>(expr).index->kind != ExprKind::Literal;
     break;
   case ExprKind::IncDec:

@@ -43,10 +43,12 @@ std::string Types::spelled(const Type *type, bool inMemory) {
   }
   case TypeKind::Array:
     return fmt::format("rtsl::array<{}, {}>", this->inMemory(type->element), type->count);
-  case TypeKind::Buffer:
+  case TypeKind::Buffer: {
+    const char *kind = type->mode == BufferMode::Read ? "rtsl::Buffer" : "rtsl::OutputBuffer";
     return type->count == 1
-               ? fmt::format("rtsl::Buffer<{}>", this->inMemory(type->element))
-               : fmt::format("rtsl::Buffer<{}, {}>", this->inMemory(type->element), type->count);
+               ? fmt::format("{}<{}>", kind, this->inMemory(type->element))
+               : fmt::format("{}<{}, {}>", kind, this->inMemory(type->element), type->count);
+  }
   case TypeKind::Error:
   case TypeKind::String:
     break;

@@ -1,7 +1,9 @@
 //===- RuntimeFunctions.cpp - runtime functions that compiled code calls --===//
 #include "codegen/emit/RuntimeFunctions.h"
 
+#include "codegen/emit/patterns/Patterns.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/RtslOps.h"
 
 #include "llvm/ADT/TypeSwitch.h"
@@ -82,8 +84,22 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::TraceResultOp) { return function(pointer, {pointer}); });
 }
 
+static bool writesOutputBuffers(mlir::ModuleOp module) {
+  const mlir::WalkResult result = module.walk([](ir::BufferElementOp element) {
+    return ir::isInOutputBuffer(element.getResult()) ? mlir::WalkResult::interrupt()
+                                                     : mlir::WalkResult::advance();
+  });
+  return result.wasInterrupted();
+}
+
 void declareRuntimeFunctions(mlir::ModuleOp module) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(module.getBody());
+  if (writesOutputBuffers(module)) {
+    mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
+    LLVM::LLVMFuncOp::create(builder, module.getLoc(), isAbandonedFunction,
+                             LLVM::LLVMFunctionType::get(builder.getI32Type(), {pointer}))
+        .setNoUnwind(true);
+  }
   module.walk([&](mlir::Operation *op) {
     std::string name = runtimeFunction(op);
     if (name.empty() || module.lookupSymbol(name))

@@ -19,4 +19,13 @@ inline mlir::Operation *baseOperation(mlir::Value address) {
   return baseAddress(address).getDefiningOp();
 }
 
+/// Whether the address is in an output buffer, which the launch changes. `address` has no value that
+/// is constant for the launch then.
+inline bool isInOutputBuffer(mlir::Value address) {
+  auto element = llvm::dyn_cast_or_null<BufferElementOp>(baseOperation(address));
+  return element &&
+         llvm::cast<BufferType>(llvm::cast<PtrType>(element.getBuffer().getType()).getPointee())
+             .getOutput();
+}
+
 } // namespace rtsl::ir

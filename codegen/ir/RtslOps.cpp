@@ -318,6 +318,14 @@ LogicalResult BufferElementOp::verify() {
   return verifyPart(*this, type.getElement());
 }
 
+LogicalResult AtomicOp::verify() {
+  if (!pointee(getAddress()).isInteger(32))
+    return emitOpError() << "changes an i32, not " << pointee(getAddress());
+  if ((getKind() == AtomicKind::CompareExchange) != bool(getExpected()))
+    return emitOpError() << "takes an expected value for `compare_exchange` only";
+  return mlir::success();
+}
+
 LogicalResult BufferLengthOp::verify() {
   auto type = llvm::cast<BufferType>(pointee(getBuffer()));
   if (getDim() >= type.getRank())

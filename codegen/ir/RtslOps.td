@@ -239,6 +239,30 @@ def Rtsl_BufferElementOp : Rtsl_Op<"buffer_element", []> {
   let builders = [OpBuilder<(ins "::mlir::Value":$buffer, "::mlir::ValueRange":$indices)>];
 }
 
+def Rtsl_AtomicKind : I32Enum<"AtomicKind", "what an atomic operation makes of a word", [
+  I32EnumCase<"Add", 0, "add">, I32EnumCase<"MinSigned", 1, "smin">, I32EnumCase<"MaxSigned", 2, "smax">,
+  I32EnumCase<"MinUnsigned", 3, "umin">, I32EnumCase<"MaxUnsigned", 4, "umax">, I32EnumCase<"And", 5, "and">,
+  I32EnumCase<"Or", 6, "or">, I32EnumCase<"Xor", 7, "xor">, I32EnumCase<"Exchange", 8, "exchange">,
+  I32EnumCase<"CompareExchange", 9, "compare_exchange">
+]> {
+  let cppNamespace = "::rtsl::ir";
+}
+
+def Rtsl_AtomicOp : Rtsl_Op<"atomic"> {
+  let summary = "changes a word of an output buffer in one step";
+  let description = [{
+    The result is the word as it was. `compare_exchange` writes `value` if the word equals `expected`, which the others
+    do not have.
+
+    Example: `%old = rtsl.atomic add %address, %value : !rtsl.ptr<i32>`
+  }];
+  let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_AtomicKind, "atomic_kind">:$kind,
+                       Arg<Rtsl_PtrToValue, "", [MemRead, MemWrite]>:$address, I32:$value, Optional<I32>:$expected);
+  let results = (outs I32:$result);
+  let assemblyFormat = "$kind $address `,` $value (`if` $expected^)? attr-dict `:` type($address)";
+  let hasVerifier = 1;
+}
+
 def Rtsl_BufferLengthOp : Rtsl_Op<"buffer_length", []> {
   let summary = "number of elements of a buffer along a dimension";
   let description = [{

@@ -8,6 +8,16 @@
 #include "llvm/ADT/SmallSet.h"
 #include "llvm/ADT/TypeSwitch.h"
 
+/// The optional `, output` of a buffer.
+static mlir::ParseResult parseOutput(mlir::AsmParser &parser, bool &output) {
+  output = mlir::succeeded(parser.parseOptionalComma());
+  return output ? parser.parseKeyword("output") : mlir::success();
+}
+static void printOutput(mlir::AsmPrinter &printer, bool output) {
+  if (output)
+    printer << ", output";
+}
+
 #define GET_TYPEDEF_CLASSES
 #include "codegen/ir/RtslTypes.cpp.inc"
 
@@ -125,7 +135,7 @@ LogicalResult ArrayType::verify(function_ref<InFlightDiagnostic()> emitError, un
 }
 
 LogicalResult BufferType::verify(function_ref<InFlightDiagnostic()> emitError, mlir::Type element,
-                                 unsigned rank) {
+                                 unsigned rank, bool) {
   if (rank < 1 || rank > 3)
     return emitError() << "a buffer has 1 to 3 dimensions, not " << rank;
   return verifyStorable(emitError, element, "an element");

@@ -77,14 +77,15 @@ def Rtsl_BufferType : Rtsl_Type<"Buffer", "buffer"> {
   let summary = "unsized array member";
   let description = [{
     Address and sizes of elements that the scene supplies (`RtslBuffer` of runtime/device/ray/Abi.h), with 1 to 3
-    dimensions. The first index is the slowest.
+    dimensions. The first index is the slowest. `output`: the launch writes it; the elements of others are constant.
 
-    Example: `!rtsl.buffer<vector<3xf32>, 1>`
+    Example: `!rtsl.buffer<vector<3xf32>, 1>`, `!rtsl.buffer<f32, 2, output>`
   }];
-  let parameters = (ins "::mlir::Type":$element, "unsigned":$rank);
-  let assemblyFormat = "`<` $element `,` $rank `>`";
-  let builders = [TypeBuilderWithInferredContext<(ins "::mlir::Type":$element, "unsigned":$rank), [{
-    return $_get(element.getContext(), element, rank);
+  let parameters = (ins "::mlir::Type":$element, "unsigned":$rank, DefaultValuedParameter<"bool", "false">:$output);
+  let assemblyFormat = "`<` $element `,` $rank `` custom<Output>($output) `>`";
+  let builders = [TypeBuilderWithInferredContext<(ins "::mlir::Type":$element, "unsigned":$rank,
+                                                      CArg<"bool", "false">:$output), [{
+    return $_get(element.getContext(), element, rank, output);
   }]>];
   let genVerifyDecl = 1;
 }

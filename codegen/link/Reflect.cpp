@@ -42,6 +42,7 @@ runtime::ValueType reflect(const Type *type, mlir::Type irType) {
   value.size = ir::sizeInBytes(irType);
   if (type->is(TypeKind::Buffer)) {
     value.bufferRank = static_cast<std::uint8_t>(type->count);
+    value.isOutput = type->mode != BufferMode::Read;
     type = type->element;
     irType = mlir::cast<ir::BufferType>(irType).getElement();
     value.elementSize = ir::sizeInBytes(irType);

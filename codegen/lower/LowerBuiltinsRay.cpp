@@ -52,6 +52,15 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
     if (module.options.prints)
       lowerPrint(expr);
     return Parts();
+  case Builtin::AtomicAdd:
+  case Builtin::AtomicMin:
+  case Builtin::AtomicMax:
+  case Builtin::AtomicAnd:
+  case Builtin::AtomicOr:
+  case Builtin::AtomicXor:
+  case Builtin::AtomicExchange:
+  case Builtin::AtomicCompSwap:
+    return lowerAtomic(expr);
   case Builtin::IgnoreIntersection:
   case Builtin::TerminateRay:
     emitter.setLoc(location);
@@ -131,6 +140,45 @@ void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   emitter.make<ir::PrintOp>(emitter.getStrArrayAttr(items), emitter.getDenseI32ArrayAttr(words),
                             values, mlir::IntegerAttr());
+}
+
+static ir::AtomicKind kindOf(Builtin atomic, bool isSigned) {
+  switch (atomic) {
+  case Builtin::AtomicMin:
+    return isSigned ? ir::AtomicKind::MinSigned : ir::AtomicKind::MinUnsigned;
+  case Builtin::AtomicMax:
+    return isSigned ? ir::AtomicKind::MaxSigned : ir::AtomicKind::MaxUnsigned;
+  case Builtin::AtomicAnd:
+    return ir::AtomicKind::And;
+  case Builtin::AtomicOr:
+    return ir::AtomicKind::Or;
+  case Builtin::AtomicXor:
+    return ir::AtomicKind::Xor;
+  case Builtin::AtomicExchange:
+    return ir::AtomicKind::Exchange;
+  case Builtin::AtomicCompSwap:
+    return ir::AtomicKind::CompareExchange;
+  default:
+    return ir::AtomicKind::Add;
+  }
+}
+
+// On an element of an empty buffer it does nothing, and yields zero.
+Parts FunctionLowering::lowerAtomic(const typed::BuiltinExpr &expr) {
+  const Lvalue place = lowerLvalue(*expr.args[0]);
+  const Value given = value(*expr.args[1]);
+  const Value third = expr.args.size() > 2 ? value(*expr.args[2]) : Value();
+  emitter.setLoc(module.location(expr.range));
+  const ir::AtomicKind kind = kindOf(expr.builtin, expr.type->is(TypeKind::Int));
+  auto change = [&] { // GLSL's order: the expected value, and then the new one
+    return emitter.make<ir::AtomicOp>(emitter.getI32Type(), kind, place.address,
+                                      third ? third : given, third ? given : Value());
+  };
+  if (!place.guard)
+    return {change()};
+  const Value old = temporary("old", expr.type);
+  emitter.ifThen(place.guard, [&] { emitter.store(change(), old); });
+  return {emitter.load(old)};
 }
 
 void FunctionLowering::answerHit(Builtin builtin) {

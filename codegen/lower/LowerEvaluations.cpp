@@ -54,10 +54,33 @@ bool FunctionLowering::mentionsMemory(const typed::Expr &expr) {
 /// Is the target part of a variable that stays whole, or a vector component with a computed index?
 bool FunctionLowering::staysWhole(const typed::Expr &target) {
   const typed::Expr &whole = wholeOf(target);
-  if (isLocal(whole) && livesInMemory(whole.type))
+  if ((isLocal(whole) && livesInMemory(whole.type)) || isInOutputBuffer(target))
     return true;
   auto *index = dynCast<typed::IndexExpr>(&target);
   return index && index->base->type->isVector() && index->index->kind != ExprKind::Literal;
+}
+
+/// The element of an output buffer that the expression itself reads or writes; null: none.
+static const typed::Expr *outputOf(const typed::Expr &expr) {
+  const typed::Expr *place = &expr;
+  if (auto *assign = dynCast<typed::AssignExpr>(&expr))
+    place = assign->target.get();
+  else if (auto *step = dynCast<typed::IncDecExpr>(&expr))
+    place = step->target.get();
+  else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+           builtin && typed::isAtomic(builtin->builtin))
+    place = builtin->args.front().get();
+  return isInOutputBuffer(*place) ? place : nullptr;
+}
+
+/// What a part is a part of; null: nothing.
+static const typed::Expr *outerPlace(const typed::Expr &part) {
+  if (auto *field = dynCast<typed::FieldExpr>(&part))
+    return field->base.get();
+  if (auto *index = dynCast<typed::IndexExpr>(&part))
+    return index->base.get();
+  auto *swizzle = dynCast<typed::SwizzleExpr>(&part);
+  return swizzle ? swizzle->base.get() : nullptr;
 }
 
 /// Collects the variables that the expression itself, not a subexpression, writes.
@@ -112,6 +135,8 @@ bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evalu
     return false;
 
   for (const typed::Expr *target : written) {
+    if (isInOutputBuffer(*target))
+      continue;
     const typed::Expr &whole = wholeOf(*target);
     if (auto *state = dynCast<typed::StateExpr>(&whole)) {
       evaluation.states.insert(state->variable);
@@ -148,7 +173,9 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     evaluation.leaves.push_back(&expr);
     evaluation.operands.push_back(operand);
   };
-  if (!isTop && !evaluation.isNested && expr.kind != ExprKind::String && !isKept(expr)) {
+  const bool isOnPath = evaluation.path.count(&expr) != 0;
+  if (!isTop && !isOnPath && !evaluation.isNested && expr.kind != ExprKind::String &&
+      !isKept(expr)) {
     if (!livesInMemory(expr.type))
       return leaf(value(expr));
     const auto *call = dynCast<typed::CallExpr>(&expr);
@@ -189,7 +216,7 @@ static bool isOneStep(const typed::Expr &expr) {
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
     return typed::isPure(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
-           outputsOf(builtin->builtin).second != 0;
+           outputsOf(builtin->builtin).second != 0 || typed::isAtomic(builtin->builtin);
   return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
 }
 
@@ -206,6 +233,8 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
     return std::nullopt;
   Evaluation evaluation(into);
   evaluation.hasResult = !isWrite;
+  for (const typed::Expr *at = outputOf(expr); at; at = outerPlace(*at))
+    evaluation.path.insert(at);
   if (!collectWritten(expr, evaluation))
     return lowerNested(expr, evaluation.hasResult, into);
   gather(expr, evaluation, true);
@@ -245,7 +274,8 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
                        cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
   if (evaluation.isNested)
     ir::attr::nested.set(op);
-  else if (!isPrint && (!isCall || isKept(expr))) // it accesses nothing but these variables
+  else if (!isPrint && !outputOf(expr) &&
+           (!isCall || isKept(expr))) // it accesses nothing but these variables
     ir::attr::plain.set(op);
   for (const auto &[lvalue, copy] : evaluation.outputs)
     store(loadFrom(copy, lvalue.type), lvalue);
@@ -261,9 +291,10 @@ static bool isBetweenRays(const typed::Expr &expr) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
-      found = found &&
-              (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
-               builtin->builtin == typed::Builtin::Print || typed::drawsRandom(builtin->builtin));
+      found =
+          found && (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
+                    builtin->builtin == typed::Builtin::Print ||
+                    typed::drawsRandom(builtin->builtin) || typed::isAtomic(builtin->builtin));
     else
       found = found && !typed::mayTrace(inner);
   });

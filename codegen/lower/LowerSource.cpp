@@ -30,6 +30,10 @@ bool FunctionLowering::isKept(const typed::Expr &expr) const {
   case ExprKind::Comma:
   case ExprKind::String:
     return false;
+  case ExprKind::Field:
+  case ExprKind::Index:
+  case ExprKind::Swizzle:
+    return !isInOutputBuffer(expr); // whose elements change
   case ExprKind::Builtin:
     return typed::isPure(cast<typed::BuiltinExpr>(expr).builtin);
   case ExprKind::Call: {
@@ -169,8 +173,9 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
   if (builtin && builtin->builtin == typed::Builtin::Print && !module.options.prints)
     return Parts();
-  if ((isCall && !isKept(expr)) || (builtin && (outputsOf(builtin->builtin).second != 0 ||
-                                                builtin->builtin == typed::Builtin::Print)))
+  if ((isCall && !isKept(expr)) || isInOutputBuffer(expr) ||
+      (builtin && (outputsOf(builtin->builtin).second != 0 || typed::isAtomic(builtin->builtin) ||
+                   builtin->builtin == typed::Builtin::Print)))
     return lowerEvaluation(expr);
   if (expr.type->is(TypeKind::Void) ||
       (expr.kind == ExprKind::Literal && expr.type->is(TypeKind::Bool)))

@@ -34,7 +34,8 @@ mlir::Type ModuleLowering::type(const Type *source) {
     result = ir::ArrayType::get(source->count, type(source->element));
     break;
   case TypeKind::Buffer:
-    result = ir::BufferType::get(type(source->element), source->count);
+    result =
+        ir::BufferType::get(type(source->element), source->count, source->mode != BufferMode::Read);
     break;
   case TypeKind::Class:
     result = ir::RefType::get(context(), className(source));

@@ -190,7 +190,8 @@ private:
     llvm::DenseMap<const typed::Variable *, Value> addresses; // of written variables
     std::set<typed::StateVariable> states;                    // written
     std::vector<std::pair<Lvalue, Value>> outputs;
-    bool isNested = false; // subexpressions with effects are part of it
+    std::set<const typed::Expr *> path; // to the element of an output buffer that it accesses
+    bool isNested = false;              // subexpressions with effects are part of it
     bool hasResult = true;
   };
   /// The expression as one operation that reads and writes variables in place; nothing if that is
@@ -264,6 +265,7 @@ private:
   void lowerTracePayload(const typed::BuiltinExpr &expr);
   Parts lowerIlluminate(const typed::BuiltinExpr &expr);
   void lowerPrint(const typed::BuiltinExpr &expr);
+  Parts lowerAtomic(const typed::BuiltinExpr &expr);
   void answerHit(typed::Builtin builtin);
   void returnIfHitAnswered();
 

@@ -198,7 +198,8 @@ struct VariableDecl {
   SourceRange accessRange;
   bool isConst = false;
   SourceRange optionalRange;           // of `optional` on a member; not valid: absent
-  Direction direction = Direction::In; // parameters only
+  Direction direction = Direction::In; // parameters, and members that are output buffers
+  SourceRange directionRange;          // of a member's; not valid: absent
   TypeName type; // dimensions after the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
   Name name;     // empty text: an unnamed parameter
   ExprPtr init;  // null: none

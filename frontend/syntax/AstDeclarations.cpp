@@ -156,8 +156,9 @@ Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContex
       if (isSecond(result.directionRange))
         break;
       result.directionRange = where;
-      if (place != Place::Parameter)
-        refuseQualifier(where, "it is for parameters");
+      if (place != Place::Parameter && (place != Place::Member || type == Parser::IN))
+        refuseQualifier(where, type == Parser::IN ? "it is for parameters"
+                                                  : "it is for parameters and output buffers");
       else
         result.direction = type == Parser::OUT     ? Direction::Out
                            : type == Parser::INOUT ? Direction::InOut
@@ -224,6 +225,8 @@ void AstBuilder::addVariables(const antlr4::ParserRuleContext *context,
     variable.accessRange = qualifiers.accessRange;
     variable.isConst = qualifiers.isConst;
     variable.optionalRange = qualifiers.optionalRange;
+    variable.direction = qualifiers.direction;
+    variable.directionRange = qualifiers.directionRange;
     variable.type = buildType(typeName, declarator->dimension());
     variable.name = name(declarator->IDENTIFIER());
     if (auto *initializer = declarator->initializer())

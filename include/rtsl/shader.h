@@ -19,6 +19,7 @@
 #include "rtsl/shader/Geometry.h"
 #include "rtsl/shader/Integers.h"
 #include "rtsl/shader/Matrices.h"
+#include "rtsl/shader/OutputBuffer.h"
 #include "rtsl/shader/Packing.h"
 #include "rtsl/shader/Payloads.h"
 #include "rtsl/shader/Print.h"

@@ -40,6 +40,8 @@ public:
     return start;
   }
 
+  void addOutput(const FlatScene::Output &output) { flat.outputs.push_back(output); }
+
 private:
   FlatScene flat;
 };
@@ -80,8 +82,10 @@ FlatScene flatten(const Scene &scene) {
   for (const Scene::BufferPlace &buffer : scene.buffers()) {
     std::uint64_t elements;
     std::memcpy(&elements, launch.records + buffer.offset, sizeof elements);
-    flattener.addAt(records + buffer.offset, reinterpret_cast<const std::uint8_t *>(elements),
-                    buffer.bytes);
+    const std::uint64_t start = flattener.addAt(
+        records + buffer.offset, reinterpret_cast<const std::uint8_t *>(elements), buffer.bytes);
+    if (buffer.isOutput && buffer.bytes)
+      flattener.addOutput({start, buffer.bytes, reinterpret_cast<std::uint8_t *>(elements)});
   }
   return flattener.take();
 }

@@ -21,6 +21,12 @@ struct FlatScene {
   /// The positions of the pointers, in bytes from the start and ascending. Each is 64 bits wide,
   /// with an alignment of 4; null pointers are not included.
   std::vector<std::uint64_t> pointers;
+  /// The elements of the output buffers: where they lie here, and in the scene.
+  struct Output {
+    std::uint64_t offset, bytes;
+    std::uint8_t *elements;
+  };
+  std::vector<Output> outputs;
 
   RtslLaunch launch() const {
     RtslLaunch launch;

@@ -25,6 +25,7 @@ struct ValueType {
   std::uint8_t rows = 1;
   std::uint8_t columns = 1;
   std::uint8_t bufferRank = 0; // 1 to 3: an unsized array of the above, an RtslBuffer in the record
+  bool isOutput = false;       // a buffer that the program writes
   std::vector<std::uint32_t> arraySizes; // fixed-length dimensions, outermost first
   std::string className;                 // Reference: the required base or class
   std::string name;              // as spelled in the source, for messages: "vec3", "float[4]"

@@ -58,6 +58,7 @@ void Megakernel::prepare() {
   const Address sceneAddress = allocate(scene.bytes.size(), "the scene");
   scene.relocate(sceneAddress);
   upload(sceneAddress, scene.bytes.data(), scene.bytes.size());
+  outputs = std::move(scene.outputs);
   scene = {};
   buildSeconds += std::chrono::duration<double>(Clock::now() - start).count();
 
@@ -91,6 +92,8 @@ RenderStatistics Megakernel::finish() {
   download(&status, statusAddress, sizeof status);
   RenderStatistics statistics = readStatus(status, options);
   fetchPixels();
+  for (const FlatScene::Output &output : outputs)
+    download(output.elements, reinterpret_cast<Address>(job.launch) + output.offset, output.bytes);
   return statistics;
 }
 

@@ -11,6 +11,7 @@
 #include "runtime/render/Backend.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -58,6 +59,7 @@ private:
   RenderStatistics finish() final;
 
   FlatScene scene; // empty after prepare()
+  std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0;
   RtslJob job{};

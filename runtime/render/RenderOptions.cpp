@@ -17,8 +17,8 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
 }
 
 void checkOptions(const RenderOptions &options) {
-  checkRange("width", options.width, 1, 65536);
-  checkRange("height", options.height, 1, 65536);
+  checkRange("width", options.width, 1, options.height == 1 ? mostLaunchWidth : mostPixelsOfSide);
+  checkRange("height", options.height, 1, mostPixelsOfSide);
   checkRange("number of samples per pixel", options.samplesPerPixel, 1, mostSamplesPerPixel);
   // Each level of trace takes stack of the thread.
   checkRange("depth", options.maxDepth, 0, maxRayDepth);

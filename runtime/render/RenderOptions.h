@@ -18,6 +18,10 @@ enum class Traversal : std::uint8_t {
 
 /// The largest depth limit.
 constexpr std::uint32_t maxRayDepth = 256;
+/// The largest width of a picture with more than one row, and its largest height.
+constexpr std::uint32_t mostPixelsOfSide = 65536;
+/// The largest width of a launch with one row.
+constexpr std::uint32_t mostLaunchWidth = 1u << 28;
 constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
 constexpr std::uint32_t mostThreads = 1024;
 

@@ -25,6 +25,8 @@ public:
 
   /// All objects that are set.
   std::vector<RtslRef> all() const;
+  /// 0: none.
+  RtslRef rayGenerationObject() const { return rayGeneration; }
   std::uint32_t lightCount() const { return std::uint32_t(lights.size()); }
   /// RTSL_MAX_COLOR components.
   const float *ambientLight() const { return ambient; }

@@ -136,8 +136,11 @@ StoreContext Objects::storeContext() {
     bufferMemory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
     return reinterpret_cast<std::uint8_t *>(bufferMemory.back().get());
   };
-  context.keep = [this](std::shared_ptr<const Value::Words> words) {
-    blocks.push_back(std::move(words));
+  context.keep = [this](std::shared_ptr<Value::Words> words, bool isOutput) {
+    const auto [block, isNew] = blocks.try_emplace(std::move(words), isOutput);
+    if (!isNew && (isOutput || block->second))
+      throw Error(ErrorCode::WrongType,
+                  "shares its elements with another member, and one of them is an output buffer");
   };
   context.classMismatch = [this](RtslRef object,
                                  const std::string &className) -> const std::string * {
@@ -214,21 +217,45 @@ std::uint32_t Objects::needsOf(RtslRef reference) const {
   return code->needs & needs;
 }
 
+/// The buffer of a member in the record of an object.
+static RtslBuffer bufferAt(const std::uint8_t *record, const MemberInfo &member) {
+  RtslBuffer buffer;
+  std::memcpy(&buffer, record + member.offset, sizeof buffer);
+  return buffer;
+}
+
+static std::size_t bytesOf(const RtslBuffer &buffer, const ValueType &type) {
+  std::size_t bytes = type.elementSize;
+  for (std::uint8_t i = 0; i < type.bufferRank; ++i)
+    bytes *= buffer.size[i];
+  return bytes;
+}
+
 std::vector<BufferPlace> Objects::buffers() const {
   std::vector<BufferPlace> places;
   for (const Object &object : objects)
-    for (const MemberInfo &member : object.classInfo->members) {
-      if (member.type.bufferRank == 0)
-        continue;
-      const std::uint32_t offset = object.reference + member.offset;
-      RtslBuffer buffer;
-      std::memcpy(&buffer, records.data() + offset, sizeof buffer);
-      std::size_t bytes = member.type.elementSize;
-      for (std::uint8_t i = 0; i < member.type.bufferRank; ++i)
-        bytes *= buffer.size[i];
-      places.push_back({offset, bytes});
-    }
+    for (const MemberInfo &member : object.classInfo->members)
+      if (member.type.bufferRank != 0)
+        places.push_back({object.reference + member.offset,
+                          bytesOf(bufferAt(records.data() + object.reference, member), member.type),
+                          member.type.isOutput});
   return places;
+}
+
+std::vector<OutputBuffer> Objects::outputs(RtslRef reference) const {
+  std::vector<OutputBuffer> outputs;
+  for (const MemberInfo &member : at(reference).classInfo->members) {
+    if (!member.type.isOutput)
+      continue;
+    const RtslBuffer buffer = bufferAt(record(reference), member);
+    const std::uint64_t address = std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
+    outputs.push_back({member.name,
+                       member.type,
+                       {buffer.size, buffer.size + member.type.bufferRank},
+                       reinterpret_cast<std::uint8_t *>(address),
+                       bytesOf(buffer, member.type)});
+  }
+  return outputs;
 }
 
 void Objects::fill(RtslLaunch &launch) {

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -61,6 +62,8 @@ public:
   std::uint32_t referenceChain() const { return longestChain; }
 
   std::vector<BufferPlace> buffers() const;
+  /// The output buffers of an object.
+  std::vector<OutputBuffer> outputs(RtslRef reference) const;
 
   /// Bytes of all records.
   std::size_t recordBytes() const { return records.size(); }
@@ -80,8 +83,8 @@ private:
   std::vector<std::uint8_t> records;
   std::vector<Object> objects; // ascending by reference
   std::vector<std::unique_ptr<std::uint32_t[]>> bufferMemory;
-  std::vector<std::shared_ptr<const Value::Words>> blocks;
-  std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
+  std::map<std::shared_ptr<Value::Words>, bool> blocks; // and whether an output buffer uses it
+  std::unordered_map<RtslRef, std::uint32_t> chains;    // measureChain
   std::uint32_t longestChain = 0;
 };
 

@@ -91,6 +91,11 @@ std::vector<BufferPlace> Scene::buffers() const {
   return self->objects.buffers();
 }
 
+std::vector<OutputBuffer> Scene::outputs() const {
+  const RtslRef rayGeneration = self->cameraAndLights.rayGenerationObject();
+  return rayGeneration ? self->objects.outputs(rayGeneration) : std::vector<OutputBuffer>();
+}
+
 //===----------------------------------------------------------------------===//
 // Geometry
 //===----------------------------------------------------------------------===//

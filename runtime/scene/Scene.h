@@ -93,6 +93,10 @@ public:
   using BufferPlace = runtime::BufferPlace;
   std::vector<BufferPlace> buffers() const;
 
+  /// The output buffers of the ray generation. Backends write their elements; each rendering goes
+  /// on from what the one before left there.
+  std::vector<OutputBuffer> outputs() const;
+
   /// World bounds of an instance of an RTSL primitive, or of a mesh with a transform, slightly
   /// enlarged.
   Bounds instanceBounds(std::uint32_t instance) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/geometry/Transform.h"
+#include "runtime/program/Program.h"
 #include "runtime/scene/Value.h"
 
 #include <cstddef>
@@ -44,6 +45,16 @@ struct MeshAttribute {
 struct BufferPlace {
   std::uint32_t offset; // from the start of the records
   std::size_t bytes;    // of its elements
+  bool isOutput;        // the program writes it
+};
+
+/// A buffer that launches of the scene write. Its elements stay where they are as long as the scene.
+struct OutputBuffer {
+  std::string member;
+  ValueType type;
+  std::vector<std::uint32_t> sizes; // of each dimension
+  std::uint8_t *elements;
+  std::size_t bytes;
 };
 
 } // namespace rtsl::runtime

@@ -36,9 +36,9 @@ public:
     return value;
   }
 
-  /// Elements as they lie in memory, which the scene shares. `sizes` of each dimension; empty: one
-  /// dimension.
-  static Value block(std::shared_ptr<const Words> words, std::vector<std::uint32_t> sizes = {}) {
+  /// Elements as they lie in memory, which the scene shares, and writes if the member is an output
+  /// buffer. `sizes` of each dimension; empty: one dimension.
+  static Value block(std::shared_ptr<Words> words, std::vector<std::uint32_t> sizes = {}) {
     Value value(0.0);
     value.sizes = std::move(sizes);
     value.kind = Kind::Block;
@@ -56,9 +56,9 @@ public:
   bool boolean = false;
   RtslRef object = 0;
   std::vector<Value> list;
-  std::shared_ptr<const Words> words; // of a block
-  std::vector<std::uint32_t> sizes;   // of a block
-  std::optional<Place> place;         // for messages
+  std::shared_ptr<Words> words;     // of a block
+  std::vector<std::uint32_t> sizes; // of a block
+  std::optional<Place> place;       // for messages
 };
 
 /// A value with the name of the member or parameter that it is for.

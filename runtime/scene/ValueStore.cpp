@@ -1,6 +1,7 @@
 #include "runtime/scene/ValueStore.h"
 
 #include "language/ColorBasis.h"
+#include "runtime/scene/References.h"
 
 #include <fmt/format.h>
 
@@ -240,8 +241,6 @@ private:
 
   /// A buffer whose elements lie in memory already.
   void block(const ValueType &type, const Value &value, std::uint32_t stride, std::uint8_t *to) {
-    const bool isOfObjects =
-        type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct;
     const std::size_t bytes = 4 * value.words->size();
     std::vector<std::uint32_t> sizes = value.sizes;
     if (sizes.empty() && bytes / stride <= 0xffffffffu)
@@ -249,9 +248,13 @@ private:
     double count = 1;
     for (const std::uint32_t size : sizes)
       count *= size;
-    if (isOfObjects || sizes.size() != type.bufferRank || count * stride != double(bytes))
+    if (holdsReferences(type) || sizes.size() != type.bufferRank || count * stride != double(bytes))
       wrongType(type, value);
-    context.keep(value.words);
+    try {
+      context.keep(value.words, type.isOutput);
+    } catch (const Error &error) {
+      fail(error.code, value, error.what());
+    }
     RtslBuffer header{};
     std::copy(sizes.begin(), sizes.end(), header.size);
     writeHeader(header, value.words->data(), to);

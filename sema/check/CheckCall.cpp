@@ -100,6 +100,8 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     return checkPrint(expr);
   if (name == "trace" && expr.args.size() > 2)
     return checkTracePayload(expr);
+  if (const std::optional<Builtin> atomic = atomicNamed(name))
+    return checkAtomic(expr, *atomic);
   if (const BuiltinOverloads *overloads = program.builtins.find(name))
     return checkBuiltinCall(expr, *overloads);
   reportUnknownFunction(expr.callee, expr.range);
@@ -457,6 +459,59 @@ ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
     node->args.push_back(std::move(arg));
   }
   return broken ? errorExpr(expr.range) : std::move(node);
+}
+
+/// Is it an int or uint in an element of a buffer, and no component of a vector?
+static bool isWordOfBuffer(const typed::Expr &place) {
+  const typed::Expr *at = &place;
+  while (true) {
+    if (const auto *field = dynCast<typed::FieldExpr>(at)) {
+      at = field->base.get();
+    } else if (const auto *index = dynCast<typed::IndexExpr>(at)) {
+      if (index->base->type->is(TypeKind::Buffer))
+        return true;
+      if (!index->base->type->is(TypeKind::Array))
+        return false;
+      at = index->base.get();
+    } else {
+      return false;
+    }
+  }
+}
+
+/// `atomicAdd(counts[i], 1)`: the old value.
+ExprPtr FunctionChecker::checkAtomic(const ast::CallExpr &expr, Builtin atomic) {
+  const std::size_t count = atomic == Builtin::AtomicCompSwap ? 3 : 2;
+  if (expr.args.size() != count) {
+    diagnostics.report(Code::wrongArgumentCount, expr.range, expr.callee.text,
+                       fmt::format("{} arguments", count), expr.args.size());
+    for (const ast::ExprPtr &arg : expr.args)
+      checkExpr(*arg);
+    return errorExpr(expr.range);
+  }
+  ExprPtr place = checkValue(*expr.args.front(), Access::ReadWrite);
+  const Type *type = place->type;
+  bool isBroken = type->isError();
+  if (!isBroken &&
+      (!isWordOfBuffer(*place) || !(type->is(TypeKind::Int) || type->is(TypeKind::UInt)))) {
+    Diagnostic &diagnostic = diagnostics.report(Code::badAtomic, place->range, expr.callee.text);
+    if (type->is(TypeKind::Float))
+      diagnostic.note("a sum of floats would depend on the order; add whole numbers, such as "
+                      "`int(round(value * 65536.0))`");
+    isBroken = true;
+  }
+  isBroken = isBroken || !requireTarget(*expr.args.front(), *place, "write to");
+  auto node = makeExpr<typed::BuiltinExpr>(type, expr.range);
+  node->builtin = atomic;
+  node->args.push_back(std::move(place));
+  for (std::size_t i = 1; i != count; ++i) {
+    ExprPtr value = checkValue(*expr.args[i]);
+    if (!isBroken)
+      value = coerce(std::move(value), type);
+    isBroken = isBroken || value->type->isError();
+    node->args.push_back(std::move(value));
+  }
+  return isBroken ? errorExpr(expr.range) : std::move(node);
 }
 
 ExprPtr FunctionChecker::checkPrint(const ast::CallExpr &expr) {

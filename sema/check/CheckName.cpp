@@ -2,6 +2,7 @@
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Suggest.h"
 #include "sema/fold/ConstantFold.h"
+#include "sema/typed/Analysis.h"
 
 #include <algorithm>
 
@@ -207,9 +208,12 @@ ExprPtr FunctionChecker::memberAccess(const typed::Member *member, SourceRange r
       recordSpecial(Ability::WriteScratch, member->name, range, member);
     if (access != Access::Write)
       recordSpecial(Ability::ReadScratch, member->name, range, member);
-  } else if (access != Access::Read &&
-             !member->type->is(TypeKind::Buffer)) { // buffers: `requireTarget`
-    recordSpecial(Ability::WriteMembers, member->name, range, member);
+  } else if (access != Access::Read) {
+    const bool isBuffer = member->type->is(TypeKind::Buffer);
+    if (!isBuffer)
+      recordSpecial(Ability::WriteMembers, member->name, range, member);
+    else if (member->type->mode != BufferMode::Read) // others: `requireTarget`
+      recordSpecial(Ability::WriteBuffers, member->name, range, member);
   }
   auto node = makeExpr<typed::MemberExpr>(member->type, range);
   node->member = member;
@@ -354,6 +358,15 @@ ExprPtr FunctionChecker::checkSwizzle(ExprPtr base, const ast::Name &letters, So
 // Indices
 //===----------------------------------------------------------------------===//
 
+void FunctionChecker::reportUnreadable(const typed::Expr &buffer) {
+  const auto *member = dynCast<typed::MemberExpr>(&typed::rootOf(buffer));
+  if (!member)
+    return; // reported already
+  diagnostics.report(Code::bufferWriteOnly, buffer.range, member->member->name)
+      .label(member->member->range, "declared here")
+      .note("buffers that are read and written are declared `inout`");
+}
+
 ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
   ExprPtr base = checkExpr(*expr.base, access);
   ExprPtr index = checkValue(*expr.index);
@@ -386,8 +399,11 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
       return errorExpr(expr.range);
     }
   }
-  const Type *element =
-      isBuffer && type->count > 1 ? types.buffer(type->element, type->count - 1) : type->element;
+  if (isBuffer && type->count == 1 && type->mode == BufferMode::Write && access != Access::Write)
+    reportUnreadable(*base);
+  const Type *element = isBuffer && type->count > 1
+                            ? types.buffer(type->element, type->count - 1, type->mode)
+                            : type->element;
   auto node = makeExpr<typed::IndexExpr>(element, expr.range);
   node->base = std::move(base);
   node->index = std::move(index);
@@ -451,9 +467,18 @@ bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &
           .label(member->member->range, "declared `const` here");
       return false;
     }
+    const bool isElement = throughBuffer && !target.type->is(TypeKind::Buffer);
+    if (isElement && member->type->mode != BufferMode::Read)
+      return true;
     if (throughBuffer || member->type->is(TypeKind::Buffer)) {
-      diagnostics.report(Code::bufferReadOnly, target.range, action, member->member->name)
-          .label(member->member->range, "declared here");
+      Diagnostic &diagnostic =
+          diagnostics.report(Code::bufferReadOnly, target.range, action, member->member->name);
+      diagnostic.label(member->member->range, "declared here");
+      if (member->type->mode != BufferMode::Read)
+        diagnostic.note("only its elements can be written");
+      else if (scope && scope->root && scope->root->name == "rt_RayGeneration")
+        diagnostic.note("buffers that an rt_RayGeneration writes are declared `public out`, or "
+                        "`public inout` if it also reads them");
       return false;
     }
     return true;

@@ -1,6 +1,7 @@
 //===- Classes.cpp - bases and members ------------------------------------===//
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Suggest.h"
+#include "sema/typed/TypeProperties.h"
 
 #include <algorithm>
 
@@ -263,6 +264,10 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
     diagnostics.report(Code::voidVariable, declaration.type.range, member->name);
     member->type = types.error;
   }
+  if (member->type->is(TypeKind::Buffer) && declaration.directionRange.isValid())
+    member->type = types.buffer(
+        member->type->element, member->type->count,
+        declaration.direction == ast::Direction::Out ? BufferMode::Write : BufferMode::ReadWrite);
   checkMemberQualifiers(scope, declaration, member->type);
   member->isOptional = declaration.optionalRange.isValid();
 
@@ -321,6 +326,17 @@ void Program::checkMemberQualifiers(const ClassScope &scope, const ast::Variable
             : nullptr;
     if (reason)
       diagnostics.report(Code::misplacedOptional, declaration.optionalRange, name, reason);
+  }
+  if (declaration.directionRange.isValid() && !type->isError()) {
+    const char *reason = !type->is(TypeKind::Buffer)
+                             ? "only buffers can be: `public out float data[];`"
+                         : !scope.root || scope.root->name != "rt_RayGeneration"
+                             ? "only buffers of an rt_RayGeneration can be"
+                         : contains(type, TypeKind::Class) ? "its elements hold references"
+                                                           : nullptr;
+    if (reason)
+      diagnostics.report(Code::misplacedOutput, declaration.directionRange, name,
+                         diagnostics.sources().text(declaration.directionRange), reason);
   }
   if (declaration.isConst) {
     if (declaration.access == ast::Access::Public || declaration.access == ast::Access::Scratch)

@@ -85,6 +85,8 @@ private:
   typed::ExprPtr checkMember(const ast::MemberExpr &expr, Access access);
   typed::ExprPtr checkSwizzle(typed::ExprPtr base, const ast::Name &letters, SourceRange range,
                               Access access);
+  /// An element of an `out` buffer is read.
+  void reportUnreadable(const typed::Expr &buffer);
   typed::ExprPtr checkIndex(const ast::IndexExpr &expr, Access access);
   /// Reports if `target` cannot be assigned to.
   bool requireTarget(const ast::Expr &source, const typed::Expr &target, const char *action);
@@ -149,6 +151,7 @@ private:
   typed::ExprPtr checkBuiltinCall(const ast::CallExpr &expr, const BuiltinOverloads &overloads);
   typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
   typed::ExprPtr checkPrint(const ast::CallExpr &expr);
+  typed::ExprPtr checkAtomic(const ast::CallExpr &expr, typed::Builtin atomic);
   void reportUnknownFunction(const ast::Name &callee, SourceRange call);
   /// The access of candidates with `count` parameters to argument `index`: Write if all of them
   /// write it; otherwise Read until one has been chosen.

@@ -104,6 +104,13 @@ static bool judgeSpecial(const Use &use, const RootModel &root, const MethodMode
     diagnostic.note("all rays share the object; use a local variable");
     return finish(diagnostic);
   }
+  case Ability::WriteBuffers: {
+    Diagnostic &diagnostic =
+        diagnostics.report(Code::bufferReadOnlyHere, use.range, use.what, method.name);
+    diagnostic.note("output buffers are written while the launch runs: in " +
+                    methodsWith(Ability::WriteBuffers) + ", and in functions that it calls");
+    return finish(diagnostic);
+  }
   case Ability::WriteScratch: {
     if (root.name == "rt_Material") {
       Diagnostic &diagnostic = diagnostics.report(Code::attributeReadOnly, use.range, use.what);
@@ -456,8 +463,9 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
       for (const Use &use : facts.uses) {
         // Member accesses in methods of another object are checked for that object.
         const bool ofObject = use.kind == Use::Kind::Special && use.member && step.onOtherObject;
-        const bool writes =
-            use.ability == Ability::WriteMembers || use.ability == Ability::WriteScratch;
+        const bool writes = use.ability == Ability::WriteMembers ||
+                            use.ability == Ability::WriteScratch ||
+                            use.ability == Ability::WriteBuffers;
         if (reported.count(&use) || (ofObject && !writes))
           continue;
         if (!judgeUse(program.diagnostics, use, *scope.root, rules, &method))

@@ -32,9 +32,19 @@ static const std::vector<Row> &allRows() {
   return rows;
 }
 
+std::optional<Builtin> atomicNamed(std::string_view name) {
+#define RTSL_BUILTIN(id, spelling, ...)                                                            \
+  if (typed::isAtomic(Builtin::id) && name == spelling)                                            \
+    return Builtin::id;
+#include "language/Builtins.def"
+  return std::nullopt;
+}
+
 bool isOutArgument(Builtin builtin, std::size_t index) {
   if (builtin == Builtin::TracePayload)
     return index == 4;
+  if (typed::isAtomic(builtin))
+    return index == 0;
   if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
     return false;
   for (const Row &row : allRows())
@@ -180,9 +190,10 @@ const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
 const std::vector<std::string> &builtinNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Row &row : allRows())
-      if (std::find(all.begin(), all.end(), typed::name(row.builtin)) == all.end())
-        all.emplace_back(typed::name(row.builtin));
+#define RTSL_BUILTIN(id, name, ...)                                                                \
+  if (std::find(all.begin(), all.end(), name) == all.end())                                        \
+    all.emplace_back(name);
+#include "language/Builtins.def"
     return all;
   }();
   return names;

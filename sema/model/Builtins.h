@@ -3,7 +3,9 @@
 
 #include "sema/model/Overload.h"
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -28,6 +30,9 @@ private:
   TypeContext &types;
   std::unordered_map<std::string, BuiltinOverloads> expanded;
 };
+
+/// The built-in function of this name that changes an element of an output buffer in one step.
+std::optional<typed::Builtin> atomicNamed(std::string_view name);
 
 /// All names, for suggestions.
 const std::vector<std::string> &builtinNames();

@@ -124,7 +124,7 @@ static RootModel rayGenerationModel() {
                                             S::LensCoord, S::SampleColor};
   return {"rt_RayGeneration",
           sees,
-          {{"generate", sees, {S::SampleColor}, {A::Trace, A::Random}}},
+          {{"generate", sees, {S::SampleColor}, {A::Trace, A::Random, A::WriteBuffers}}},
           false};
 }
 

@@ -50,6 +50,7 @@ enum class Ability : std::uint8_t {
   ReadScratch,
   WriteScratch,
   WriteMembers, // public and private members
+  WriteBuffers, // elements of output buffers
   CallSampling, // BSDF, sampleBSDF, evaluatePDF and emission of the same object
   CallColor,    // shade, or miss without payload, of the same object
 };

@@ -27,6 +27,13 @@ std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin) {
   return {first, count};
 }
 
+bool isInOutputBuffer(const Expr &place) {
+  if (place.type->is(TypeKind::Buffer)) // the whole one, or a row
+    return false;
+  const Type *type = wholeOf(place).type;
+  return type->is(TypeKind::Buffer) && type->mode != BufferMode::Read;
+}
+
 bool isLocal(const Expr &expr) {
   auto *variable = dynCast<VariableExpr>(&expr);
   return variable && variable->variable->kind != Variable::Kind::Global;

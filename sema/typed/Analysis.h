@@ -23,6 +23,9 @@ const Expr &rootOf(const Expr &expr);
 /// The lvalue that `place` is part of: as above, and also through components.
 const Expr &wholeOf(const Expr &place);
 
+/// Is it an element of an output buffer, or a part of one?
+bool isInOutputBuffer(const Expr &place);
+
 /// May evaluation have a side effect, or end without a value?
 bool hasSideEffects(const Expr &expr);
 

@@ -38,12 +38,16 @@ TypeContext::TypeContext() {
 
 TypeContext::~TypeContext() = default;
 
-const Type *TypeContext::make(TypeKind kind, const Type *element, std::uint32_t count) {
-  std::unique_ptr<Type> &slot = types[{kind, element, count, std::string()}];
+const Type *TypeContext::make(TypeKind kind, const Type *element, std::uint32_t count,
+                              BufferMode mode) {
+  static const char *const words[] = {"", "out", "inout"};
+  std::unique_ptr<Type> &slot =
+      types[{kind, element, count, words[static_cast<std::size_t>(mode)]}];
   if (!slot) {
     slot.reset(new Type(kind));
     slot->element = element;
     slot->count = count;
+    slot->mode = mode;
   }
   return slot.get();
 }
@@ -60,8 +64,8 @@ const Type *TypeContext::array(const Type *element, std::uint32_t length) {
   return make(TypeKind::Array, element, length);
 }
 
-const Type *TypeContext::buffer(const Type *element, std::uint32_t rank) {
-  return make(TypeKind::Buffer, element, rank);
+const Type *TypeContext::buffer(const Type *element, std::uint32_t rank, BufferMode mode) {
+  return make(TypeKind::Buffer, element, rank, mode);
 }
 
 const Type *TypeContext::structure(const typed::Struct *definition) {

@@ -20,6 +20,9 @@ struct Struct;
 struct Class;
 } // namespace typed
 
+/// What shaders may do with the elements of a buffer.
+enum class BufferMode : std::uint8_t { Read, Write, ReadWrite };
+
 enum class TypeKind : std::uint8_t {
   Error, // of an expression with a reported error: converts to everything, silently
   Void,
@@ -41,7 +44,8 @@ class Type {
 public:
   const TypeKind kind;
   const Type *element = nullptr; // Vector, Array, Buffer: the element; Matrix: the column vector
-  std::uint32_t count = 0;       // Vector: components; Matrix: columns; Array: length; Buffer: rank
+  BufferMode mode = BufferMode::Read; // Buffer
+  std::uint32_t count = 0; // Vector: components; Matrix: columns; Array: length; Buffer: rank
   const typed::Struct *structure = nullptr; // Struct
   const typed::Class *classType = nullptr;  // Class
   std::string builtinClass;                 // Class: "rt_Texture" when an rt_ base itself is named
@@ -75,7 +79,7 @@ public:
   const Type *vector(const Type *scalar, std::uint32_t count);
   const Type *matrix(std::uint32_t columns, std::uint32_t rows);
   const Type *array(const Type *element, std::uint32_t length);
-  const Type *buffer(const Type *element, std::uint32_t rank);
+  const Type *buffer(const Type *element, std::uint32_t rank, BufferMode mode = BufferMode::Read);
   const Type *structure(const typed::Struct *definition);
   const Type *reference(const typed::Class *definition);
   const Type *reference(const std::string &builtinClass); // "rt_Texture"
@@ -83,7 +87,8 @@ public:
   const Type *named(const std::string &keyword);
 
 private:
-  const Type *make(TypeKind kind, const Type *element = nullptr, std::uint32_t count = 0);
+  const Type *make(TypeKind kind, const Type *element = nullptr, std::uint32_t count = 0,
+                   BufferMode mode = BufferMode::Read);
   std::map<std::tuple<TypeKind, const void *, std::uint32_t, std::string>, std::unique_ptr<Type>>
       types;
 };

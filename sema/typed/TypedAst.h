@@ -50,6 +50,11 @@ inline bool drawsRandom(Builtin builtin) {
   return builtin == Builtin::Rand || builtin == Builtin::RandOpen;
 }
 
+/// Does it change an element of an output buffer, its first argument, in one step?
+inline bool isAtomic(Builtin builtin) {
+  return builtin >= Builtin::AtomicAdd && builtin <= Builtin::AtomicCompSwap;
+}
+
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {
 #define RTSL_STATE_VARIABLE(name, type) name,

@@ -29,6 +29,24 @@ std::string tooDeepText(const runtime::RenderStatistics &statistics,
                      statistics.raysTooDeep, statistics.samples, options.maxDepth);
 }
 
+std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
+                                        const runtime::RenderOptions &options) {
+  const std::uint64_t *counts = statistics.exceptions;
+  std::vector<std::string> texts;
+  if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
+    texts.push_back(fmt::format("{} samples sent rays deeper than {}: give a larger `--depth`, or "
+                                "end the recursion in the shader",
+                                counts[RTSL_EXCEPTION_STACK_OVERFLOW], options.maxDepth));
+  if (counts[RTSL_EXCEPTION_BAD_RAY])
+    texts.push_back(
+        fmt::format("{} samples sent a ray without a direction, or one that was not finite",
+                    counts[RTSL_EXCEPTION_BAD_RAY]));
+  if (counts[RTSL_EXCEPTION_INDEX])
+    texts.push_back(fmt::format("{} samples used an index that was out of range",
+                                counts[RTSL_EXCEPTION_INDEX]));
+  return texts;
+}
+
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
   const double pixels = double(options.width) * options.height;

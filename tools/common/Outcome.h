@@ -5,6 +5,7 @@
 #include "runtime/render/RenderOptions.h"
 
 #include <string>
+#include <vector>
 
 namespace rtsl::tool {
 
@@ -17,6 +18,10 @@ std::string sampleText(const runtime::SampleId &sample);
 /// "25 rays in 1000 samples were deeper than 8 and saw nothing: give a larger `--depth` ..."
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
                         const runtime::RenderOptions &options);
+
+/// A sentence for each kind of exception that samples met.
+std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
+                                        const runtime::RenderOptions &options);
 
 /// "stopped by SIGINT after 12.5 % of the samples: 100 of 800 pixels are done, ..."
 std::string unfinishedText(const runtime::RenderStatistics &statistics,

@@ -55,17 +55,20 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
   if (!module)
     return;
   filesRead = withFiles(description, filesRead);
-  std::optional<runtime::Scene> scene;
-  const LinkRequest request = linkRequest(description);
-  CompileInput input;
-  input.module = module.get();
-  input.scene = &request;
-  input.makeObjects = storeScene(
-      [&](const auto &constructors) { return buildScene(description, constructors); }, scene);
-  emit(stage("ir"), input, options.common.compile, messages.diagnostics);
-  if (scene)
-    for (const Warning &warning : scene->warnings())
-      messages.report(warning);
+  for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
+    const scene::SceneDescription launch = scene::launchOf(description, i);
+    std::optional<runtime::Scene> scene;
+    const LinkRequest request = linkRequest(launch);
+    CompileInput input;
+    input.module = module.get();
+    input.scene = &request;
+    input.makeObjects = storeScene(
+        [&](const auto &constructors) { return buildScene(launch, constructors); }, scene);
+    emit(stage("ir"), input, options.common.compile, messages.diagnostics);
+    if (scene)
+      for (const Warning &warning : scene->warnings())
+        messages.report(warning);
+  }
 }
 
 /// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were

@@ -56,6 +56,7 @@ struct Summary {
   const char *text;
 };
 constexpr Summary renderSummary = {"render", "compile a scene's shaders and render it"};
+constexpr Summary runSummary = {"run", "run a scene's launches and write their output buffers"};
 constexpr Summary reportSummary = {"report",
                                    "measure error against run time, in each configuration"};
 constexpr Summary packSummary = {"pack",
@@ -82,6 +83,7 @@ void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
                        ItemMeasurer measure);
 void addRenderCommand(CLI::App &app, Action &action);
+void addRunCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);

@@ -20,7 +20,8 @@ namespace rtsl::tool {
 
 namespace {
 
-constexpr Summary handedOver[] = {renderSummary, packSummary, reportSummary, compareSummary};
+constexpr Summary handedOver[] = {renderSummary, runSummary, packSummary, reportSummary,
+                                  compareSummary};
 
 } // namespace
 

@@ -88,22 +88,6 @@ struct Times {
 /// What samples met, by RTSL_EXCEPTION_*.
 constexpr const char *exceptionNames[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
 
-void printExceptions(const runtime::RenderOptions &render,
-                     const runtime::RenderStatistics &statistics) {
-  const std::uint64_t *counts = statistics.exceptions;
-  if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
-    fmt::print(stderr,
-               "{} samples sent rays deeper than {}: give a larger `--depth`, or end the recursion "
-               "in the shader\n",
-               counts[RTSL_EXCEPTION_STACK_OVERFLOW], render.maxDepth);
-  if (counts[RTSL_EXCEPTION_BAD_RAY])
-    fmt::print(stderr, "{} samples sent a ray without a direction, or one that was not finite\n",
-               counts[RTSL_EXCEPTION_BAD_RAY]);
-  if (counts[RTSL_EXCEPTION_INDEX])
-    fmt::print(stderr, "{} samples used an index that was out of range\n",
-               counts[RTSL_EXCEPTION_INDEX]);
-}
-
 /// What is said of a rendering when it is over.
 struct Summary {
   runtime::RenderOptions render;
@@ -192,7 +176,8 @@ void printSummary(const RenderCommandOptions &options, const Summary &summary) {
       double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (summary.gpu)
     fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
-  printExceptions(render, statistics);
+  for (const std::string &text : exceptionTexts(statistics, render))
+    fmt::print(stderr, "{}\n", text);
   if (statistics.badRays)
     fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
                statistics.badRays);
@@ -363,16 +348,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
       ->type_name("NAME");
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
-  addChoice(*command, "--traversal", options->traversal,
-            Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},
-                                        {"device", runtime::Traversal::Device}},
-            "embree: fast; device: the traversal that GPUs use");
-  addChoice(*command, "--target", options->target,
-            Choices<TargetName>{{"host", TargetName::Host},
-                                {"host-megakernel", TargetName::HostMegakernel},
-                                {"gpu", TargetName::Gpu}},
-            "host: the fastest code for this machine; gpu: the first CUDA device; "
-            "host-megakernel: the GPU's program, on the CPU");
+  addTraversalOption(*command, options->traversal);
+  addTargetOption(*command, options->target);
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,

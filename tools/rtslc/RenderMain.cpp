@@ -19,6 +19,7 @@ int main(int argc, char **argv) {
   addCompileCommand(app, action, &scene::buildScene);
   addExplainCommand(app, action, &scene::buildScene, &measureItems);
   addRenderCommand(app, action);
+  addRunCommand(app, action);
   addReportCommand(app, action);
   addPackCommand(app, action);
   addCompareCommand(app, action);

@@ -7,6 +7,7 @@
 #include "runtime/package/NativeCode.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
+#include "tools/common/OptionValues.h"
 
 namespace rtsl::tool {
 
@@ -71,6 +72,22 @@ private:
 };
 
 } // namespace
+
+void addTargetOption(CLI::App &command, TargetName &target) {
+  addChoice(command, "--target", target,
+            Choices<TargetName>{{"host", TargetName::Host},
+                                {"host-megakernel", TargetName::HostMegakernel},
+                                {"gpu", TargetName::Gpu}},
+            "host: the fastest code for this machine; gpu: the first CUDA device; "
+            "host-megakernel: the GPU's program, on the CPU");
+}
+
+void addTraversalOption(CLI::App &command, runtime::Traversal &traversal) {
+  addChoice(command, "--traversal", traversal,
+            Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},
+                                        {"device", runtime::Traversal::Device}},
+            "embree: fast; device: the traversal that GPUs use");
+}
 
 std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture) {
   switch (name) {

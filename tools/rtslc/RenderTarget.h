@@ -9,6 +9,8 @@
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/render/Backend.h"
 
+#include <CLI/CLI.hpp>
+
 #include <memory>
 #include <optional>
 
@@ -34,6 +36,11 @@ public:
 };
 
 enum class TargetName : std::uint8_t { Host, HostMegakernel, Gpu };
+
+/// Adds --target.
+void addTargetOption(CLI::App &command, TargetName &target);
+/// Adds --traversal.
+void addTraversalOption(CLI::App &command, runtime::Traversal &traversal);
 
 /// `hasArchitecture`: CompileOptions::gpu was set by the user; otherwise code for a GPU is compiled
 /// for the installed one. Throws NoDevice if the target is a GPU and there is none.

@@ -42,17 +42,30 @@ bool isScene(const std::string &file) {
   return hasEnding(file, ".json");
 }
 
+/// Rejects passes, unless the command runs or checks them.
+static scene::SceneDescription requireOneLaunch(scene::SceneDescription description,
+                                                std::string_view command) {
+  if (!description.passes.empty() && command != "run" && command != "check")
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("`rtslc {}` takes a scene with one launch, and this one has passes: "
+                            "`rtslc run` runs them",
+                            command),
+                description.passes.front().place);
+  return description;
+}
+
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command) {
   if (hasEnding(file, ".rtsl"))
     refuseShaders(file, command);
-  if (file != "-")
-    return scene::readSceneFile(file, overrides);
-  const char *const name = "<stdin>";
-  const std::string text = readFile(file);
-  messages.sources.add(name, text); // messages show it
-  return scene::parseScene(text, name, overrides);
+  if (file == "-") {
+    const char *const name = "<stdin>";
+    const std::string text = readFile(file);
+    messages.sources.add(name, text); // messages show it
+    return requireOneLaunch(scene::parseScene(text, name, overrides), command);
+  }
+  return requireOneLaunch(scene::readSceneFile(file, overrides), command);
 }
 
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {

@@ -26,6 +26,18 @@ static std::string nameInCpp(Builtin builtin) {
   }
 }
 
+// The place comes first; its indices are evaluated with the values.
+Code Builtins::atomic(const std::string &callee, const typed::BuiltinExpr &expr) {
+  std::vector<const typed::Expr *> values;
+  for (std::size_t i = 1; i < expr.args.size(); ++i)
+    values.push_back(expr.args[i].get());
+  const bool storesIndices = !printer.lvalues.indexEffects(*expr.args.front()).isPure();
+  const Code place = printer.lvalues.of(*expr.args.front(), storesIndices);
+  std::vector<Code> codes = printer.expressions.operands(values, Binding::Assignment);
+  codes.insert(codes.begin(), place);
+  return cpp::call(callee, std::move(codes));
+}
+
 // Results of `out` parameters follow the operands.
 Code Builtins::withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
                            std::size_t firstOutput) {
@@ -141,6 +153,15 @@ Code Builtins::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::VisitChild:
     context.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
     return integer(0);
+  case Builtin::AtomicAdd:
+  case Builtin::AtomicMin:
+  case Builtin::AtomicMax:
+  case Builtin::AtomicAnd:
+  case Builtin::AtomicOr:
+  case Builtin::AtomicXor:
+  case Builtin::AtomicExchange:
+  case Builtin::AtomicCompSwap:
+    return atomic(callee, expr);
   default:
     if (typed::info(expr.builtin).effect == typed::BuiltinEffect::Outputs)
       return withOutputs(callee, expr, typed::outputsOf(expr.builtin).first);

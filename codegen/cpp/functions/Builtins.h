@@ -15,6 +15,7 @@ private:
   Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
                    std::size_t firstOutput);
   Code print(const typed::BuiltinExpr &expr);
+  Code atomic(const std::string &callee, const typed::BuiltinExpr &expr);
   Code tracePayload(const typed::BuiltinExpr &expr);
 };
 

@@ -170,8 +170,11 @@ Code Lvalues::bufferElement(const typed::IndexExpr &expr) {
   for (std::size_t i = 0; i < codes.size(); ++i)
     codes[i] =
         checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
-  return codes.size() == 1 ? subscript(buffer, codes.front())
-                           : callMember(buffer, "at", std::move(codes));
+  if (typed::isInOutputBuffer(expr))
+    codes.insert(codes.begin(), name("rt"));
+  else if (codes.size() == 1)
+    return subscript(buffer, codes.front());
+  return callMember(buffer, "at", std::move(codes));
 }
 
 /// Of a buffer, or of one of its dimensions.

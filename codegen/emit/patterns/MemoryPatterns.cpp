@@ -2,6 +2,7 @@
 #include "codegen/emit/SceneTables.h"
 #include "codegen/emit/patterns/Patterns.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/RtslOps.h"
@@ -35,8 +36,10 @@ mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
 }
 
 /// Whether the memory at `address` does not change while the program runs: it is part of a
-/// constant, a member or a buffer, and the code does not belong to a constructor.
+/// constant, a member or a buffer that is no output, and the code does not belong to a constructor.
 bool isInvariant(Value address) {
+  if (ir::isInOutputBuffer(address))
+    return false;
   while (mlir::Operation *op = address.getDefiningOp()) {
     if (llvm::isa<ir::TableOp>(op))
       return true;
@@ -112,6 +115,19 @@ struct ConvertLoad : ConvertOpToLLVMPattern<ir::LoadOp> {
   }
 };
 
+/// Where a store to `address` goes, with elements of `size` bytes: a sample that an exception has
+/// ended no longer writes to output buffers.
+Value whereToStore(mlir::OpBuilder &builder, Location location, Value source, Value address,
+                   uint32_t size) {
+  if (!ir::isInOutputBuffer(source))
+    return address;
+  Value over = callRuntime(builder, location, isAbandonedFunction, {rayState(builder)});
+  Value isOver = LLVM::ICmpOp::create(builder, location, LLVM::ICmpPredicate::ne, over,
+                                      constantLike(builder, location, over.getType(), 0));
+  return LLVM::SelectOp::create(builder, location, isOver, stackSlot(builder, location, size),
+                                address);
+}
+
 struct ConvertStore : ConvertOpToLLVMPattern<ir::StoreOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::StoreOp op, OpAdaptor adaptor,
@@ -119,8 +135,9 @@ struct ConvertStore : ConvertOpToLLVMPattern<ir::StoreOp> {
     Value value = adaptor.getValue();
     if (isBool(value.getType()))
       value = LLVM::ZExtOp::create(rewriter, op.getLoc(), ir::intLike(value.getType()), value);
-    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, value, adaptor.getAddress(),
-                                               ir::memoryAlignment);
+    Value address = whereToStore(rewriter, op.getLoc(), op.getAddress(), adaptor.getAddress(),
+                                 ir::sizeInBytes(pointee(op.getAddress())));
+    rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, value, address, ir::memoryAlignment);
     return mlir::success();
   }
 };
@@ -132,8 +149,57 @@ struct ConvertCopy : ConvertOpToLLVMPattern<ir::CopyOp> {
     uint32_t size = ir::sizeInBytes(pointee(op.getSource()));
     Value length =
         LLVM::ConstantOp::create(rewriter, op.getLoc(), rewriter.getI64IntegerAttr(size));
-    rewriter.replaceOpWithNewOp<LLVM::MemcpyOp>(op, adaptor.getTarget(), adaptor.getSource(),
-                                                length, /*isVolatile=*/false);
+    Value target = whereToStore(rewriter, op.getLoc(), op.getTarget(), adaptor.getTarget(), size);
+    rewriter.replaceOpWithNewOp<LLVM::MemcpyOp>(op, target, adaptor.getSource(), length,
+                                                /*isVolatile=*/false);
+    return mlir::success();
+  }
+};
+
+LLVM::AtomicBinOp binaryOf(ir::AtomicKind kind) {
+  switch (kind) {
+  case ir::AtomicKind::Add:
+    return LLVM::AtomicBinOp::add;
+  case ir::AtomicKind::MinSigned:
+    return LLVM::AtomicBinOp::min;
+  case ir::AtomicKind::MaxSigned:
+    return LLVM::AtomicBinOp::max;
+  case ir::AtomicKind::MinUnsigned:
+    return LLVM::AtomicBinOp::umin;
+  case ir::AtomicKind::MaxUnsigned:
+    return LLVM::AtomicBinOp::umax;
+  case ir::AtomicKind::And:
+    return LLVM::AtomicBinOp::_and;
+  case ir::AtomicKind::Or:
+    return LLVM::AtomicBinOp::_or;
+  case ir::AtomicKind::Xor:
+    return LLVM::AtomicBinOp::_xor;
+  case ir::AtomicKind::Exchange:
+  case ir::AtomicKind::CompareExchange:
+    return LLVM::AtomicBinOp::xchg;
+  }
+  llvm_unreachable("all kinds have been handled");
+}
+
+/// The order of other memory accesses does not matter: launch indices share nothing else.
+struct ConvertAtomic : ConvertOpToLLVMPattern<ir::AtomicOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::AtomicOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    constexpr auto order = LLVM::AtomicOrdering::monotonic;
+    Location location = op.getLoc();
+    Value address =
+        whereToStore(rewriter, location, op.getAddress(), adaptor.getAddress(), sizeof(uint32_t));
+    if (Value expected = adaptor.getExpected()) {
+      Value exchange =
+          LLVM::AtomicCmpXchgOp::create(rewriter, location, address, expected, adaptor.getValue(),
+                                        order, order, {}, ir::memoryAlignment);
+      rewriter.replaceOpWithNewOp<LLVM::ExtractValueOp>(op, exchange, 0);
+      return mlir::success();
+    }
+    rewriter.replaceOpWithNewOp<LLVM::AtomicRMWOp>(op, binaryOf(op.getKind()), address,
+                                                   adaptor.getValue(), order, llvm::StringRef(),
+                                                   ir::memoryAlignment);
     return mlir::success();
   }
 };
@@ -366,12 +432,11 @@ struct ConvertClassId : ConvertOpToLLVMPattern<ir::ClassIdOp> {
 } // namespace
 
 void addMemoryPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet &patterns) {
-  patterns
-      .add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertField,
-           ConvertElement, ConvertMember, ConvertTable, ConvertState, ConvertFrameSlot,
-           ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute, ConvertBufferElement,
-           ConvertBufferLength, ConvertNullRef, ConvertCastRef, ConvertEqualRef, ConvertClassId>(
-          converter);
+  patterns.add<ConvertVar, ConvertClear, ConvertLoad, ConvertStore, ConvertCopy, ConvertAtomic,
+               ConvertField, ConvertElement, ConvertMember, ConvertTable, ConvertState,
+               ConvertFrameSlot, ConvertKeepAddress, ConvertKeptAddress, ConvertAttribute,
+               ConvertBufferElement, ConvertBufferLength, ConvertNullRef, ConvertCastRef,
+               ConvertEqualRef, ConvertClassId>(converter);
 }
 
 } // namespace rtsl::codegen

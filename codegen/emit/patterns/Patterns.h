@@ -18,6 +18,9 @@ void addNumberPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternS
 /// A constant record whose class id is 0, for the class of the null reference.
 constexpr llvm::StringLiteral nullRecord = "rtsl.null_record";
 
+/// A function of the runtime: has an exception ended the sample of this ray?
+constexpr llvm::StringLiteral isAbandonedFunction = "rtsl_is_abandoned";
+
 //===----------------------------------------------------------------------===//
 // Helpers of the patterns
 //===----------------------------------------------------------------------===//

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "rtsl/program.h"
+#include "rtsl/shader/OutputBuffer.h"
 #include "rtsl/shader/State.h"
 
 #include <algorithm>
@@ -93,6 +94,8 @@ template <typename T, uint N>
 inline void describe(runtime::ValueType &type, const array<T, N> *);
 template <typename T, int Rank>
 inline void describe(runtime::ValueType &type, const Buffer<T, Rank> *);
+template <typename T, int Rank>
+inline void describe(runtime::ValueType &type, const OutputBuffer<T, Rank> *);
 
 /// A reference, or a user struct.
 template <typename T>
@@ -125,6 +128,12 @@ inline void describe(runtime::ValueType &type, const Buffer<T, Rank> *) {
   type.bufferRank = Rank;
   for (int i = 0; i < Rank; ++i)
     type.name += "[]";
+}
+
+template <typename T, int Rank>
+inline void describe(runtime::ValueType &type, const OutputBuffer<T, Rank> *) {
+  describe(type, static_cast<const Buffer<T, Rank> *>(nullptr));
+  type.isOutput = true;
 }
 
 template <typename T>

@@ -336,6 +336,18 @@ public:
 
   template <typename... Index>
   T at(Index... indices) const {
+    const T *element = find(indices...);
+    return element ? *element : T();
+  }
+  template <typename Index>
+  T operator[](Index index) const {
+    return at(index);
+  }
+
+protected:
+  /// Null if the buffer is empty.
+  template <typename... Index>
+  const T *find(Index... indices) const {
     static_assert(sizeof...(Index) == Rank);
     std::size_t element = 0;
     int dimension = 0;
@@ -347,11 +359,7 @@ public:
     };
     (enter(indices), ...);
     const auto address = static_cast<std::uintptr_t>(buffer.addressHigh) << 32 | buffer.addressLow;
-    return exists ? reinterpret_cast<const T *>(address)[element] : T();
-  }
-  template <typename Index>
-  T operator[](Index index) const {
-    return at(index);
+    return exists ? reinterpret_cast<const T *>(address) + element : nullptr;
   }
 
 private:

@@ -56,6 +56,10 @@ void rtsl_raise(RtslState *state, uint32_t exception) {
   device::raise(*state, exception);
 }
 
+uint32_t rtsl_is_abandoned(RtslState *state) {
+  return device::isAbandoned(*state);
+}
+
 float rtsl_rand(RtslState *state) {
   return device::randomNumber(state->randomKey, state->dimension++);
 }

@@ -362,6 +362,9 @@ float rtsl_rand_open(RtslState *state);
 /// Records that the sample has met an exception.
 void rtsl_raise(RtslState *state, uint32_t exception);
 
+/// Has an exception ended the sample? Then it no longer writes to output buffers.
+uint32_t rtsl_is_abandoned(RtslState *state);
+
 /// Defined by the host: `print` number `format` of the program, with the words of its values.
 void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
 

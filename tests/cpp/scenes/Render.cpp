@@ -1,5 +1,6 @@
 // Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so
-// SCENE.json PICTURE.exr. What they print, and what samples met, goes to standard output as JSON.
+// SCENE.json PICTURE.exr. What they print, what samples met, and the bytes of output buffers go to
+// standard output as JSON.
 #include "scenefile/SceneFile.h"
 
 #include <rtsl/runtime.h>
@@ -31,6 +32,9 @@ int main(int argc, char **argv) try {
   for (unsigned i = 1; i < RTSL_EXCEPTIONS; ++i)
     if (statistics.exceptions[i])
       said["exceptions"][names[i]] = statistics.exceptions[i];
+  for (const runtime::OutputBuffer &output : built.outputs())
+    said["outputs"][output.member] =
+        std::vector<std::uint8_t>(output.elements, output.elements + output.bytes);
   std::printf("%s\n", said.dump().c_str());
 } catch (const Error &error) {
   return std::fprintf(stderr, "%s\n", error.what()), 1;

@@ -154,6 +154,19 @@ def images():
     }
 
 
+def outputs():
+    """Output buffers, written and read between rays."""
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Outputs.rtsl")],
+        "rayGeneration": {"class": "Probe", "histogram": {"size": [6]}, "most": {"size": [7]}},
+        "materials": {"mirror": {"class": "Mirror"}},
+        "objects": [{"primitive": {"class": "Ball"}, "material": "mirror"},
+                    {"primitive": {"class": "Ball", "radius": 0.4}, "material": "mirror", "transform": {"translate": [1.2, 0.5, 1]}}],
+        "render": {"engine": "programs", "size": [8, 6], "spp": 2},
+    }
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -172,6 +185,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
     ("g++", ["-O1"], [], [images()]),
     ("clang++-22", ["-O1"], ["--trace=recurse"], [images()]),
+    ("g++", ["-O1"], ["--undefined=nan"], [outputs()]),
+    ("clang++-22", ["-O1"], ["--trace=recurse", "--exceptions"], [outputs()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]
@@ -194,6 +209,9 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
             same_picture(rtslc, folder / "cpp.exr", folder / "jit.exr")
             assert ours["printed"] == theirs.get("printed", []), (ours, theirs)
             assert ours.get("exceptions") == theirs.get("exceptions"), (ours, theirs)
+            for name, elements in (ours.get("outputs") or {}).items():
+                run(rtslc, "run", folder / "scene.json", "-q", f"--out={name}={folder / 'buffer'}", *events_of)
+                assert bytes(elements) == (folder / "buffer").read_bytes(), name
             if "--print" in options:
                 assert len(ours["printed"]) > 10, ours
             if scene["render"]["size"] == [4, 4] and "--exceptions" in options:

@@ -378,7 +378,8 @@ TEST(DeclarationErrors, Qualifiers) {
       messages("struct S { public float a; const float b; inout float c; };\n"),
       "E0119 1:12-1:18 `public` is not allowed here: it is for members of classes\n"
       "E0119 1:28-1:33 `const` is not allowed here: the fields of a struct have no qualifiers\n"
-      "E0119 1:43-1:48 `inout` is not allowed here: it is for parameters\n");
+      "E0119 1:43-1:48 `inout` is not allowed here: it is for parameters and "
+      "output buffers\n");
   EXPECT_EQ(messages("public void f() { in float a; }\n"),
             "E0119 1:1-1:7 `public` is not allowed here: functions have no qualifiers\n"
             "E0119 1:19-1:21 `in` is not allowed here: it is for parameters\n");

@@ -64,6 +64,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
             ir::FrameObjectOp, ir::PayloadOp, ir::TableOp, ir::HideOp>([](auto) { return 0; })
       .Case<vector::BroadcastOp, vector::FromElementsOp, vector::ShuffleOp>([](auto) { return 0; })
       .Case([](ir::ElementOp op) { return op.constantIndex() ? 0 : cost::elementAddress; })
+      .Case<ir::AtomicOp>([](auto) { return cost::atomic; })
       .Case<ir::BufferElementOp>([](auto) { return cost::bufferElementAddress; })
       .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>(
           [](auto) { return cost::sizeQuery; })

@@ -192,6 +192,8 @@ bool Recompute::isPossible(mlir::Operation *op, ir::SuspendOp suspend) {
     return false;
   auto isConstantForLaunch = [&](mlir::Value address) {
     mlir::Operation *base = ir::baseOperation(address);
+    if (ir::isInOutputBuffer(address))
+      return false;
     return llvm::isa_and_nonnull<ir::TableOp>(base) ||
            (llvm::isa_and_nonnull<ir::MemberOp, ir::BufferElementOp>(base) &&
             !ir::attr::constructor.isOn(function));

@@ -1,0 +1,17 @@
+//===- BufferOutput.h - output buffers to files ---------------------------===//
+#pragma once
+
+#include "runtime/scene/SceneData.h"
+
+#include <string>
+
+namespace rtsl::scene {
+
+/// Writes the elements of a buffer, in the format of the file's name: NumPy's .npy, with the
+/// dimensions of the buffer first and those of an element after them; .csv, with a row for each
+/// element, or for each row of a buffer of numbers with two dimensions; otherwise the elements as
+/// they lie in memory, 4 bytes a number. Replaces the file when it is complete. "-" is standard
+/// output. Throws NotSupported for structs in .npy and .csv, and the errors of writing a file.
+void writeBuffer(const std::string &path, const runtime::OutputBuffer &buffer);
+
+} // namespace rtsl::scene

@@ -1,0 +1,269 @@
+"""Output buffers: `rtslc run`, on every path, with elements of every type, passes that share buffers, and what is wrong."""
+
+import json
+import math
+import re
+import struct
+import unittest
+
+from harness import DIAGNOSED, EXAMPLES, USAGE, Case
+from test_buffers import npy
+
+SHADERS = (EXAMPLES.parent / "tests/cpp/scenes/Outputs.rtsl").read_text()  # of C++ programs too
+
+PATHS = {
+    "recursion": ["--trace=recurse", "--traversal=device"],
+    "states on Embree": [],
+    "states": ["--traversal=device"],
+    "the host megakernel": ["--target=host-megakernel"],
+    "-O0": ["-O0"],
+    "everything kept": ["--keep=all"],
+    "one thread": ["--threads=1"],
+    "with exceptions": ["--exceptions"],
+}
+MARKS = [0, 0xffffffff, 0, 0xffffffff, 0, 5, 0]
+
+
+def read_npy(path):
+    data = path.read_bytes()
+    length = struct.unpack("<H", data[8:10])[0]
+    header = eval(data[10:10 + length])  # a literal
+    form = {"<f4": "f", "<i4": "i", "<u4": "I", "|b1": "?"}[header["descr"]]
+    numbers = data[10 + length:]
+    return header["shape"], struct.unpack(f"<{len(numbers) // struct.calcsize(form)}{form}", numbers)
+
+
+class OutputBuffers(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("probe.rtsl", SHADERS)
+
+    def scene(self, name="scene.json", start=None, size=(8, 6), **changes):
+        scene = {"rtsl": 1, "import": ["probe.rtsl"],
+                 "buffers": {"histogram": {"size": [6]}, "most": {"buffer": "initial.npy"}},
+                 "rayGeneration": start or {"class": "Probe", "histogram": "histogram", "most": "most"},
+                 "materials": {"mirror": {"class": "Mirror"}},
+                 "objects": [{"primitive": {"class": "Ball"}, "material": "mirror"},
+                             {"primitive": {"class": "Ball", "radius": 0.4}, "material": "mirror", "transform": {"translate": [1.2, 0.5, 1]}}],
+                 "render": {"engine": "programs", "size": list(size)}}
+        scene.update(changes)
+        self.write("initial.npy", npy("I", [len(MARKS)], MARKS))
+        return self.write(name, json.dumps({key: value for key, value in scene.items() if value is not None}))
+
+    def one(self, body, members, size=(1, 1), values="", **changes):
+        """Runs one class; gives the buffers that were written, by name."""
+        self.write("one.rtsl", f"class One : rt_RayGeneration {{ {members} void generate() {{ {body} }} }};")
+        names = re.findall(r"(?:out|inout) \w+ (\w+)", members)
+        self.scene(start={"class": "One", **json.loads(values or "{}")}, size=size,
+                   **{"import": ["one.rtsl"], "objects": [], "materials": {}, **changes})
+        self.run_rtslc("run", "scene.json", "-q", *(f"--out={name}={name}.npy" for name in names))
+        return {name: read_npy(self.folder / f"{name}.npy") for name in names}
+
+    def test_every_path_writes_the_same_bits(self):
+        self.scene()
+        first = None
+        outputs = ["distance", "normal", "path", "histogram", "most"]
+        for way, options in PATHS.items():
+            self.run_rtslc("run", "scene.json", "-q", "-o", "picture.exr", "--out=cells=cells.raw", *options,
+                           *(f"--out={name}={name}.npy" for name in outputs))
+            files = {path.name: path.read_bytes() for path in self.folder.iterdir() if path.suffix in (".npy", ".raw", ".exr")}
+            first = first or files
+            for name in files:
+                self.assertEqual(files[name], first[name], f"{name}: {way}")
+        shape, distance = read_npy(self.folder / "distance.npy")
+        self.assertEqual(shape, (6, 8))
+        self.assertTrue(any(x > 0 for x in distance) and any(x < 0 for x in distance))
+        _, histogram = read_npy(self.folder / "histogram.npy")
+        self.assertEqual(histogram[0], 2 * sum(x < 0 for x in distance))
+        self.assertGreaterEqual(sum(histogram), 2 * 48)
+        _, most = read_npy(self.folder / "most.npy")
+        every = [(x, y) for x in range(8) for y in range(6)]
+        xor = 0
+        for x, y in every:
+            xor ^= 1 << (x + y)
+        self.assertEqual(most, (7 * 7 + 5, 0, 0xff, 0xffffffff & ~0x3f, xor, 9, 77))
+        cells = struct.unpack("<" + 48 * "fi2i", (self.folder / "cells.raw").read_bytes())
+        self.assertEqual(cells[0::4], distance)
+        self.assertEqual([(cells[4 * i + 2], cells[4 * i + 3]) for i in range(48)], [(i % 8, i // 8) for i in range(48)])
+
+    def test_printed_cpp_writes_the_same(self):
+        """As rtslc prints it: elements are assigned where they lie, and the state machine keeps what it read."""
+        for way in ("recurse", "split"):
+            text, _ = self.run_rtslc("compile", "probe.rtsl", "--emit=cpp", f"--trace={way}")
+            self.assertIn("rtsl::OutputBuffer<float, 2> distance{};", text)
+            self.assertIn("distance.at(rt, ", text)
+            self.assertIn("rtsl::atomicAdd(histogram.at(rt, bin(x)), n);", text)
+
+    def test_elements_of_every_type(self):
+        found = self.one("""
+            uint i = rt_LaunchIndex.x;
+            f[i] = 0.1 + float(i); n[i] = -3 + int(i); u[i] = 4000000000u + i; b[i] = i == 1u;
+            v[i] = vec3(1.5, float(i), -0.0); m[i] = mat2(1.0, 2.0, 3.0, float(i)); c[i] = color(0.25, 0.5, float(i));
+            pair[i][0] = 7.0; pair[i][1] = float(i); bv[i] = bvec2(i == 0u, true); deep[1][i][0] = int(i) + 1;""",
+            "public out float f[]; public out int n[]; public out uint u[]; public out bool b[]; public out vec3 v[]; public out mat2 m[]; "
+            "public out color c[]; public out float pair[][2]; public out bvec2 bv[]; public inout int deep[][][];", size=(3, 1),
+            values='{"deep": {"size": [2, 3, 1]}}')
+        single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
+        self.assertEqual(found["f"], ((3,), tuple(single(single(0.1) + i) for i in range(3))))
+        self.assertEqual(found["n"], ((3,), (-3, -2, -1)))
+        self.assertEqual(found["u"], ((3,), (4000000000, 4000000001, 4000000002)))
+        self.assertEqual(found["b"], ((3,), (False, True, False)))
+        self.assertEqual(found["v"], ((3, 3), (1.5, 0, 0, 1.5, 1, 0, 1.5, 2, 0)))
+        self.assertEqual(math.copysign(1, found["v"][1][2]), -1)
+        self.assertEqual(found["m"], ((3, 2, 2), (1, 2, 3, 0, 1, 2, 3, 1, 1, 2, 3, 2)))
+        self.assertEqual(found["c"], ((3, 3), (0.25, 0.5, 0, 0.25, 0.5, 1, 0.25, 0.5, 2)))
+        self.assertEqual(found["pair"], ((3, 2), (7, 0, 7, 1, 7, 2)))
+        self.assertEqual(found["bv"], ((3, 2), (True, True, False, True, False, True)))
+        self.assertEqual(found["deep"], ((2, 3, 1), (0, 0, 0, 1, 2, 3)))
+
+    def test_indices_are_clamped_and_empty_buffers_ignored(self):
+        found = self.one("int i = -5 - int(rt_LaunchIndex.x); a[i] = 1; a[100] = 2; none[0] = 3; none[1] += none[0] + 1; atomicAdd(none[0], 4);"
+                         "a[1] = none.length() + none[7] + atomicAdd(none[3], 1);",
+                         "public inout int a[]; public inout int none[];", values='{"a": [9, 9, 9], "none": []}')
+        self.assertEqual(found["a"], ((3,), (1, 0, 2)))
+        self.assertEqual(found["none"], ((0,), ()))
+
+    def test_nothing_is_written_after_an_exception(self):
+        self.scene(start={"class": "Late", "a": [0, 0], "n": [0]}, size=(2, 1), **{"import": ["late.rtsl"], "objects": [], "materials": {}})
+        self.write("late.rtsl", """class Late : rt_RayGeneration {
+  public inout int a[]; public inout int n[];
+  void generate() {
+    int i = int(rt_LaunchIndex.x);
+    a[i] = 1;
+    atomicAdd(n[0], 1);
+    if (i == 0) { int far[2]; far[i + 5 * a.length()] = 3; a[i] += far[1]; }
+    a[i] += 10;
+    atomicAdd(n[0], 100);
+  }
+};""")
+        for way, options in PATHS.items():
+            self.run_rtslc("run", "scene.json", "-q", "--out=a=a.csv", "--out=n=n.csv", *options)
+            ended = "--exceptions" in options
+            self.assertEqual((self.folder / "a.csv").read_text().split()[1], "11", way)
+            self.assertEqual((self.folder / "n.csv").read_text(), "102\n" if ended else "202\n", way)
+            self.assertEqual((self.folder / "a.csv").read_text().split()[0], "1" if ended else "14", way)
+        for options in (["--trace=recurse"], ["--target=host-megakernel"], ["-O0"]):
+            self.run_rtslc("run", "scene.json", "-q", "--exceptions", "--out=n=n.csv", *options)
+            self.assertEqual((self.folder / "n.csv").read_text(), "102\n", options)
+
+    def test_samples_come_one_after_the_other(self):
+        found = self.one("last[rt_LaunchIndex.x] = last[rt_LaunchIndex.x] * 2 + 1;", "public inout int last[];", size=(3, 1),
+                         render={"engine": "programs", "size": [3], "spp": 4})
+        self.assertEqual(found["last"], ((3,), (15, 15, 15)))
+
+    def test_passes_share_buffers(self):
+        self.write("passes.rtsl", """
+class Scatter : rt_RayGeneration {
+  public inout int counts[];
+  public out float seen[];
+  void generate() { uint i = rt_LaunchIndex.x; atomicAdd(counts[(i * i) % uint(counts.length())], 1); seen[i] = rand(); }
+};
+class Sum : rt_RayGeneration {
+  public int counts[];
+  public float seen[];
+  public out int below[];
+  public float threshold = 0.5;
+  void generate() {
+    int sum = 0, few = 0;
+    for (int i = 0; i <= int(rt_LaunchIndex.x); ++i) sum += counts[i];
+    for (int i = 0; i < seen.length(); ++i) if (seen[i] < threshold) ++few;
+    below[rt_LaunchIndex.x] = rt_LaunchIndex.x == 0u ? few : sum;
+  }
+};
+class Double : rt_RayGeneration { public inout int below[]; void generate() { below[rt_LaunchIndex.x] *= 2; } };
+""")
+        self.scene(start=None, **{"import": ["passes.rtsl"], "rayGeneration": None, "objects": [], "materials": {},
+                                  "buffers": {"counts": {"size": [7]}, "seen": {"size": [100]}, "below": {"size": [7]}},
+                                  "passes": [{"rayGeneration": {"class": "Scatter", "counts": "counts", "seen": "seen"}, "size": [100]},
+                                             {"rayGeneration": {"class": "Sum", "counts": "counts", "seen": "seen", "below": "below"}, "size": [7]},
+                                             {"rayGeneration": {"class": "Double", "below": "below"}, "size": [7]}], "render": {"seed": 5}})
+        counts = [0] * 7
+        for i in range(100):
+            counts[i * i % 7] += 1
+        sums = [2 * sum(counts[:i + 1]) for i in range(7)]
+        first = None
+        for way, options in PATHS.items():
+            text, _ = self.run_rtslc("run", "scene.json", "--json", "--out=below=below.npy", "--out=seen=seen.npy", *options)
+            shape, below = read_npy(self.folder / "below.npy")
+            _, seen = read_npy(self.folder / "seen.npy")
+            first = first or seen
+            self.assertEqual(seen, first, way)
+            self.assertEqual(list(below), [2 * sum(x < 0.5 for x in seen)] + sums[1:], way)
+        report = json.loads(text)
+        self.assertEqual([launch["rayGeneration"] for launch in report["launches"]], ["Scatter", "Sum", "Double"])
+        self.assertEqual([buffer["name"] for buffer in report["buffers"]], ["below", "counts", "seen"])
+        self.assertEqual(report["buffers"][0], {"name": "below", "type": "int[]", "size": [7], "file": "below.npy"})
+        message = self.diagnose("render", "scene.json", "-o", "x.png")[0]["message"]
+        self.assertIn("passes", message)
+        self.run_rtslc("check", "scene.json")
+
+    def test_buffers_come_from_files(self):
+        self.scene()
+        self.write("start.npy", npy("i", [6], [100, 0, 0, 0, 0, 0]))
+        self.write("path.npy", npy("f", [6, 8, 4], [1.0] * 192))
+        self.run_rtslc("run", "scene.json", "-q", "--in=histogram=start.npy", "--in=path=path.npy", "--out=histogram=h.csv")
+        added = [int(line) for line in (self.folder / "h.csv").read_text().split()]
+        self.run_rtslc("run", "scene.json", "-q", "--out=histogram=h.csv")
+        plain = [int(line) for line in (self.folder / "h.csv").read_text().split()]
+        self.assertEqual(added, [plain[0] + 100] + plain[1:])
+
+    def test_csv_and_the_summary(self):
+        self.scene()
+        _, error = self.run_rtslc("run", "scene.json", "--out=distance=d.csv", "--out=normal=n.csv")
+        rows = (self.folder / "d.csv").read_text().splitlines()
+        self.assertEqual((len(rows), {row.count(",") for row in rows}), (6, {7}))
+        rows = (self.folder / "n.csv").read_text().splitlines()
+        self.assertEqual((len(rows), {row.count(",") for row in rows}), (48, {2}))
+        self.assertIn("float[][] distance, 6 x 8: d.csv", error)
+        self.assertIn("int[] histogram, 6: not written, `--out histogram=FILE` does", error)
+
+    def test_a_launch_of_one_dimension_may_be_long(self):
+        found = self.one("if (rt_LaunchIndex.x % 50000u == 0u) marks[rt_LaunchIndex.x / 50000u] = rt_LaunchIndex.x + rt_LaunchSize.x;",
+                         "public out uint marks[];", values='{"marks": {"size": [4]}}',
+                         render={"engine": "programs", "size": [200000]})
+        self.assertEqual(found["marks"], ((4,), tuple(200000 + 50000 * i for i in range(4))))
+
+    def test_what_is_wrong_in_a_scene(self):
+        def refused(containing, code, **changes):
+            self.scene(**changes)
+            self.assert_message(self.diagnose("run", "scene.json"), code, containing)
+
+        start = {"class": "Probe", "histogram": "histogram", "most": "most"}
+        refused("no buffer is named `histogrom`", "E0806", start={**start, "histogram": "histogrom"})
+        refused("a `uint[]`, and the buffer `most` a `int[]`", "E0804", start={**start, "histogram": "most"}, buffers={"most": {"size": [7]}})
+        refused("`size` takes 2 numbers, not 1", "E0804", start={**start, "distance": {"size": [4]}})
+        refused("`size` takes 1 to 3 numbers", "E0805", start={**start, "distance": {"size": []}})
+        refused("needs a `size`, or a file", "E0803", buffers={"histogram": {"shape": [6]}, "most": {"buffer": "initial.npy"}})
+        refused("`rayGeneration` or `passes`", "E0802", passes=[{"rayGeneration": start}])
+        refused("`width`", "E0802", rayGeneration=None, passes=[{"rayGeneration": start, "width": 3}])
+        refused("needs a `rayGeneration`", "E0803", rayGeneration=None, passes=[{"size": [3]}])
+        self.write("more.rtsl", "class Two : Probe { public inout int again[]; };"
+                                "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { cube[0][0][0] = 1.0; } };")
+        more = {"import": ["probe.rtsl", "more.rtsl"]}
+        refused("one of them is an output buffer", "E0804", start={**start, "class": "Two", "again": "histogram"}, **more)
+        refused('needs a size: {"size": [...]}', "E0815", start={"class": "Cube"}, **more)
+
+    def test_more_memory_than_there_is(self):
+        for size in ([4000000000, 4000000000], [4000000000, 100000]):
+            self.scene(start={"class": "Probe", "histogram": "histogram", "most": "most", "distance": {"size": size}})
+            self.assertIn("not enough memory for member `distance`", self.diagnose("run", "scene.json")[0]["message"])
+
+    def test_what_is_wrong_on_the_command_line(self):
+        self.scene()
+        self.assert_message(self.diagnose("run", "scene.json", "--out=distanse=d.npy"), "E0806", "no output buffer of this name")
+        self.assert_message(self.diagnose("run", "scene.json", "--out=distance=no/d.npy"), "E0902", "cannot write `no/d.npy`")
+        self.assertIn("is an input", self.diagnose("run", "scene.json", "--out=distance=initial.npy")[0]["message"])
+        self.assert_message(self.diagnose("run", "scene.json", "--out=cells=c.npy"), "E0808", "its elements are structs")
+        for arguments in (["--out=distance"], ["--out==x"], ["--out=distance=x.npy", "--out=normal=x.npy"],
+                          ["--out=distance=x.npy", "--out=distance=y.npy"], ["--target=gpu", "--print"]):
+            self.run_rtslc("run", "scene.json", *arguments, status=USAGE)
+        self.assertFalse((self.folder / "d.npy").exists())
+
+    def test_a_full_disk_leaves_nothing(self):
+        self.scene()
+        _, error = self.run_rtslc("run", "scene.json", "--out=distance=/dev/full", status=DIAGNOSED)
+        self.assertIn("/dev/full", error)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,418 @@
+//===- RunCommand.cpp - rtslc run -----------------------------------------===//
+//
+// Runs the launches of a scene for the sake of its output buffers (docs/scene-format.md#buffers).
+//
+//===----------------------------------------------------------------------===//
+#include "CommandLine.h"
+#include "Messages.h"
+#include "RenderTarget.h"
+#include "SceneShaders.h"
+#include "runtime/program/PrintLog.h"
+#include "scenefile/BufferOutput.h"
+#include "scenefile/SceneFile.h"
+#include "support/AtomicFile.h"
+#include "support/ClosestName.h"
+#include "tools/common/Interruption.h"
+#include "tools/common/OptionValues.h"
+#include "tools/common/Outcome.h"
+#include "tools/common/Output.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/common/Progress.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace rtsl::tool {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+/// A buffer and its file: --in NAME=FILE, --out NAME=FILE.
+struct BufferFile {
+  std::string name, file;
+};
+
+struct RunOptions {
+  CommonOptions common;
+  std::string scene;
+  std::string picture; // empty: none is written
+  std::vector<BufferFile> inputs, outputs;
+  std::vector<std::string> overrides;
+  std::uint32_t threads = 0;
+  runtime::Traversal traversal = runtime::Traversal::Embree;
+  TargetName target = TargetName::Host;
+  bool hasGpuArchitecture = false; // --gpu-arch was given
+  bool json = false, quiet = false, prints = false, exceptions = false;
+};
+
+/// One launch, when it is over.
+struct Launch {
+  std::string rayGeneration; // its class
+  runtime::RenderOptions render;
+  runtime::RenderStatistics statistics;
+  double compileSeconds = 0;
+  std::vector<runtime::OutputBuffer> outputs;
+};
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// The scene, with the buffers of --in.
+scene::SceneDescription readInputs(const RunOptions &options, Messages &messages) {
+  scene::SceneDescription description =
+      readScene(options.scene, options.overrides, messages, "run");
+  if (options.inputs.empty())
+    return description;
+  if (options.scene == "-")
+    throw Error(ErrorCode::NotSupported,
+                "`--in` needs a scene file; `--set` works with one from standard input");
+  std::vector<std::string> overrides = options.overrides;
+  for (const BufferFile &input : options.inputs) {
+    const bool isNamed = description.buffers.count(input.name) != 0;
+    if (!isNamed && !description.passes.empty())
+      throw Error(ErrorCode::UnknownName,
+                  fmt::format("`--in {}`: a scene with passes has no buffer of this name in "
+                              "`buffers`",
+                              input.name));
+    overrides.push_back(fmt::format("{}.{}={}", isNamed ? "buffers" : "rayGeneration", input.name,
+                                    Json{{"buffer", input.file}}.dump()));
+  }
+  return scene::parseScene(readFile(options.scene), options.scene, overrides);
+}
+
+/// Rejects names of --out that stand for no buffer, before anything runs.
+void checkNames(const RunOptions &options, const scene::SceneDescription &description,
+                const typed::Module &module) {
+  std::set<std::string> names;
+  for (const auto &buffer : description.buffers)
+    names.insert(buffer.first);
+  for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
+    const std::optional<scene::ObjectDescription> &start =
+        scene::launchOf(description, i).rayGeneration;
+    const typed::Class *one = start ? module.findClass(start->className.text) : nullptr;
+    for (; one; one = one->base)
+      for (const auto &member : one->members)
+        if (member->type->is(TypeKind::Buffer) && member->type->mode != BufferMode::Read)
+          names.insert(member->name);
+  }
+  for (const BufferFile &output : options.outputs)
+    if (!names.count(output.name)) {
+      Error error(
+          ErrorCode::UnknownName,
+          fmt::format("`--out {}`: the scene has no output buffer of this name", output.name));
+      const std::string near = closestName(output.name, {names.begin(), names.end()});
+      if (!near.empty())
+        error.note(fmt::format("did you mean `{}`?", near));
+      else if (!names.empty())
+        error.note(fmt::format("it has `{}`", fmt::join(names, "`, `")));
+      throw error;
+    }
+}
+
+runtime::RenderOptions renderOptions(const RunOptions &options,
+                                     const scene::RenderSettings &settings) {
+  runtime::RenderOptions render = scene::renderOptions(settings);
+  if (!settings.hasSamples)
+    render.samplesPerPixel = 1;
+  render.threads = options.threads;
+  render.traversal = options.traversal;
+  render.cancel = catchInterruptions();
+  return render;
+}
+
+/// Compiles and runs the launches in their order.
+class Launches {
+public:
+  Launches(const RunOptions &options, const typed::Module &module, Messages &messages)
+      : options(options), module(module), messages(messages) {}
+
+  /// Nothing if there were errors, which are reported.
+  bool run(const scene::SceneDescription &description) {
+    for (std::size_t i = 0; i < scene::launchCount(description); ++i)
+      if (!runOne(scene::launchOf(description, i), i, scene::launchCount(description)))
+        return false;
+    return true;
+  }
+
+  /// The buffer of this name: one of the scene's, or an output of the last launch that has it.
+  std::optional<runtime::OutputBuffer> find(const std::string &name) const {
+    if (const auto named = buffers.made.find(name); named != buffers.made.end()) {
+      const runtime::Value &value = named->second.value;
+      return runtime::OutputBuffer{name, named->second.type, value.sizes,
+                                   reinterpret_cast<std::uint8_t *>(value.words->data()),
+                                   4 * value.words->size()};
+    }
+    for (auto launch = launches.rbegin(); launch != launches.rend(); ++launch)
+      for (const runtime::OutputBuffer &output : launch->outputs)
+        if (output.member == name)
+          return output;
+    return std::nullopt;
+  }
+
+  /// All buffers that launches wrote, by the names for --out.
+  std::vector<std::string> names() const {
+    std::set<const std::uint8_t *> written;
+    std::vector<std::string> names;
+    for (const Launch &launch : launches)
+      for (const runtime::OutputBuffer &output : launch.outputs)
+        if (written.insert(output.elements).second)
+          names.push_back(nameOf(output));
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    return names;
+  }
+
+  std::vector<Launch> launches;
+  runtime::Image picture; // of the last one
+  std::vector<std::string> printed;
+
+private:
+  std::string nameOf(const runtime::OutputBuffer &output) const {
+    for (const auto &[name, buffer] : buffers.made)
+      if (reinterpret_cast<const std::uint8_t *>(buffer.value.words->data()) == output.elements)
+        return name;
+    return output.member;
+  }
+
+  bool runOne(const scene::SceneDescription &description, std::size_t number, std::size_t count) {
+    const Clock::time_point start = Clock::now();
+    CompileOptions compile = options.common.compile;
+    compile.threads = options.threads;
+    LinkRequest request = linkRequest(description);
+    request.features |= features(options.prints, options.exceptions);
+    keep(options.common.keep, request, compile);
+    std::unique_ptr<RenderTarget> target =
+        makeRenderTarget(options.target, options.hasGpuArchitecture);
+    std::optional<runtime::Scene> scene =
+        target->compile(module, request, compile, messages.diagnostics, [&](const auto &program) {
+          return scene::buildScene(description, program, buffers);
+        });
+    if (!scene)
+      return false;
+    for (const Warning &warning : scene->warnings())
+      messages.report(warning);
+    Launch launch;
+    if (description.rayGeneration)
+      launch.rayGeneration = description.rayGeneration->className.text;
+    launch.render = renderOptions(options, description.render);
+    launch.compileSeconds = secondsSince(start);
+    Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
+    if (!options.quiet)
+      launch.render.progress = [&](double share) { progress.update(share); };
+    picture = target->prepare(*scene, launch.render)->render(&launch.statistics);
+    progress.finish();
+    launch.render.progress = nullptr;
+    for (const std::string &line : runtime::takePrintLog().texts(scene->program().prints))
+      printed.push_back(line);
+    launch.outputs = scene->outputs();
+    warn(launch);
+    launches.push_back(std::move(launch));
+    // The scene owns the elements of buffers without a name.
+    scenes.push_back(std::make_unique<runtime::Scene>(std::move(*scene)));
+    targets.push_back(std::move(target));
+    return true;
+  }
+
+  void warn(const Launch &launch) const {
+    const runtime::RenderStatistics &statistics = launch.statistics;
+    if (statistics.samplesNotFinite)
+      messages.diagnostics.report(Code::samplesNotFinite, {}, notFiniteText(statistics));
+    if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
+      messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, launch.render));
+  }
+
+  const RunOptions &options;
+  const typed::Module &module;
+  Messages &messages;
+  scene::NamedBuffers buffers;
+  std::vector<std::unique_ptr<RenderTarget>> targets;
+  std::vector<std::unique_ptr<runtime::Scene>> scenes; // which the targets outlive
+};
+
+std::string fileOf(const RunOptions &options, const std::string &buffer) {
+  for (const BufferFile &output : options.outputs)
+    if (output.name == buffer)
+      return output.file;
+  return {};
+}
+
+std::string toJson(const RunOptions &options, const Launches &all) {
+  Json document = {{"version", 1}, {"launches", Json::array()}, {"buffers", Json::array()}};
+  for (const Launch &launch : all.launches)
+    document["launches"].push_back({{"rayGeneration", launch.rayGeneration},
+                                    {"size", {launch.render.width, launch.render.height}},
+                                    {"spp", launch.render.samplesPerPixel},
+                                    {"seconds",
+                                     {{"compile", launch.compileSeconds},
+                                      {"build", launch.statistics.buildSeconds},
+                                      {"run", launch.statistics.renderSeconds}}},
+                                    {"samples", launch.statistics.samples},
+                                    {"badRays", launch.statistics.badRays},
+                                    {"raysTooDeep", launch.statistics.raysTooDeep}});
+  for (const std::string &name : all.names()) {
+    const runtime::OutputBuffer buffer = *all.find(name);
+    document["buffers"].push_back(
+        {{"name", name}, {"type", buffer.type.name}, {"size", buffer.sizes}});
+    if (const std::string file = fileOf(options, name); !file.empty())
+      document["buffers"].back()["file"] = file;
+  }
+  if (options.prints)
+    document["printed"] = all.printed;
+  return document.dump(2) + "\n";
+}
+
+void printSummary(const RunOptions &options, const Launches &all) {
+  if (options.json)
+    return printOut(toJson(options, all));
+  if (options.prints && !all.printed.empty())
+    printOut(fmt::format("{}\n", fmt::join(all.printed, "\n")));
+  if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
+    return;
+  for (const Launch &launch : all.launches) {
+    fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, ran in {:.3f} s\n",
+               launch.rayGeneration.empty() ? "camera" : launch.rayGeneration, launch.render.width,
+               launch.render.height, launch.render.samplesPerPixel, launch.compileSeconds * 1e3,
+               launch.statistics.renderSeconds);
+    for (const std::string &text : exceptionTexts(launch.statistics, launch.render))
+      fmt::print(stderr, "{}\n", text);
+  }
+  for (const std::string &name : all.names()) {
+    const runtime::OutputBuffer buffer = *all.find(name);
+    const std::string file = fileOf(options, name);
+    fmt::print(stderr, "  {} {}, {}: {}\n", buffer.type.name, name, fmt::join(buffer.sizes, " x "),
+               file.empty() ? fmt::format("not written, `--out {}=FILE` does", name) : file);
+  }
+}
+
+void runScene(const RunOptions &options, Messages &messages) {
+  std::vector<std::string> files;
+  for (const BufferFile &output : options.outputs)
+    files.push_back(output.file);
+  if (!options.picture.empty())
+    files.push_back(options.picture);
+  for (const std::string &file : files)
+    checkFileWritable(file);
+  const scene::SceneDescription description = readInputs(options, messages);
+  std::vector<std::string> filesRead;
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead);
+  if (!module)
+    return;
+  filesRead = withFiles(description, filesRead);
+  for (const std::string &file : files)
+    checkOutputs(file, {}, {options.scene}, filesRead);
+  checkNames(options, description, *module);
+
+  Launches launches(options, *module, messages);
+  if (!launches.run(description))
+    return;
+  for (const BufferFile &output : options.outputs)
+    scene::writeBuffer(output.file, *launches.find(output.name));
+  if (!options.picture.empty())
+    runtime::writeImage(options.picture, launches.picture, runtime::PictureFormat::ByName);
+  printSummary(options, launches);
+}
+
+int runCommand(const RunOptions &options) {
+  Messages messages(options.common);
+  try {
+    runScene(options, messages);
+  } catch (Error &error) {
+    if (error.code == ErrorCode::NoDevice)
+      error.note("`--target=host-megakernel` runs the same program on the CPU");
+    if (error.code == ErrorCode::Cancelled)
+      error.note("no buffer is written");
+    messages.report(error);
+  }
+  return statusAfterInterruption(messages.status());
+}
+
+/// Adds an option with values NAME=FILE.
+void addBufferOption(CLI::App &command, const char *name, std::vector<BufferFile> &files,
+                     const char *text) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [&files, name](const std::vector<std::string> &values) {
+            for (const std::string &value : values) {
+              const std::size_t equals = value.find('=');
+              if (equals == 0 || equals == std::string::npos || equals + 1 == value.size())
+                throw CLI::ValidationError(
+                    name, fmt::format("`{}` is not NAME=FILE: a buffer and its file", value));
+              files.push_back({value.substr(0, equals), value.substr(equals + 1)});
+            }
+          },
+          text)
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
+}
+
+/// Rejects a file that two options would write.
+void checkFiles(const RunOptions &options) {
+  std::set<std::string> files, names;
+  if (!options.picture.empty())
+    files.insert(options.picture);
+  for (const BufferFile &output : options.outputs)
+    if (!files.insert(output.file).second)
+      throw CLI::ValidationError("--out", fmt::format("`{}` is given twice", output.file));
+    else if (!names.insert(output.name).second)
+      throw CLI::ValidationError("--out", fmt::format("`{}` is given twice", output.name));
+}
+
+} // namespace
+
+void addRunCommand(CLI::App &app, Action &action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App *command = app.add_subcommand(runSummary.command, runSummary.text);
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
+  addBufferOption(*command, "--out", options->outputs,
+                  "write an output buffer: .npy, .csv, or the elements as they lie in memory");
+  addBufferOption(*command, "--in", options->inputs,
+                  "read a buffer of `buffers`, or of the ray generation, from a file");
+  command->add_option("-o,--output", options->picture, "the picture of the last launch")
+      ->type_name("IMAGE");
+  addSetOption(*command, options->overrides);
+  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
+           "threads; default: all cores");
+  addTraversalOption(*command, options->traversal);
+  addTargetOption(*command, options->target);
+  command->add_flag("--print", options->prints,
+                    "write the output of `print` to standard output, in the order of pixels");
+  command->add_flag("--exceptions", options->exceptions,
+                    "end samples that send an invalid ray, exceed the depth limit, or use an index "
+                    "out of range, and count them");
+  command->add_flag("--json", options->json, "write times and buffers to standard output as JSON");
+  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
+  addPreprocessorOptions(*command, options->common.preprocessor);
+  addCompileOptions(*command, options->common);
+  addKeepOption(*command, options->common);
+  addMessageOptions(*command, options->common);
+  command->footer("examples:\n"
+                  "  rtslc run examples/line-of-sight/scene.json --out visible=visible.npy\n"
+                  "  rtslc run scene.json --in rays=rays.npy --out hits=hits.csv");
+  command->callback([options, command, &action] {
+    checkFiles(*options);
+    if (options->target == TargetName::Gpu && options->prints)
+      throw CLI::ValidationError("--print",
+                                 "a GPU cannot print; `--target=host-megakernel` prints, and "
+                                 "computes the same");
+    if (options->target != TargetName::Host)
+      options->common.compile.target = Target::HostMegakernel;
+    options->hasGpuArchitecture = command->count("--gpu-arch") != 0;
+    action = [options] { return runCommand(*options); };
+  });
+}
+
+} // namespace rtsl::tool
