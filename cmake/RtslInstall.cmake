@@ -23,7 +23,7 @@ file(RELATIVE_PATH rtslPrefixFromPackage "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/
 configure_file(cmake/rtsl.pc.in "${PROJECT_BINARY_DIR}/rtsl.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/rtsl.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 
-install(DIRECTORY library DESTINATION "${CMAKE_INSTALL_DATADIR}/rtslc" FILES_MATCHING PATTERN "*.rtsl")
+install(DIRECTORY library DESTINATION "${CMAKE_INSTALL_DATADIR}/rtslc" FILES_MATCHING PATTERN "*.rtsl" PATTERN "*.json")
 install(FILES tools/man/rtslc.1 DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES tools/completion/rtslc.bash DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" RENAME rtslc)
 install(FILES tools/completion/_rtslc DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions")

@@ -47,9 +47,14 @@ std::vector<std::string> modulesIn(const std::string &folder) {
   return modules;
 }
 
+/// Modules are in the folder `std`: other folders of the library hold files that are not imported.
+bool isModuleName(const std::string &name) {
+  return name == "std" || name.rfind("std.", 0) == 0;
+}
+
 bool isFolder(const std::string &module) {
   std::error_code error;
-  return fs::is_directory(pathOf(module), error);
+  return isModuleName(module) && fs::is_directory(pathOf(module), error);
 }
 
 void addParts(const std::string &folder, std::vector<std::string> &parts) {
@@ -66,8 +71,8 @@ ModuleFiles findModule(const std::string &name) {
   ModuleFiles module;
   std::error_code error;
   // `std.` and `../x` name nothing.
-  if (name.find('/') != std::string::npos || name.find("..") != std::string::npos || name.empty() ||
-      name.front() == '.' || name.back() == '.')
+  if (name.find('/') != std::string::npos || name.find("..") != std::string::npos ||
+      !isModuleName(name) || name.back() == '.')
     return module;
   const std::string file = pathOf(name).string() + extension;
   if (fs::is_regular_file(file, error)) {

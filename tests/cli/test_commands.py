@@ -12,7 +12,7 @@ MATERIAL = "class Grey : rt_Material;\n\nvoid shade() {\n  rt_SampleColor = colo
 class Commands(Case):
     def test_help_has_an_example_for_each_command(self):
         out, _ = self.run_rtslc("--help")
-        for command in ("check", "compile", "explain", "render", "compare"):
+        for command in ("new", "check", "compile", "explain", "render", "compare"):
             self.assertIn(command, out)
             text, _ = self.run_rtslc(command, "--help")
             self.assertRegex(text, "examples?:\n  rtslc " + command)

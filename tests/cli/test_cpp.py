@@ -172,9 +172,10 @@ class Cpp(Case):
     def test_completion_knows_commands_and_stages(self):
         script = f"""source {ROOT}/tools/completion/rtslc.bash
             COMP_WORDS=({RTSLC} com); COMP_CWORD=1; _rtslc; echo "${{COMPREPLY[@]}}"
-            COMP_WORDS=({RTSLC} compile --emit = cp); COMP_CWORD=4; _rtslc; echo "${{COMPREPLY[@]}}\""""
+            COMP_WORDS=({RTSLC} compile --emit = cp); COMP_CWORD=4; _rtslc; echo "${{COMPREPLY[@]}}"
+            COMP_WORDS=({RTSLC} new t); COMP_CWORD=2; _rtslc; echo "${{COMPREPLY[@]}}\""""
         done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
-        self.assertEqual(done.stdout.split("\n")[:2], ["compile compare", "cpp"], done)
+        self.assertEqual(done.stdout.split("\n")[:3], ["compile compare", "cpp", "texture"], done)
 
 
 if __name__ == "__main__":

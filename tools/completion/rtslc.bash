@@ -13,6 +13,15 @@ _rtslc() {
   fi
   local help
   help=$("$program" "$command" --help 2>/dev/null)
+  if (( COMP_CWORD == 2 )) && [[ $current != -* ]]; then
+    # The first argument of `new` is one of a few words.
+    local kinds
+    kinds=$(sed -n 's/^ *KIND \([^ ]*|[^ ]*\).*/\1/p' <<< "$help" | tr '|' ' ')
+    if [[ -n $kinds ]]; then
+      mapfile -t COMPREPLY < <(compgen -W "$kinds" -- "$current")
+      return
+    fi
+  fi
   if [[ $previous == --* ]]; then
     # The values of an option follow it, separated by bars.
     local choices

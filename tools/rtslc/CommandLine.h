@@ -78,6 +78,7 @@ struct ItemMeasurement;
 using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &,
                                                                      Diagnostics &);
 
+void addNewCommand(CLI::App &app, Action &action);
 void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,

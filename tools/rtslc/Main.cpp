@@ -29,6 +29,7 @@ int main(int argc, char **argv) {
   app.set_version_flag("-V,--version", "rtslc " RTSL_VERSION);
   app.require_subcommand(1);
   app.footer("examples:\n"
+             "  rtslc new material Clay\n"
              "  rtslc render examples/glass/scene.json -o glass.png\n"
              "  rtslc check Glass.rtsl\n"
              "  rtslc compile Glass.rtsl --emit=ir\n"
@@ -37,6 +38,7 @@ int main(int argc, char **argv) {
              "2 wrong arguments, 3 an internal error of rtslc; 130 after SIGINT (Ctrl-C), 143 "
              "after SIGTERM.");
   Action action;
+  addNewCommand(app, action);
   addCheckCommand(app, action, nullptr);
   addCompileCommand(app, action, nullptr);
   addExplainCommand(app, action, nullptr, nullptr);
