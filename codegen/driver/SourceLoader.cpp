@@ -26,6 +26,21 @@ static void importBuiltInClasses(std::string_view text, ast::TranslationUnit &un
     }
 }
 
+static const std::string renamePrefix = "std_";
+
+std::string SourceLoader::renamed(const std::string &name) {
+  return renamePrefix + name;
+}
+
+std::string SourceLoader::original(const std::string &name) {
+  return name.rfind(renamePrefix, 0) == 0 ? name.substr(renamePrefix.size()) : name;
+}
+
+void SourceLoader::renameInLibrary(const std::vector<std::string> &names) {
+  for (const std::string &name : names)
+    libraryOptions.macros.push_back({name, renamed(name)});
+}
+
 const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRange importer) {
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
@@ -38,7 +53,7 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
   // The library does not depend on the macros and folders of those who import it.
   const bool isOurs = isInLibrary(key);
   if (const std::optional<PreprocessedFile> preprocessed =
-          preprocessFile(path, importer, isOurs ? PreprocessorOptions{} : options)) {
+          preprocessFile(path, importer, isOurs ? libraryOptions : options)) {
     unit = parseFile(*preprocessed);
     const std::string_view text = sources.text(preprocessed->text);
     if (!isOurs)
@@ -94,7 +109,11 @@ static SourceRange rangeOfName(const std::string &name, SourceRange import,
 
 const ast::TranslationUnit *SourceLoader::loadModule(const std::string &name,
                                                      SourceRange importer) {
-  const ModuleFiles module = findModule(name);
+  // Renaming also changes the names in `import std.materials.Lambert;`.
+  const std::size_t last = name.rfind('.') + 1;
+  ModuleFiles module = findModule(name);
+  if (!module.exists && !libraryOptions.macros.empty())
+    module = findModule(name.substr(0, last) + original(name.substr(last)));
   if (!module.exists) {
     const SourceRange range = rangeOfName(name, importer, sources);
     explainModules(diagnostics.report(Code::unknownModule, range, name), name, range);

@@ -39,7 +39,13 @@ public:
   const ast::TranslationUnit *loadModule(const std::string &name, SourceRange importer);
 
   /// Names, such as those of a scene's classes, that count as mentioned by the program.
-  void mention(const std::string &name) { words.insert(name); }
+  void mention(const std::string &name) { words.insert(original(name)); }
+
+  /// Gives these names at file level in the library others, so that files that import nothing of
+  /// it may use them for something of their own. Before any file is loaded.
+  void renameInLibrary(const std::vector<std::string> &names);
+  /// What renameInLibrary() makes of a name.
+  static std::string renamed(const std::string &name);
 
   /// The file that an `import` in the file `importer` names; null if there is none, which is
   /// reported.
@@ -56,6 +62,7 @@ public:
   const std::vector<std::string> &modules() const { return offered; }
 
 private:
+  static std::string original(const std::string &name);
   void addFile(const std::string &path);
   void loadImports(bool withModules);
   /// The unit of a file, which is empty if it cannot be parsed.
@@ -66,6 +73,7 @@ private:
   SourceManager &sources;
   Diagnostics &diagnostics;
   PreprocessorOptions options;
+  PreprocessorOptions libraryOptions; // macros that rename: none of the author's
   std::vector<std::string> read;
   std::vector<std::string> offered;
   std::unordered_set<std::string> words; // of all files but those of the library

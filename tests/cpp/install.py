@@ -16,7 +16,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     run(cmake, "--install", build, "--prefix", prefix)
     for expected in ("share/man/man1/rtslc.1", "share/bash-completion/completions/rtslc", "share/zsh/site-functions/_rtslc",
                      "include/rtsl/shader.h", "include/rtsl/rtsl.h", "share/rtslc/library/std/cameras/PinholeCamera.rtsl",
-                     "share/rtslc/library/templates/material.rtsl", "share/rtslc/library/templates/scene.json"):
+                     "share/rtslc/library/templates/material.rtsl", "share/rtslc/library/templates/scene.json", "share/rtslc/library/preview/material.json"):
         assert (prefix / expected).exists(), expected
 
     # find_package and rtsl_add_shaders, with shaders of our own copy so that one can change.

@@ -55,7 +55,8 @@ struct Summary {
   const char *command;
   const char *text;
 };
-constexpr Summary renderSummary = {"render", "compile a scene's shaders and render it"};
+constexpr Summary renderSummary = {"render",
+                                   "render a scene, or a standard scene that shows a class"};
 constexpr Summary runSummary = {"run", "run a scene's launches and write their output buffers"};
 constexpr Summary reportSummary = {"report",
                                    "measure error against run time, in each configuration"};

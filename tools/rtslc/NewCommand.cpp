@@ -188,9 +188,8 @@ int makeNew(const NewOptions &options) {
     const fs::path path =
         (fs::path(options.folder) / (options.name + endingOf(options.kind))).lexically_normal();
     writeNewFile(path, text);
-    const std::string next = isScene ? fmt::format("render {} -o {}", quoted(path.string()),
-                                                   quoted(options.name + ".png"))
-                                     : fmt::format("check {}", quoted(path.string()));
+    const std::string next =
+        fmt::format("render {} -o {}", quoted(path.string()), quoted(options.name + ".png"));
     printOut(fmt::format("wrote {}\nnext: rtslc {}\n", path.string(), next));
   } catch (const Error &error) {
     messages.report(error);

@@ -2,6 +2,7 @@
 #include "CommandLine.h"
 #include "Messages.h"
 #include "NotFinite.h"
+#include "Preview.h"
 #include "RenderTarget.h"
 #include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
@@ -33,7 +34,8 @@ using Clock = std::chrono::steady_clock;
 
 struct RenderCommandOptions {
   CommonOptions common;
-  std::string scene;
+  std::string scene;     // or shaders, of which a class is shown
+  std::string className; // of that class; empty: the last
   std::string output;
   std::vector<std::string> overrides;
   std::string engine; // empty: the scene's
@@ -228,11 +230,22 @@ runtime::Image renderOn(RenderTarget &target, const runtime::Scene &scene,
   return image;
 }
 
+/// The scene of the file, or one that shows a class of it. Nothing if there are errors.
+std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &messages) {
+  if (holdsShaders(options.scene))
+    return makePreview({options.scene, options.className, overridesOf(options)}, options.common,
+                       messages);
+  return Preview{
+      readScene(options.scene, overridesOf(options), messages, "render"), options.scene, {}};
+}
+
 void renderScene(const RenderCommandOptions &options, Messages &messages) {
   runtime::checkWritable(options.output, options.format);
   checkOutputs(options.output, options.common.dependencies, {options.scene});
-  const scene::SceneDescription description =
-      readScene(options.scene, overridesOf(options), messages, "render");
+  const std::optional<Preview> input = readInput(options, messages);
+  if (!input)
+    return;
+  const scene::SceneDescription &description = input->description;
 
   const std::unique_ptr<RenderTarget> target =
       makeRenderTarget(options.target, options.hasGpuArchitecture);
@@ -240,9 +253,10 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   Clock::time_point start = Clock::now();
   std::vector<std::string> filesRead;
   const std::unique_ptr<typed::Module> module =
-      loadShaders(description, options.common, messages, &filesRead);
+      loadShaders(description, options.common, messages, &filesRead, input->takenNames);
   if (!module)
     return;
+  filesRead.front() = input->file;
   filesRead = withFiles(description, filesRead);
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
@@ -332,8 +346,15 @@ void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
 void addRenderCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App *command = app.add_subcommand(renderSummary.command, renderSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
+  command
+      ->add_option("FILE", options->scene,
+                   "a scene (.json), or RTSL (.rtsl), of which one class is shown in a standard "
+                   "scene; - is a scene on standard input")
       ->required();
+  command
+      ->add_option("--class", options->className,
+                   "the class of an RTSL file to show; default: the last one that can be shown")
+      ->type_name("NAME");
   addPictureOption(*command, options->output, options->format);
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
            "samples per pixel");
@@ -364,12 +385,17 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addMessageOptions(*command, options->common);
   command->footer(
       "examples:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 --size 1920x1080\n"
-      "  rtslc render examples/cornell/room.json -o normals.png --engine normals");
+      "  rtslc render examples/cornell/room.json -o normals.png --engine normals\n"
+      "  rtslc render Clay.rtsl -o clay.png --set Clay.polish=0.2");
   command->callback([options, command, &action] {
     for (const auto &[name, isGiven] :
          {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
       if (isGiven && options->output == "-")
         throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
+    if (!options->className.empty() && !holdsShaders(options->scene))
+      throw CLI::ValidationError("--class", fmt::format("`{}` is a scene, which names its classes; "
+                                                        "give a file of shaders (.rtsl)",
+                                                        options->scene));
     checkPictureName(options->output, options->format);
     if (options->target == TargetName::Gpu)
       rejectWithoutGpuSupport(*options);

@@ -107,10 +107,12 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
 
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,
-                                           std::vector<std::string> *filesRead) {
+                                           std::vector<std::string> *filesRead,
+                                           const std::vector<std::string> &takenNames) {
   PreprocessorOptions preprocessor = options.preprocessor;
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
+  shaders.renameInLibrary(takenNames);
   for (const scene::LocatedName &mention : scene::classMentions(description))
     shaders.mention(mention.text);
   // What is used of a module is known when all files have been read.

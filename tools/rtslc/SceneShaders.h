@@ -24,10 +24,11 @@ void addSetOption(CLI::App &command, std::vector<std::string> &overrides);
 
 /// Reads and checks the files that the scene imports; null if there were errors. They find what
 /// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
-/// files.
+/// files. `takenNames` are renamed in the library (SourceLoader.h).
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,
-                                           std::vector<std::string> *filesRead = nullptr);
+                                           std::vector<std::string> *filesRead = nullptr,
+                                           const std::vector<std::string> &takenNames = {});
 
 /// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and
 /// meshes, images and buffers.
