@@ -3,11 +3,13 @@
 #include "Messages.h"
 #include "NotFinite.h"
 #include "Preview.h"
+#include "RenderOnChange.h"
 #include "RenderTarget.h"
 #include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
 #include "scenefile/SceneFile.h"
+#include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
@@ -23,6 +25,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -45,6 +48,7 @@ struct RenderCommandOptions {
   runtime::Traversal traversal = runtime::Traversal::Embree;
   bool json = false;
   bool quiet = false;
+  bool watches = false; // for changes of files
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
   TargetName target = TargetName::Host;
@@ -239,13 +243,18 @@ std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &
       readScene(options.scene, overridesOf(options), messages, "render"), options.scene, {}};
 }
 
-void renderScene(const RenderCommandOptions &options, Messages &messages) {
+/// Renders unless there are errors, and gives whether a picture was written. `files` gets those that
+/// it depends on. `stop` stops the rendering; null: a signal does. The unfinished picture is written
+/// unless `--watch` was given.
+bool renderScene(const RenderCommandOptions &options, Messages &messages,
+                 const std::atomic<bool> *stop, std::vector<std::string> &files) {
   runtime::checkWritable(options.output, options.format);
   checkOutputs(options.output, options.common.dependencies, {options.scene});
   const std::optional<Preview> input = readInput(options, messages);
   if (!input)
-    return;
+    return false;
   const scene::SceneDescription &description = input->description;
+  files = withFiles(description, {input->file});
 
   const std::unique_ptr<RenderTarget> target =
       makeRenderTarget(options.target, options.hasGpuArchitecture);
@@ -255,9 +264,10 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
   const std::unique_ptr<typed::Module> module =
       loadShaders(description, options.common, messages, &filesRead, input->takenNames);
   if (!module)
-    return;
+    return false;
   filesRead.front() = input->file;
   filesRead = withFiles(description, filesRead);
+  files = filesRead;
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
   compile.threads = options.threads;
@@ -274,24 +284,29 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
         return made;
       });
   if (!scene)
-    return;
+    return false;
   summary.times.compile = secondsSince(start) - summary.times.scene;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
 
   runtime::RenderOptions &render = summary.render = renderOptions(options, description.render);
-  render.cancel = catchInterruptions();
+  render.cancel = stop ? stop : catchInterruptions();
+  const std::uint64_t failedBefore = runtime::failedMachineStacks();
   Progress progress("rendering");
   if (!options.quiet)
     render.progress = [&](double share) { progress.update(share); };
   const runtime::Image image = renderOn(*target, *scene, render, summary.statistics);
   summary.gpu = target->gpu();
   progress.finish();
+  if (options.watches && summary.statistics.isUnfinished) {
+    runtime::takePrintLog();
+    return false;
+  }
   if (summary.statistics.samples == 0)
     throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
   summary.printed = runtime::takePrintLog().texts(scene->program().prints);
   std::uint64_t stackBytes = 0;
-  if (runtime::failedMachineStacks(&stackBytes))
+  if (runtime::failedMachineStacks(&stackBytes) > failedBefore)
     throw Error(
         ErrorCode::OutOfMemory,
         fmt::format(
@@ -316,18 +331,72 @@ void renderScene(const RenderCommandOptions &options, Messages &messages) {
     }
   warn(summary, messages);
   printSummary(options, summary);
+  return true;
 }
 
-int render(const RenderCommandOptions &options) {
+/// Renders once, and reports everything.
+ExitStatus render(const RenderCommandOptions &options, const std::atomic<bool> *stop,
+                  Rendering &rendering) {
   Messages messages(options.common);
   try {
-    renderScene(options, messages);
+    rendering.isDone = renderScene(options, messages, stop, rendering.files);
   } catch (Error &error) {
     if (error.code == ErrorCode::NoDevice)
       error.note("`--target=host-megakernel` renders the same picture on the CPU");
     messages.report(error);
   }
+  // After an error not all files are known, but those that were read until then.
+  std::error_code unknown;
+  rendering.files.push_back(options.scene);
+  for (FileId file = 1; file <= messages.sources.count(); ++file)
+    if (std::filesystem::exists(messages.sources.name(file), unknown))
+      rendering.files.emplace_back(messages.sources.name(file));
+  std::sort(rendering.files.begin(), rendering.files.end());
+  rendering.files.erase(std::unique(rendering.files.begin(), rendering.files.end()),
+                        rendering.files.end());
+  return messages.status();
+}
+
+/// --watch: what no change of a file can mend ends it at once.
+int watch(const RenderCommandOptions &options) {
+  Messages messages(options.common);
+  try {
+    readFile(options.scene);
+    runtime::checkWritable(options.output, options.format);
+    checkOutputs(options.output, options.common.dependencies, {options.scene});
+    renderOnChange(
+        [&](const std::atomic<bool> &stop) {
+          Rendering rendering;
+          render(options, &stop, rendering);
+          return rendering;
+        },
+        options.output, options.quiet);
+  } catch (const Error &error) {
+    messages.report(error);
+  }
   return statusAfterInterruption(messages.status());
+}
+
+int render(const RenderCommandOptions &options) {
+  if (options.watches)
+    return watch(options);
+  Rendering rendering;
+  const ExitStatus status = render(options, nullptr, rendering);
+  return statusAfterInterruption(status);
+}
+
+/// Compiling takes a third less time than with -O2, and the picture is the same.
+constexpr unsigned optimizationOfWatch = 1;
+
+/// Rejects options that make no sense for several pictures.
+void rejectWithWatch(const RenderCommandOptions &options) {
+  if (options.scene == "-")
+    throw CLI::ValidationError("--watch", "standard input is no file that changes; give one");
+  if (options.output == "-")
+    throw CLI::ValidationError("--watch", "standard output takes one picture; give a file to `-o`");
+  if (options.json || options.common.jsonDiagnostics)
+    throw CLI::ValidationError("--watch",
+                               "a JSON document describes one picture, not several; leave it out");
 }
 
 /// Rejects options that a GPU cannot support.
@@ -377,6 +446,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
                     "end samples that send an invalid ray, exceed the depth limit, or use an index "
                     "out of range, and count them; list all samples that are not finite");
   command->add_flag("--json", options->json, "write times and counts to standard output as JSON");
+  command->add_flag("--watch", options->watches,
+                    "render again whenever a file of the scene is saved, until Ctrl-C");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);
@@ -396,6 +467,11 @@ void addRenderCommand(CLI::App &app, Action &action) {
       throw CLI::ValidationError("--class", fmt::format("`{}` is a scene, which names its classes; "
                                                         "give a file of shaders (.rtsl)",
                                                         options->scene));
+    if (options->watches) {
+      rejectWithWatch(*options);
+      if (!command->count("-O"))
+        options->common.compile.optimization = optimizationOfWatch;
+    }
     checkPictureName(options->output, options->format);
     if (options->target == TargetName::Gpu)
       rejectWithoutGpuSupport(*options);
