@@ -161,6 +161,14 @@ class Preview(Case):
         self.write("c.rtsl", "class Way : rt_Material { public rt_Light lamp; void shade() { rt_SampleColor = color(0.5); } };\n")
         self.assert_message([self.refused("c.rtsl")], "E0815", "its member `lamp`, a `rt_Light`")
 
+    def test_an_image_must_be_given(self):
+        self.write("a.rtsl", "class Poster : rt_Material {\n  public sampler2D picture;\n"
+                             "  void shade() { rt_SampleColor = color(picture.sample(rt_TextureUV).r); }\n};\n")
+        message = self.refused("a.rtsl")
+        self.assert_message([message], "E0815", "`Poster` cannot be shown without an image for its member `picture`", line=2, column=20)
+        self.assertIn("""`--set Poster.picture='{"file": "picture.png"}'`""", message["notes"][0])
+        self.render("a.rtsl", "--set", f'Poster.picture={{"file": "{EXAMPLES / "cornell/picture.png"}"}}')
+
     def test_overrides(self):
         self.run_rtslc("new", "material", "Clay")
         blue = "tint=[0.1, 0.1, 0.9]"

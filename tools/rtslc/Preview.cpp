@@ -302,6 +302,16 @@ private:
   std::optional<Json> referenceTo(const typed::Member &member, const typed::Class &owner) {
     const typed::Class *wanted = member.type->classType;
     const std::string name = wanted ? wanted->name : member.type->builtinClass;
+    if (scene::isImageClass(name)) {
+      const char *files = name == "sampler3D" ? R"({"slices": ["front.png", "back.png"]})"
+                                              : R"({"file": "picture.png"})";
+      messages.diagnostics
+          .report(Code::sceneMissingMember, member.range,
+                  fmt::format("`{}` cannot be shown without an image for its member `{}`",
+                              owner.name, member.name))
+          .note(fmt::format("`--set {}.{}='{}'` gives one", owner.name, member.name, files));
+      return std::nullopt;
+    }
     if (!wanted || isOfLibrary(wanted->range))
       for (const StandIn &standIn : standIns)
         if (std::find(standIn.bases.begin(), standIn.bases.end(), name) != standIn.bases.end())
