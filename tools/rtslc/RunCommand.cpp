@@ -376,7 +376,8 @@ void checkFiles(const RunOptions &options) {
 void addRunCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App *command = app.add_subcommand(runSummary.command, runSummary.text);
-  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")->required();
+  command->add_option("SCENE", options->scene, "a scene file (JSON); - is standard input")
+      ->required();
   addBufferOption(*command, "--out", options->outputs,
                   "write an output buffer: .npy, .csv, or the elements as they lie in memory");
   addBufferOption(*command, "--in", options->inputs,
