@@ -84,6 +84,10 @@ class Case(unittest.TestCase):
         if file is not None:
             self.assertTrue(message["range"]["file"].endswith(file), message)
 
+    def assert_same_bits(self, first, second, message=None):
+        """Two files that rtslc wrote: a picture of the same bits is the same file."""
+        self.assertEqual((self.folder / first).read_bytes(), (self.folder / second).read_bytes(), message)
+
     def write_exr(self, name, width, height, value):
         """A picture of one value everywhere: R, G and B of 32 bits, not compressed."""
         def attribute(name, kind, data):

@@ -37,13 +37,13 @@ class CallFrames(Case):
             self.scene(chain, depth)
             for i, way in enumerate(WAYS):
                 self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
-                self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
+                self.assert_same_bits("0.exr", f"{i}.exr")
 
     def test_a_long_chain(self):
         self.scene(40, 0, rounds=1, branches=False)
         for i, way in enumerate(WAYS):
             self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
-            self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
+            self.assert_same_bits("0.exr", f"{i}.exr")
 
     def test_no_object_does_nothing_whatever_is_left_out(self):
         self.write("nothing.rtsl", (SHADERS.parent / "Nothing.rtsl").read_text())
@@ -57,7 +57,7 @@ class CallFrames(Case):
             "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2}}))
         for i, way in enumerate([*WAYS, ["--keep=all"], ["--keep=all", *WAYS[1]]]):
             self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
-            self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
+            self.assert_same_bits("0.exr", f"{i}.exr")
         said = self.run_rtslc("explain", "scene.json")[0]
         self.assertIn("`Filter`, or no object", said)
 
@@ -66,7 +66,7 @@ class CallFrames(Case):
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
         subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"], cwd=self.folder, check=True)
-        self.run_rtslc("compare", "0.exr", "1.exr", "--threshold", "0")
+        self.assert_same_bits("0.exr", "1.exr")
 
     def test_the_bound_of_the_stack_counts_them(self):
         self.scene(3, 2)

@@ -30,7 +30,7 @@ class Objects(Case):
     def require_same_pictures(self, *more):
         for i, way in enumerate([*WAYS, *more]):
             self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
-            self.run_rtslc("compare", "0.exr", f"{i}.exr", "--threshold", "0")
+            self.assert_same_bits("0.exr", f"{i}.exr")
 
     def test_engines_agree(self):
         self.scene()
@@ -59,7 +59,7 @@ class Objects(Case):
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
         subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"], cwd=self.folder, check=True)
-        self.run_rtslc("compare", "0.exr", "1.exr", "--threshold", "0")
+        self.assert_same_bits("0.exr", "1.exr")
 
     def test_what_is_always_empty_is_left_out(self):
         self.scene(materials={"painted": {"class": "Painted"}, "coated": {"class": "Coated"}, "tilted": {"class": "Tilted", "bump": None}})
@@ -71,7 +71,7 @@ class Objects(Case):
         kept = self.run_rtslc("compile", "scene.json", "--emit=ir", "--keep=parameters")[0]
         self.assertIn("@dispatch.rt_Texture.lookup", kept)
         self.run_rtslc("render", "scene.json", "-o", "kept.exr", "--keep=parameters", *WAYS[0])
-        self.run_rtslc("compare", "0.exr", "kept.exr", "--threshold", "0")
+        self.assert_same_bits("0.exr", "kept.exr")
 
     def test_a_reference_that_is_not_optional_is_set(self):
         self.scene(textures={"t0": {"class": "Layered"}})
