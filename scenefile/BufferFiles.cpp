@@ -14,6 +14,7 @@
 #include <memory>
 #include <new>
 #include <numeric>
+#include <string_view>
 
 namespace rtsl::scene {
 
@@ -90,6 +91,42 @@ std::vector<std::uint32_t> sizesOf(const std::vector<std::size_t> &shape, std::s
     sizes.push_back(static_cast<std::uint32_t>(shape[i]));
   }
   return sizes;
+}
+
+/// The number of numbers that a file of this shape has for an element. The dimensions of the buffer
+/// come first, those of an element follow. Throws WrongType.
+std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &shape,
+                       const ValueType &type, std::size_t numbers, const std::string &what) {
+  std::size_t given = 1;
+  for (std::size_t i = type.bufferRank; i < shape.size(); ++i)
+    given *= shape[i];
+  const bool isColor = type.kind == ValueType::Kind::Color && type.arraySizes.empty();
+  if (shape.size() < type.bufferRank ||
+      (given != numbers && !(isColor && (given == 1 || given == 3))))
+    throw Error(ErrorCode::WrongType,
+                fmt::format("{} is a `{}`: {} with {} {} each are needed, and `{}` has the shape "
+                            "({})",
+                            what, type.name,
+                            type.bufferRank == 1 ? "1 dimension"
+                                                 : fmt::format("{} dimensions", type.bufferRank),
+                            numbers, numbers == 1 ? "number" : "numbers", file,
+                            fmt::join(shape, ", ")));
+  return given;
+}
+
+/// Whether elements of a .npy file are the words of the type.
+bool liesAs(const ValueType &type, std::string_view elementType) {
+  switch (type.kind) {
+  case ValueType::Kind::Float:
+  case ValueType::Kind::Color:
+    return elementType == "<f4";
+  case ValueType::Kind::Int:
+    return elementType == "<i4";
+  case ValueType::Kind::UInt:
+    return elementType == "<u4";
+  default:
+    return false;
+  }
 }
 
 /// The elements of a file without a format.
@@ -180,25 +217,36 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
   const std::string extension = std::filesystem::path(buffer.file).extension().string();
   if (extension != ".npy" && extension != ".csv")
     return readElements(buffer, type, numbers, what);
-  const NumberArray array =
-      extension == ".npy" ? readNpy(buffer.file) : readCsv(buffer.file, buffer.columns);
-  // The dimensions of the buffer come first, those of an element follow.
-  std::size_t given = 1;
-  for (std::size_t i = type.bufferRank; i < array.shape.size(); ++i)
-    given *= array.shape[i];
-  const bool isColor = type.kind == ValueType::Kind::Color && type.arraySizes.empty();
-  if (array.shape.size() < type.bufferRank ||
-      (given != numbers && !(isColor && (given == 1 || given == 3))))
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is a `{}`: {} with {} {} each are needed, and `{}` has the shape "
-                            "({})",
-                            what, type.name,
-                            type.bufferRank == 1 ? "1 dimension"
-                                                 : fmt::format("{} dimensions", type.bufferRank),
-                            numbers, numbers == 1 ? "number" : "numbers", buffer.file,
-                            fmt::join(array.shape, ", ")));
+  if (extension == ".npy") {
+    const NpyFile file(buffer.file);
+    const std::size_t given = checkShape(buffer.file, file.shape(), type, numbers, what);
+    if (given == numbers && liesAs(type, file.elementType())) {
+      auto words = std::make_shared<Value::Words>(file.count());
+      std::memcpy(words->data(), file.elements(), 4 * words->size());
+      return Value::block(std::move(words), sizesOf(file.shape(), type.bufferRank, what));
+    }
+    return Value::block(wordsOf(file.numbers(), given, type, colorComponents, what),
+                        sizesOf(file.shape(), type.bufferRank, what));
+  }
+  const NumberArray array = readCsv(buffer.file, buffer.columns);
+  const std::size_t given = checkShape(buffer.file, array.shape, type, numbers, what);
   return Value::block(wordsOf(array.numbers, given, type, colorComponents, what),
                       sizesOf(array.shape, type.bufferRank, what));
+}
+
+std::size_t lengthOf(const BufferDescription &buffer) {
+  if (!buffer.shape.empty())
+    return buffer.shape.front();
+  const std::string extension = std::filesystem::path(buffer.file).extension().string();
+  if (extension == ".npy") {
+    const NpyFile file(buffer.file, NpyFile::Part::Header);
+    return file.shape().empty() ? 1 : file.shape().front();
+  }
+  if (extension == ".csv")
+    return readCsv(buffer.file, buffer.columns).shape.front();
+  throw Error(ErrorCode::MissingKey,
+              fmt::format("`{}` has no format that says how many elements it has: give `shape`",
+                          buffer.file));
 }
 
 } // namespace rtsl::scene

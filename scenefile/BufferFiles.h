@@ -36,6 +36,10 @@ readBufferDescription(const JsonValue &buffer,
 runtime::Value readBuffer(const BufferDescription &buffer, const runtime::ValueType &type,
                           std::uint32_t colorComponents, const std::string &what);
 
+/// The number of elements along the first dimension, which is that of a file if it says so. Throws
+/// MissingKey, BadBuffer, and the errors of reading a file.
+std::size_t lengthOf(const BufferDescription &buffer);
+
 /// Zeros for a member of this type.
 runtime::Value zeros(const std::vector<std::uint32_t> &sizes, const runtime::ValueType &type,
                      const std::string &what);

@@ -17,12 +17,11 @@ using runtime::ValueType;
 
 namespace {
 
-/// The dimensions of an element: of its arrays, then of a matrix its columns and rows.
-std::vector<std::uint32_t> elementShape(const OutputBuffer &buffer) {
-  const ValueType &type = buffer.type;
+/// The dimensions of an element of `bytes`: of its arrays, then of a matrix its columns and rows.
+std::vector<std::uint32_t> elementShape(const ValueType &type, std::uint32_t bytes) {
   std::vector<std::uint32_t> shape = type.arraySizes;
   if (type.kind == ValueType::Kind::Color) {
-    std::uint32_t numbers = type.elementSize / 4;
+    std::uint32_t numbers = bytes / 4;
     for (const std::uint32_t size : type.arraySizes)
       numbers /= size;
     shape.push_back(numbers);
@@ -35,17 +34,40 @@ std::vector<std::uint32_t> elementShape(const OutputBuffer &buffer) {
   return shape;
 }
 
+std::string tupleOf(const std::vector<std::uint32_t> &sizes) {
+  return fmt::format("({}{})", fmt::join(sizes, ", "), sizes.size() == 1 ? "," : "");
+}
+
+/// The type of a number, or of a struct, as NumPy writes it. A bool of a struct is a number.
+std::string numpyType(const ValueType &type, bool isInStruct = false) {
+  switch (type.kind) {
+  case ValueType::Kind::Bool:
+    return isInStruct ? "'<u4'" : "'|b1'";
+  case ValueType::Kind::Int:
+    return "'<i4'";
+  case ValueType::Kind::UInt:
+    return "'<u4'";
+  case ValueType::Kind::Struct: {
+    std::vector<std::string> fields;
+    for (const runtime::MemberInfo &field : type.fields) {
+      const std::vector<std::uint32_t> shape = elementShape(field.type, field.type.size);
+      fields.push_back(fmt::format("('{}', {}{})", field.name, numpyType(field.type, true),
+                                   shape.empty() ? "" : ", " + tupleOf(shape)));
+    }
+    return fmt::format("[{}]", fmt::join(fields, ", "));
+  }
+  default:
+    return "'<f4'";
+  }
+}
+
 std::string npyOf(const OutputBuffer &buffer) {
-  std::vector<std::uint32_t> shape = buffer.sizes;
-  for (const std::uint32_t size : elementShape(buffer))
-    shape.push_back(size);
   const bool isBool = buffer.type.kind == ValueType::Kind::Bool;
-  const char *type = isBool                                      ? "|b1"
-                     : buffer.type.kind == ValueType::Kind::Int  ? "<i4"
-                     : buffer.type.kind == ValueType::Kind::UInt ? "<u4"
-                                                                 : "<f4";
-  std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}{}), }}",
-                                   type, fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+  std::vector<std::uint32_t> shape = buffer.sizes;
+  for (const std::uint32_t size : elementShape(buffer.type, buffer.type.elementSize))
+    shape.push_back(size);
+  std::string header = fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': {}, }}",
+                                   numpyType(buffer.type), tupleOf(shape));
   constexpr std::size_t before = 10, alignment = 64; // magic, version and length; of the numbers
   header.append(alignment - (before + header.size() + 1) % alignment, ' ');
   header += '\n';
@@ -89,12 +111,11 @@ std::string csvOf(const OutputBuffer &buffer) {
 
 void writeBuffer(const std::string &path, const OutputBuffer &buffer) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  const bool hasFormat = extension == ".npy" || extension == ".csv";
-  if (hasFormat && buffer.type.kind == ValueType::Kind::Struct)
+  if (extension == ".csv" && buffer.type.kind == ValueType::Kind::Struct)
     throw Error(ErrorCode::NotSupported,
                 fmt::format("`{}` cannot hold `{}`, a `{}`: its elements are structs", path,
                             buffer.member, buffer.type.name))
-        .note("a file with another ending gets the elements as they lie in memory");
+        .note(".npy holds them");
   writeFileAtomically(
       path, extension == ".npy" ? npyOf(buffer)
             : extension == ".csv"

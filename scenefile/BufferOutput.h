@@ -11,7 +11,7 @@ namespace rtsl::scene {
 /// dimensions of the buffer first and those of an element after them; .csv, with a row for each
 /// element, or for each row of a buffer of numbers with two dimensions; otherwise the elements as
 /// they lie in memory, 4 bytes a number. Replaces the file when it is complete. "-" is standard
-/// output. Throws NotSupported for structs in .npy and .csv, and the errors of writing a file.
+/// output. Throws NotSupported for structs in .csv, and the errors of writing a file.
 void writeBuffer(const std::string &path, const runtime::OutputBuffer &buffer);
 
 } // namespace rtsl::scene

@@ -13,6 +13,7 @@ namespace {
 struct Placement {
   std::size_t file;
   const Transform *transform;
+  bool isBarycentric;
 };
 
 } // namespace
@@ -23,10 +24,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
   std::vector<std::size_t> uses; // placements of each file
   std::vector<Placement> placements;
   for (const GeometryDescription &geometry : description.objects) {
-    if (geometry.primitive ||
-        !numbers
-             .emplace(std::make_pair(geometry.meshPath, geometry.transform.columns), numbers.size())
-             .second)
+    if (geometry.primitive || !numbers.emplace(keyOf(geometry), numbers.size()).second)
       continue;
     const auto [file, isNew] = fileNumbers.emplace(geometry.meshPath, paths.size());
     if (isNew) {
@@ -34,7 +32,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
       uses.push_back(0);
     }
     ++uses[file->second];
-    placements.push_back({file->second, &geometry.transform});
+    placements.push_back({file->second, &geometry.transform, geometry.isBarycentric});
   }
 
   std::vector<Result> files(paths.size());
@@ -54,6 +52,8 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
         result.mesh = std::move(file.mesh);
       else
         result.mesh = file.mesh;
+      if (placements[i].isBarycentric)
+        result.mesh.uvs.clear();
       result.mesh.apply(*placements[i].transform);
     } catch (...) {
       result.failure = std::current_exception();
@@ -61,8 +61,12 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
   });
 }
 
+MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
+  return {geometry.meshPath, geometry.transform.columns, geometry.isBarycentric};
+}
+
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {
-  return numbers.at({geometry.meshPath, geometry.transform.columns});
+  return numbers.at(keyOf(geometry));
 }
 
 Mesh MeshFiles::take(std::size_t number) {

@@ -8,7 +8,7 @@
 #include <exception>
 #include <map>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 namespace rtsl::scene {
@@ -32,7 +32,10 @@ private:
     std::exception_ptr failure;
   };
 
-  std::map<std::pair<std::string, decltype(runtime::Transform::columns)>, std::size_t> numbers;
+  using Key = std::tuple<std::string, decltype(runtime::Transform::columns), bool>;
+  static Key keyOf(const GeometryDescription &geometry);
+
+  std::map<Key, std::size_t> numbers;
   std::vector<Result> results; // by number
 };
 

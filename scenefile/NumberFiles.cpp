@@ -12,6 +12,8 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 
 namespace rtsl::scene {
@@ -137,45 +139,65 @@ std::vector<std::size_t> placesOf(const std::string &path, const std::vector<std
 
 } // namespace
 
-NumberArray readNpy(const std::string &path) {
-  const std::string file = readFile(path);
+/// The beginning of a file, as much as a header can be.
+static std::string readStart(const std::string &path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    return readFile(path); // which says why it cannot be read
+  std::string start(1 << 17, '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(stream.gcount()));
+  return start;
+}
+
+NpyFile::NpyFile(const std::string &path, Part part)
+    : file(part == Part::Whole ? readFile(path) : readStart(path)) {
   if (file.size() < 10 || file.compare(0, 6, "\x93NUMPY") != 0)
     fail(path, "it is no .npy file");
   const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(file[i])); };
   const bool isLong = byte(6) >= 2; // the length of the header has 4 bytes
-  const std::size_t start = isLong ? 12 : 10;
+  start = isLong ? 12 : 10;
   std::size_t length = byte(8) | byte(9) << 8;
   if (isLong && file.size() >= start)
     length |= byte(10) << 16 | byte(11) << 24;
   if (byte(6) < 1 || byte(6) > 3 || file.size() < start || file.size() - start < length)
     fail(path, "its header is cut short, or of another version");
   const std::string_view header = std::string_view(file).substr(start, length);
+  start += length;
 
-  std::string_view type = valueOf(header, "'descr'");
-  const auto found =
+  const std::string_view name = valueOf(header, "'descr'");
+  const auto *const found =
       std::find_if(std::begin(elementTypes), std::end(elementTypes), [&](const ElementType &known) {
-        return type.size() > 4 && type.front() == '\'' && type.substr(1, 3) == known.name;
+        return name.size() > 4 && name.front() == '\'' && name.substr(1, 3) == known.name;
       });
   if (found == std::end(elementTypes))
     fail(path, "its elements are no little-endian integers or floats");
-  NumberArray array;
-  array.shape = shapeOf(path, valueOf(header, "'shape'"));
-  if (array.shape.size() > 1 && valueOf(header, "'fortran_order'").substr(0, 4) == "True")
+  type = static_cast<std::size_t>(found - elementTypes);
+  sizes = shapeOf(path, valueOf(header, "'shape'"));
+  if (sizes.size() > 1 && valueOf(header, "'fortran_order'").substr(0, 4) == "True")
     fail(path, "it is in Fortran order; save numpy.ascontiguousarray(...)");
-  const std::size_t bytes = file.size() - start - length;
-  std::size_t count = 1;
-  for (const std::size_t size : array.shape) {
-    if (size != 0 && count > bytes / size)
+  std::error_code error;
+  const std::size_t bytes =
+      (part == Part::Whole ? file.size() : std::filesystem::file_size(path, error)) - start;
+  for (const std::size_t size : sizes) {
+    if (size != 0 && elementCount > bytes / size)
       fail(path, "it is cut short");
-    count *= size;
+    elementCount *= size;
   }
-  if (bytes / found->bytes < count)
+  if (bytes / found->bytes < elementCount)
     fail(path, "it is cut short");
-  if (bytes != count * found->bytes)
+  if (bytes != elementCount * found->bytes)
     fail(path, "it is longer than its header says");
-  array.numbers.resize(count);
-  found->convert(file.data() + start + length, array.numbers);
-  return array;
+}
+
+const char *NpyFile::elementType() const {
+  return elementTypes[type].name;
+}
+
+std::vector<double> NpyFile::numbers() const {
+  std::vector<double> numbers(elementCount);
+  elementTypes[type].convert(elements(), numbers);
+  return numbers;
 }
 
 NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns) {

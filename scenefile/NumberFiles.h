@@ -13,9 +13,27 @@ struct NumberArray {
   std::vector<double> numbers;
 };
 
-/// Reads .npy (format 1 to 3 of NumPy): little-endian integers, floats and bools, in C order.
-/// Throws BadBuffer, and the errors of reading a file.
-NumberArray readNpy(const std::string &path);
+/// A .npy file (format 1 to 3 of NumPy): little-endian integers, floats and bools, in C order.
+class NpyFile {
+public:
+  enum class Part { Whole, Header };
+  /// Reads it. Throws BadBuffer, and the errors of reading a file.
+  explicit NpyFile(const std::string &path, Part part = Part::Whole);
+
+  const std::vector<std::size_t> &shape() const { return sizes; }
+  /// The number of all elements.
+  std::size_t count() const { return elementCount; }
+  /// Its type of elements as NumPy writes it: "<f4".
+  const char *elementType() const;
+  /// The elements as they lie in the file. Not of a header alone.
+  const char *elements() const { return file.data() + start; }
+  std::vector<double> numbers() const;
+
+private:
+  std::string file;
+  std::size_t start = 0, elementCount = 1, type = 0;
+  std::vector<std::size_t> sizes;
+};
 
 /// Reads numbers between commas, a row a line. The first line may have names; `columns` chooses by
 /// them, in this order; empty: all. Throws BadBuffer, UnknownName, and the errors of reading a file.

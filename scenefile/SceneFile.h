@@ -59,6 +59,8 @@ struct GeometryDescription {
   std::optional<ObjectDescription> primitive; // or
   LocatedName mesh;                           // path as written
   std::string meshPath;                       // resolved
+  bool isBarycentric =
+      false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
   ReferenceDescription material;
   runtime::Transform transform; // of the vertices of a mesh in `objects`
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit

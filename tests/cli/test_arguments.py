@@ -8,9 +8,9 @@ import unittest
 from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
 
 RTSL_RUN = os.environ["RTSL_RUN"]
-COMMANDS = ("new", "check", "compile", "explain", "render", "run", "report", "pack", "compare")
+COMMANDS = ("new", "check", "compile", "explain", "render", "run", "trace", "report", "pack", "compare")
 # What must be given beside the option that is tried.
-REQUIRED = {"new": ["material", "X"], "render": ["x.json", "-o", "x.png"], "run": ["x.json"], "report": ["x.json", "--out", "x"],
+REQUIRED = {"new": ["material", "X"], "render": ["x.json", "-o", "x.png"], "run": ["x.json"], "trace": ["x.obj", "--rays", "x.npy"], "report": ["x.json", "--out", "x"],
             "pack": ["x.json", "-o", "x"],
             "compare": ["x.png", "x.png"]}
 

@@ -223,6 +223,22 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
                          render={"engine": "programs", "size": [200000]})
         self.assertEqual(found["marks"], ((4,), tuple(200000 + 50000 * i for i in range(4))))
 
+    def test_a_launch_has_the_size_of_a_buffer(self):
+        self.write("one.rtsl", "class One : rt_RayGeneration { public float a[]; public out float twice[];"
+                               "  void generate() { twice[rt_LaunchIndex.x] = 2.0 * a[rt_LaunchIndex.x]; } };")
+        self.write("a.npy", npy("f", [5], [1, 2, 3, 4, 5.5]))
+        self.write("a.csv", "1\n2\n3\n")
+        changes = {"import": ["one.rtsl"], "objects": [], "materials": {}, "render": {"engine": "programs", "size": "a"}}
+        for start, buffers, option, count in (([1, 2, 3, 4], {}, [], 4), ({"buffer": "a.npy"}, {}, [], 5), ("b", {"b": {"buffer": "a.csv"}}, [], 3),
+                                              (None, {}, ["--in=a=a.npy"], 5), ("b", {"b": {"size": [7]}}, ["--in=b=a.csv"], 3)):
+            self.scene(start={"class": "One", **({"a": start} if start else {})}, **{**changes, "buffers": buffers})
+            self.run_rtslc("run", "scene.json", "-q", *option, "--out=twice=t.npy")
+            self.assertEqual(read_npy(self.folder / "t.npy")[0], (count,))
+        self.scene(start={"class": "One"}, **changes)
+        self.assert_message(self.diagnose("run", "scene.json", "--out=twice=t.npy"), "E0806", "`size` is two numbers, one, or the name of a buffer")
+        self.scene(start={"class": "One", "a": {"size": [0]}}, **changes)
+        self.assert_message(self.diagnose("run", "scene.json", "--out=twice=t.npy"), "E0805", "has 0 indices")
+
     def test_what_is_wrong_in_a_scene(self):
         def refused(containing, code, **changes):
             self.scene(**changes)
@@ -253,7 +269,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.assert_message(self.diagnose("run", "scene.json", "--out=distanse=d.npy"), "E0806", "no output buffer of this name")
         self.assert_message(self.diagnose("run", "scene.json", "--out=distance=no/d.npy"), "E0902", "cannot write `no/d.npy`")
         self.assertIn("is an input", self.diagnose("run", "scene.json", "--out=distance=initial.npy")[0]["message"])
-        self.assert_message(self.diagnose("run", "scene.json", "--out=cells=c.npy"), "E0808", "its elements are structs")
+        self.assert_message(self.diagnose("run", "scene.json", "--out=cells=c.csv"), "E0808", "its elements are structs")
         for arguments in (["--out=distance"], ["--out==x"], ["--out=distance=x.npy", "--out=normal=x.npy"],
                           ["--out=distance=x.npy", "--out=distance=y.npy"], ["--target=gpu", "--print"]):
             self.run_rtslc("run", "scene.json", *arguments, status=USAGE)

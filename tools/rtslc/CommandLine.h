@@ -58,6 +58,7 @@ struct Summary {
 constexpr Summary renderSummary = {"render",
                                    "render a scene, or a standard scene that shows a class"};
 constexpr Summary runSummary = {"run", "run a scene's launches and write their output buffers"};
+constexpr Summary traceSummary = {"trace", "trace the rays of a file against a mesh"};
 constexpr Summary reportSummary = {"report",
                                    "measure error against run time, in each configuration"};
 constexpr Summary packSummary = {"pack",
@@ -86,6 +87,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
                        ItemMeasurer measure);
 void addRenderCommand(CLI::App &app, Action &action);
 void addRunCommand(CLI::App &app, Action &action);
+void addTraceCommand(CLI::App &app, Action &action);
 void addReportCommand(CLI::App &app, Action &action);
 void addPackCommand(CLI::App &app, Action &action);
 void addCompareCommand(CLI::App &app, Action &action);

@@ -20,8 +20,8 @@ namespace rtsl::tool {
 
 namespace {
 
-constexpr Summary handedOver[] = {renderSummary, runSummary, packSummary, reportSummary,
-                                  compareSummary};
+constexpr Summary handedOver[] = {renderSummary, runSummary,    traceSummary,
+                                  packSummary,   reportSummary, compareSummary};
 
 } // namespace
 

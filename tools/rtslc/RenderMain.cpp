@@ -20,6 +20,7 @@ int main(int argc, char **argv) {
   addExplainCommand(app, action, &scene::buildScene, &measureItems);
   addRenderCommand(app, action);
   addRunCommand(app, action);
+  addTraceCommand(app, action);
   addReportCommand(app, action);
   addPackCommand(app, action);
   addCompareCommand(app, action);

@@ -3,9 +3,9 @@
 // Runs the launches of a scene for the sake of its output buffers (docs/scene-format.md#buffers).
 //
 //===----------------------------------------------------------------------===//
-#include "CommandLine.h"
+#include "RunCommand.h"
+
 #include "Messages.h"
-#include "RenderTarget.h"
 #include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/BufferOutput.h"
@@ -38,24 +38,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-/// A buffer and its file: --in NAME=FILE, --out NAME=FILE.
-struct BufferFile {
-  std::string name, file;
-};
-
-struct RunOptions {
-  CommonOptions common;
-  std::string scene;
-  std::string picture; // empty: none is written
-  std::vector<BufferFile> inputs, outputs;
-  std::vector<std::string> overrides;
-  std::uint32_t threads = 0;
-  runtime::Traversal traversal = runtime::Traversal::Embree;
-  TargetName target = TargetName::Host;
-  bool hasGpuArchitecture = false; // --gpu-arch was given
-  bool json = false, quiet = false, prints = false, exceptions = false;
-};
-
 /// One launch, when it is over.
 struct Launch {
   std::string rayGeneration; // its class
@@ -71,25 +53,25 @@ double secondsSince(Clock::time_point start) {
 
 /// The scene, with the buffers of --in.
 scene::SceneDescription readInputs(const RunOptions &options, Messages &messages) {
-  scene::SceneDescription description =
-      readScene(options.scene, options.overrides, messages, "run");
-  if (options.inputs.empty())
-    return description;
-  if (options.scene == "-")
-    throw Error(ErrorCode::NotSupported,
-                "`--in` needs a scene file; `--set` works with one from standard input");
   std::vector<std::string> overrides = options.overrides;
-  for (const BufferFile &input : options.inputs) {
-    const bool isNamed = description.buffers.count(input.name) != 0;
-    if (!isNamed && !description.passes.empty())
-      throw Error(ErrorCode::UnknownName,
-                  fmt::format("`--in {}`: a scene with passes has no buffer of this name in "
-                              "`buffers`",
-                              input.name));
-    overrides.push_back(fmt::format("{}.{}={}", isNamed ? "buffers" : "rayGeneration", input.name,
-                                    Json{{"buffer", input.file}}.dump()));
+  if (!options.inputs.empty()) {
+    if (options.scene == "-")
+      throw Error(ErrorCode::NotSupported,
+                  "`--in` needs a scene file; `--set` works with one from standard input");
+    const scene::JsonValue root = scene::parseJson(readFile(options.scene), options.scene);
+    const scene::JsonValue *buffers = root.find("buffers");
+    for (const BufferFile &input : options.inputs) {
+      const bool isNamed = buffers && buffers->find(input.name);
+      if (!isNamed && root.find("passes"))
+        throw Error(ErrorCode::UnknownName,
+                    fmt::format("`--in {}`: a scene with passes has no buffer of this name in "
+                                "`buffers`",
+                                input.name));
+      overrides.push_back(fmt::format("{}.{}={}", isNamed ? "buffers" : "rayGeneration", input.name,
+                                      Json{{"buffer", input.file}}.dump()));
+    }
   }
-  return scene::parseScene(readFile(options.scene), options.scene, overrides);
+  return readScene(options.scene, overrides, messages, "run");
 }
 
 /// Rejects names of --out that stand for no buffer, before anything runs.
@@ -325,20 +307,6 @@ void runScene(const RunOptions &options, Messages &messages) {
   printSummary(options, launches);
 }
 
-int runCommand(const RunOptions &options) {
-  Messages messages(options.common);
-  try {
-    runScene(options, messages);
-  } catch (Error &error) {
-    if (error.code == ErrorCode::NoDevice)
-      error.note("`--target=host-megakernel` runs the same program on the CPU");
-    if (error.code == ErrorCode::Cancelled)
-      error.note("no buffer is written");
-    messages.report(error);
-  }
-  return statusAfterInterruption(messages.status());
-}
-
 /// Adds an option with values NAME=FILE.
 void addBufferOption(CLI::App &command, const char *name, std::vector<BufferFile> &files,
                      const char *text) {
@@ -373,6 +341,43 @@ void checkFiles(const RunOptions &options) {
 
 } // namespace
 
+int runLaunches(const RunOptions &options) {
+  Messages messages(options.common);
+  try {
+    runScene(options, messages);
+  } catch (Error &error) {
+    if (error.code == ErrorCode::NoDevice)
+      error.note("`--target=host-megakernel` runs the same program on the CPU");
+    if (error.code == ErrorCode::Cancelled)
+      error.note("no buffer is written");
+    messages.report(error);
+  }
+  return statusAfterInterruption(messages.status());
+}
+
+void addRunOptions(CLI::App &command, RunOptions &options) {
+  addWhole(command, "--threads", options.threads, 1, runtime::mostThreads,
+           "threads; default: all cores");
+  addTraversalOption(command, options.traversal);
+  addTargetOption(command, options.target);
+  command.add_flag("--json", options.json, "write times and buffers to standard output as JSON");
+  command.add_flag("-q,--quiet", options.quiet, "no progress and no summary");
+  addCompileOptions(command, options.common);
+  addKeepOption(command, options.common);
+  addMessageOptions(command, options.common);
+}
+
+void completeRunOptions(const CLI::App &command, RunOptions &options) {
+  checkFiles(options);
+  if (options.target == TargetName::Gpu && options.prints)
+    throw CLI::ValidationError("--print",
+                               "a GPU cannot print; `--target=host-megakernel` prints, and "
+                               "computes the same");
+  if (options.target != TargetName::Host)
+    options.common.compile.target = Target::HostMegakernel;
+  options.hasGpuArchitecture = command.count("--gpu-arch") != 0;
+}
+
 void addRunCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App *command = app.add_subcommand(runSummary.command, runSummary.text);
@@ -385,34 +390,19 @@ void addRunCommand(CLI::App &app, Action &action) {
   command->add_option("-o,--output", options->picture, "the picture of the last launch")
       ->type_name("IMAGE");
   addSetOption(*command, options->overrides);
-  addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
-           "threads; default: all cores");
-  addTraversalOption(*command, options->traversal);
-  addTargetOption(*command, options->target);
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,
                     "end samples that send an invalid ray, exceed the depth limit, or use an index "
                     "out of range, and count them");
-  command->add_flag("--json", options->json, "write times and buffers to standard output as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
-  addCompileOptions(*command, options->common);
-  addKeepOption(*command, options->common);
-  addMessageOptions(*command, options->common);
+  addRunOptions(*command, *options);
   command->footer("examples:\n"
                   "  rtslc run examples/line-of-sight/scene.json --out visible=visible.npy\n"
                   "  rtslc run scene.json --in rays=rays.npy --out hits=hits.csv");
   command->callback([options, command, &action] {
-    checkFiles(*options);
-    if (options->target == TargetName::Gpu && options->prints)
-      throw CLI::ValidationError("--print",
-                                 "a GPU cannot print; `--target=host-megakernel` prints, and "
-                                 "computes the same");
-    if (options->target != TargetName::Host)
-      options->common.compile.target = Target::HostMegakernel;
-    options->hasGpuArchitecture = command->count("--gpu-arch") != 0;
-    action = [options] { return runCommand(*options); };
+    completeRunOptions(*command, *options);
+    action = [options] { return runLaunches(*options); };
   });
 }
 

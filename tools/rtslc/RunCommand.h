@@ -1,0 +1,38 @@
+//===- RunCommand.h - what commands that run launches share ---------------===//
+#pragma once
+
+#include "CommandLine.h"
+#include "RenderTarget.h"
+
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+/// A buffer and its file: --in NAME=FILE, --out NAME=FILE.
+struct BufferFile {
+  std::string name, file;
+};
+
+struct RunOptions {
+  CommonOptions common;
+  std::string scene;
+  std::string picture; // empty: none is written
+  std::vector<BufferFile> inputs, outputs;
+  std::vector<std::string> overrides;
+  std::uint32_t threads = 0;
+  runtime::Traversal traversal = runtime::Traversal::Embree;
+  TargetName target = TargetName::Host;
+  bool hasGpuArchitecture = false; // --gpu-arch was given
+  bool json = false, quiet = false, prints = false, exceptions = false;
+};
+
+/// Adds the options that do not depend on what is run: threads, target, messages, ...
+void addRunOptions(CLI::App &command, RunOptions &options);
+/// When all options are read. Throws CLI::ValidationError for those that exclude each other.
+void completeRunOptions(const CLI::App &command, RunOptions &options);
+
+/// Runs the launches of the scene and writes the outputs. Gives the exit status.
+int runLaunches(const RunOptions &options);
+
+} // namespace rtsl::tool
