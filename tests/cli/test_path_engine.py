@@ -229,6 +229,37 @@ class ClosedForms(PathCase):
                 for one, other in zip(path, classic):
                     self.assertAlmostEqual(one, other, delta=2e-4 * other)
 
+    def test_a_normal_of_its_own_stays_in_other_materials(self):
+        """Materials made of one with a leaning normal look as it does, alone or as a part; half of it is half of the way."""
+        lights = [{"class": "PointLight", "position": [2, 3, 1], "intensity": 9}, {"class": "DistantLight", "direction": [-1, 1, 0.5]}]
+        clay = {"class": "Lambert", "reflectance": 0.5}
+
+        def means(material):
+            self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
+            scene = json.loads((self.folder / "scene.json").read_text())
+            scene["import"].append("std.textures")
+            self.write("scene.json", json.dumps(scene))
+            return [self.mean(), self.mean("--set", "render.engine=classic")]
+
+        flat = means(clay)
+        for leaning in ({"class": "NormalMap", "material": clay, "slopeU": {"class": "Solid", "value": 0.6}, "slopeV": {"class": "Solid", "value": -0.3}},
+                        {"class": "BumpMap", "material": clay, "height": {"class": "Noise", "scale": 0.7}, "scale": 0.3}):
+            alone = means(leaning)
+            if leaning["class"] == "NormalMap":  # all of it to one side
+                self.assertGreater(abs(alone[0][0] - flat[0][0]), 0.01 * flat[0][0])
+            half = [[0.5 * (a + b) for a, b in zip(*both)] for both in zip(alone, flat)]
+            wrapped = (({"class": "TwoSided", "front": leaning, "back": leaning}, alone),
+                       ({"class": "Cutout", "material": leaning}, alone),
+                       ({"class": "NormalMap", "material": leaning}, alone),
+                       ({"class": "MixMaterial", "amount": 0, "first": leaning, "second": clay}, alone),
+                       ({"class": "MixMaterial", "amount": 0.3, "first": leaning, "second": leaning}, alone),
+                       ({"class": "MixMaterial", "first": clay, "second": {"class": "Cutout", "material": leaning}}, half))
+            for material, expected in wrapped if leaning["class"] == "NormalMap" else wrapped[1:2]:
+                with self.subTest(material=material):
+                    for found, wanted in zip(means(material), expected):
+                        for one, other in zip(found, wanted):
+                            self.assertAlmostEqual(one, other, delta=2e-3 * other)
+
     def test_only_shade(self):
         """Its color counts, and its own rays are answered by `shade`."""
         self.scene([(BALL, {"class": "Shaded"})], depth=5, spp=1)
