@@ -267,7 +267,7 @@ private:
       return Value::reference(named(json.string, json.place())).at(json.place());
     case Kind::Object: {
       if (const auto buffer = description.bufferValues.find(&json);
-          type && buffer != description.bufferValues.end())
+          type && buffer != description.bufferValues.end() && !isImageClass(type->className))
         return bufferOf(buffer->second, *type, what, json.place());
       refuseUnlessReference(json, type, what);
       if (isImage(json))

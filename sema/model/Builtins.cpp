@@ -190,10 +190,9 @@ const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
 const std::vector<std::string> &builtinNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-#define RTSL_BUILTIN(id, name, ...)                                                                \
-  if (std::find(all.begin(), all.end(), name) == all.end())                                        \
-    all.emplace_back(name);
-#include "language/Builtins.def"
+    for (const Row &row : allRows())
+      if (std::find(all.begin(), all.end(), typed::name(row.builtin)) == all.end())
+        all.emplace_back(typed::name(row.builtin));
     return all;
   }();
   return names;

@@ -6,6 +6,8 @@ namespace rtsl::random {
 /// These need a ray, a place or a statement of their own.
 static bool standsAnywhere(typed::Builtin builtin) {
   using typed::Builtin;
+  if (typed::isAtomic(builtin))
+    return false;
   switch (builtin) {
   case Builtin::Rand:
   case Builtin::RandOpen:

@@ -32,7 +32,8 @@ std::size_t numbersOfRay(const std::string &file) {
   if (extension != ".npy" && extension != ".csv")
     throw Error(ErrorCode::BadBuffer, fmt::format("`{}` is neither .npy nor .csv", file));
   const std::vector<std::size_t> shape =
-      extension == ".npy" ? scene::NpyFile(file, scene::NpyFile::Part::Header).shape() : scene::readCsv(file, {}).shape;
+      extension == ".npy" ? scene::NpyFile(file, scene::NpyFile::Part::Header).shape()
+                          : scene::readCsv(file, {}).shape;
   if (shape.size() == 2 && (shape[1] == 6 || shape[1] == 8))
     return shape[1];
   throw Error(ErrorCode::BadBuffer,
