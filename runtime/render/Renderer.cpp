@@ -11,6 +11,7 @@
 #include <functional>
 #include <mutex>
 #include <type_traits>
+#include <utility>
 
 namespace rtsl::runtime {
 
@@ -44,6 +45,8 @@ struct Renderer::Implementation {
   // One rendering.
   Image *image = nullptr;
   Watch *watch = nullptr;
+  std::uint32_t samplesBefore = 0, samplesAfter = 0; // per pixel, of this pass
+  PixelSums *sums = nullptr; // of the passes before; null: there is one pass
   std::atomic<std::uint64_t> nextTile{0};
   std::uint64_t tilesAcross = 0, tileCount = 0;
   std::mutex mutex; // for what follows
@@ -109,9 +112,15 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
                 y1 = std::min(y0 + tileSize, launch.height);
   for (std::uint32_t y = y0; y < y1; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
-      double sum[RTSL_MAX_COLOR] = {};
-      std::uint32_t taken = 0, counted = 0;
-      for (; taken < options.samplesPerPixel && !watch->isStopped(); ++taken) {
+      double sum[RTSL_MAX_COLOR] = {}, squares = 0;
+      std::uint32_t taken = samplesBefore, counted = 0;
+      const std::size_t index = std::size_t(y) * launch.width + x;
+      if (sums) {
+        std::copy_n(&sums->colors[index * components], std::uint32_t(components), sum);
+        squares = sums->squares[index];
+        counted = sums->counted[index];
+      }
+      for (; taken < samplesAfter && !watch->isStopped(); ++taken) {
         float color[RTSL_MAX_COLOR];
         sample(&worker.launch, x, y, taken, color);
         bool finite = true;
@@ -124,9 +133,21 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
         ++counted;
         for (std::uint32_t c = 0; c < components; ++c)
           sum[c] += double(color[c]);
+        if (sums) {
+          double value = 0;
+          for (std::uint32_t c = 0; c < components; ++c)
+            value += double(color[c]);
+          value /= double(components);
+          squares += value * value;
+        }
       }
-      worker.samples += taken;
-      worker.pixels += taken == options.samplesPerPixel;
+      if (sums) {
+        std::copy_n(sum, std::uint32_t(components), &sums->colors[index * components]);
+        sums->squares[index] = squares;
+        sums->counted[index] = counted;
+      }
+      worker.samples += taken - samplesBefore;
+      worker.pixels += taken == samplesAfter;
       worker.pixelsWithoutSample += taken > 0 && counted == 0;
       float *pixel = image->at(x, y);
       for (std::uint32_t c = 0; c < components; ++c)
@@ -175,6 +196,8 @@ std::uint32_t Renderer::channels() const {
 
 void Renderer::begin() {
   self->nextTile = 0;
+  self->samplesBefore = 0;
+  self->samplesAfter = options.samplesPerPixel;
   self->totals = RenderStatistics();
   self->notFinite = SamplesNotFinite(options.mostNotFinite);
 }
@@ -191,6 +214,87 @@ RenderStatistics Renderer::finish() {
   self->totals.samplesNotFinite = self->notFinite.total();
   self->totals.notFinite = self->notFinite.take();
   return std::move(self->totals);
+}
+
+/// Passes are short, so that the limits are met and Ctrl-C need not wait, and long enough that
+/// starting threads costs nothing. None passes a number of samples at which the error is measured.
+static std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes,
+                                   std::uint32_t most) {
+  constexpr double longestSeconds = 0.5;
+  if (state.samplesPerPixel == 0)
+    return 1;
+  const double rate = state.samplesPerPixel / std::max(state.seconds, 1e-9); // per second
+  const double seconds = std::min(longestSeconds, std::max(0.0, passes.seconds - state.seconds));
+  const double samples =
+      std::clamp(std::floor(rate * seconds), 1.0, double(state.samplesPerPixel)); // at most double
+  std::uint32_t left = most - state.samplesPerPixel;
+  if (passes.error > 0)
+    left = std::min(left, nextMeasurement(state.samplesPerPixel) - state.samplesPerPixel);
+  return std::uint32_t(std::min(samples, double(left)));
+}
+
+Image Renderer::renderInPasses(const PassOptions &passes,
+                               const std::function<void(const PassState &)> &progress,
+                               PassState &state, RenderStatistics *statistics) {
+  using Clock = std::chrono::steady_clock;
+  const std::uint32_t components = self->launch.colorComponents;
+  PixelSums sums;
+  try {
+    sums.colors.resize(pixelCount() * components);
+    sums.squares.resize(pixelCount());
+    sums.counted.resize(pixelCount());
+  } catch (const std::bad_alloc &) {
+    throw Error(ErrorCode::OutOfMemory, "not enough memory for the sums of the pixels");
+  }
+  if (picture.pixels.empty())
+    makePicture(components);
+  RenderOptions withoutStop = options; // passes are finished
+  withoutStop.cancel = nullptr;
+  withoutStop.progress = nullptr;
+
+  begin();
+  self->sums = &sums;
+  state = PassState();
+  const Clock::time_point start = Clock::now();
+  Clock::time_point shown = start;
+  const auto secondsSince = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
+  try {
+    for (;;) {
+      self->samplesBefore = state.samplesPerPixel;
+      self->samplesAfter =
+          state.samplesPerPixel + samplesOfPass(state, passes, options.samplesPerPixel);
+      self->nextTile = 0;
+      self->totals.pixels = self->totals.pixelsWithoutSample = 0; // those of the last pass count
+      Watch watch(withoutStop);
+      run(watch);
+      if (passes.error > 0 && self->samplesAfter == nextMeasurement(state.samplesPerPixel))
+        state.error = relativeError(sums, components);
+      state.samplesPerPixel = self->samplesAfter;
+      state.seconds = secondsSince(start);
+      if (progress)
+        progress(state);
+      if (state.samplesPerPixel == options.samplesPerPixel || state.seconds >= passes.seconds ||
+          state.error <= passes.error || (options.cancel && *options.cancel))
+        break;
+      if (passes.picture && secondsSince(shown) >= passes.secondsBetweenPictures) {
+        passes.picture(picture);
+        shown = Clock::now();
+      }
+    }
+  } catch (...) {
+    self->sums = nullptr;
+    picture = Image();
+    throw;
+  }
+  self->sums = nullptr;
+  RenderStatistics said = finish();
+  said.renderSeconds = state.seconds;
+  said.buildSeconds = buildSeconds;
+  if (statistics)
+    *statistics = std::move(said);
+  return std::exchange(picture, Image());
 }
 
 Image render(const Scene &scene, const RenderOptions &options, RenderStatistics *statistics) {

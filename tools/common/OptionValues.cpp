@@ -43,6 +43,19 @@ std::string rangeText(std::uint64_t low, std::uint64_t high) {
   return fmt::format(" ({} to {})", low, high);
 }
 
+double parseDuration(const std::string &option, const std::string &text) {
+  char *end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  for (const auto &[name, seconds] : {std::make_pair("ms", 1e-3), std::make_pair("s", 1.0),
+                                      std::make_pair("m", 60.0), std::make_pair("h", 3600.0)})
+    if (end != text.c_str() && unit == name && std::isfinite(number) && number > 0)
+      return number * seconds;
+  throw CLI::ValidationError(
+      option,
+      fmt::format("`{}` is not a time; write a number and a unit: `30s`, `2m`, `500ms`", text));
+}
+
 CLI::Option *addNotNegative(CLI::App &command, const std::string &option, double &target,
                             const std::string &help) {
   const auto read = [&target, option](const std::string &text) {

@@ -13,11 +13,15 @@ public:
   ~Progress() { finish(); }
   /// `share` in [0, 1]; drawn at most ten times a second.
   void update(double share);
+  /// Of a rendering without a known end. `state` is shown.
+  void update(const std::string &state);
   /// Wipes the line.
   void finish();
 
 private:
   using Clock = std::chrono::steady_clock;
+  bool isTime();
+
   std::string what;
   bool enabled, drawn = false;
   Clock::time_point start, last;

@@ -8,6 +8,7 @@
 #include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
+#include "runtime/render/Renderer.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
@@ -26,6 +27,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -48,7 +50,10 @@ struct RenderCommandOptions {
   runtime::Traversal traversal = runtime::Traversal::Embree;
   bool json = false;
   bool quiet = false;
-  bool watches = false; // for changes of files
+  bool watches = false;          // for changes of files
+  std::optional<double> seconds; // --time
+  double noise = 0;              // --noise; 0: not given
+  bool isInPasses() const { return seconds || noise > 0; }
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
   TargetName target = TargetName::Host;
@@ -76,7 +81,8 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
     render.width = options.size->width;
     render.height = options.size->height;
   }
-  render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
+  render.samplesPerPixel = options.samples.value_or(
+      options.isInPasses() ? runtime::mostSamplesPerPixel : render.samplesPerPixel);
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
@@ -101,7 +107,8 @@ struct Summary {
   std::vector<SampleNotFinite> notFinite;
   std::vector<std::string> printed;
   Times times;
-  const runtime::GpuStatistics *gpu = nullptr; // null: no GPU took part
+  const runtime::GpuStatistics *gpu = nullptr;            // null: no GPU took part
+  double error = std::numeric_limits<double>::infinity(); // runtime::PassState::error
 };
 
 nlohmann::ordered_json toJson(const SampleNotFinite &one) {
@@ -155,7 +162,9 @@ std::string toJson(const RenderCommandOptions &options, const Summary &summary) 
                                      {"notFinite", nlohmann::ordered_json::array()}};
   for (const SampleNotFinite &one : summary.notFinite)
     document["notFinite"].push_back(toJson(one));
-  if (statistics.isUnfinished)
+  if (std::isfinite(summary.error))
+    document["noise"] = summary.error;
+  if (statistics.isUnfinished || (options.isInPasses() && interruption()))
     document["stoppedBy"] = interruption();
   if (options.prints)
     document["printed"] = summary.printed;
@@ -180,6 +189,8 @@ void printSummary(const RenderCommandOptions &options, const Summary &summary) {
       options.output == "-" ? "standard output" : options.output, render.width, render.height,
       render.samplesPerPixel, summary.times.compile * 1e3, statistics.renderSeconds,
       double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  if (std::isfinite(summary.error))
+    fmt::print(stderr, "noise: {:.4g}\n", summary.error);
   if (summary.gpu)
     fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
   for (const std::string &text : exceptionTexts(statistics, render))
@@ -231,6 +242,30 @@ runtime::Image renderOn(RenderTarget &target, const runtime::Scene &scene,
   const double seconds = secondsSince(start);
   runtime::Image image = backend->render(&statistics);
   statistics.buildSeconds = seconds;
+  return image;
+}
+
+/// The same in passes. The picture so far is written at intervals.
+runtime::Image renderInPasses(const RenderCommandOptions &options, const runtime::Scene &scene,
+                              Progress &progress, Summary &summary) {
+  runtime::PassOptions passes;
+  passes.seconds = options.seconds.value_or(passes.seconds);
+  passes.error = options.noise;
+  if (options.output != "-")
+    passes.picture = [&](const runtime::Image &image) {
+      runtime::writeImage(options.output, image, options.format);
+    };
+  const auto show = [&](const runtime::PassState &state) {
+    if (!options.quiet)
+      progress.update(fmt::format(
+          "{} spp, {:.0f} s{}", state.samplesPerPixel, state.seconds,
+          std::isfinite(state.error) ? fmt::format(", noise {:.4f}", state.error) : ""));
+  };
+  runtime::PassState state;
+  runtime::Renderer renderer(scene, summary.render);
+  runtime::Image image = renderer.renderInPasses(passes, show, state, &summary.statistics);
+  summary.render.samplesPerPixel = state.samplesPerPixel;
+  summary.error = state.error;
   return image;
 }
 
@@ -295,7 +330,9 @@ bool renderScene(const RenderCommandOptions &options, Messages &messages,
   Progress progress("rendering");
   if (!options.quiet)
     render.progress = [&](double share) { progress.update(share); };
-  const runtime::Image image = renderOn(*target, *scene, render, summary.statistics);
+  const runtime::Image image = options.isInPasses()
+                                   ? renderInPasses(options, *scene, progress, summary)
+                                   : renderOn(*target, *scene, render, summary.statistics);
   summary.gpu = target->gpu();
   progress.finish();
   if (options.watches && summary.statistics.isUnfinished) {
@@ -399,6 +436,16 @@ void rejectWithWatch(const RenderCommandOptions &options) {
                                "a JSON document describes one picture, not several; leave it out");
 }
 
+/// Rejects what cannot be done with passes, which end by --time or --noise (`option`).
+void rejectInPasses(const RenderCommandOptions &options, const char *option) {
+  if (options.target != TargetName::Host)
+    throw CLI::ValidationError(option, "only `--target=host` renders in passes; leave out "
+                                       "`--target`, or give a number of samples to `--spp`");
+  if (options.watches)
+    throw CLI::ValidationError(option, "`--watch` renders each picture with the same number of "
+                                       "samples; give one to `--spp` instead");
+}
+
 /// Rejects options that a GPU cannot support.
 void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
   if (options.prints)
@@ -427,6 +474,15 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addPictureOption(*command, options->output, options->format);
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
            "samples per pixel");
+  command
+      ->add_option_function<std::string>(
+          "--time",
+          [options](const std::string &text) { options->seconds = parseDuration("--time", text); },
+          "render samples until this time is over (30s, 2m, 500ms); at most --spp")
+      ->type_name("TIME");
+  addNotNegative(*command, "--noise", options->noise,
+                 "render samples until the estimated relative error of the picture is below; at "
+                 "most --spp");
   addSizeOption(*command, options->size);
   addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
            "threads; default: all cores");
@@ -467,6 +523,10 @@ void addRenderCommand(CLI::App &app, Action &action) {
       throw CLI::ValidationError("--class", fmt::format("`{}` is a scene, which names its classes; "
                                                         "give a file of shaders (.rtsl)",
                                                         options->scene));
+    if (command->count("--noise") && (options->noise == 0 || std::isinf(options->noise)))
+      throw CLI::ValidationError("--noise", "no picture is without error; give a number like 0.01");
+    if (options->isInPasses())
+      rejectInPasses(*options, options->seconds ? "--time" : "--noise");
     if (options->watches) {
       rejectWithWatch(*options);
       if (!command->count("-O"))
