@@ -69,34 +69,34 @@ void describeEvents(const typed::Module &module, const LinkRequest &request,
                       {}});
 }
 
-/// A hash that distinguishes programs: of the structure of the GPU's program, or, in double, of the
-/// program for this host.
-llvm::stable_hash fingerprint(Compilation &compilation) {
-  if (compilation.options.floatingPoint == FloatingPoint::Double) {
-    reachLlvm(compilation);
-  } else {
-    reachMachine(compilation);
-    compilation.llvm.emplace(
-        megakernel(*compilation.ir, compilation.options, *compilation.program, /*forGpu=*/true));
-    optimize(*compilation.llvm);
-  }
+/// A hash of the structure of a program in LLVM IR.
+llvm::stable_hash fingerprint(const Compilation &compilation) {
   return llvm::StructuralHash(*compilation.llvm->module, /*DetailedHash=*/true);
 }
 
-/// Whether index checks change the program of a scene with these objects.
+/// Whether index checks change the program of a scene with these objects: the GPU's program, or, in
+/// double, the program for this host.
 bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
                     const SourceManager &sources, const runtime::SceneFacts &facts) {
   if (!options.checkIndices)
     return false;
-  const auto compiled = [&](bool checks) {
-    CompileOptions checking = options;
-    checking.checkIndices = checks;
-    Diagnostics unheard(sources);
-    Compilation compilation(input, checking, unheard);
-    compilation.facts = &facts;
-    return fingerprint(compilation);
-  };
-  return compiled(true) != compiled(false);
+  CompileOptions withoutChecks = options;
+  withoutChecks.checkIndices = false;
+  Diagnostics unheard(sources);
+  Compilation checked(input, options, unheard), unchecked(input, withoutChecks, unheard);
+  for (Compilation *compilation : {&checked, &unchecked}) {
+    compilation->facts = &facts;
+    reachMachine(*compilation);
+    compilation->llvm.emplace(megakernel(*compilation->ir, compilation->options,
+                                         *compilation->program,
+                                         options.floatingPoint != FloatingPoint::Double));
+  }
+  // Optimisation takes most of the time, and most scenes have no index that needs a check.
+  if (fingerprint(checked) == fingerprint(unchecked))
+    return false;
+  optimize(*checked.llvm);
+  optimize(*unchecked.llvm);
+  return fingerprint(checked) != fingerprint(unchecked);
 }
 
 /// The size of a scene's bound program on a GPU. Nothing if it cannot be linked.
