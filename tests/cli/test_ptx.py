@@ -20,12 +20,16 @@ class Ptx(Case):
 
     @unittest.skipUnless(PTXAS, "ptxas is not installed")
     def test_the_assembler_accepts_it(self):
-        self.assertTrue(SCENES)
-        for arch in ("sm_75", "sm_80", "sm_90"):
-            for scene in SCENES:
+        """All programs for the oldest GPU, which has the fewest instructions, and some of each kind for each later one."""
+        self.assertGreaterEqual(len(SCENES), 4)
+        for number, scene in enumerate(SCENES):
+            shaders = sorted(scene.parent.glob("*.rtsl"))
+            later = ("sm_80", "sm_90")[number % 2]
+            for arch, is_whole, is_part in (("sm_75", True, True), (later, number % 4 < 2, number % 4 >= 2)):
                 with self.subTest(arch=arch, scene=scene.parent.name):
-                    self.assemble(arch, scene)
-                    if shaders := sorted(scene.parent.glob("*.rtsl")):
+                    if is_whole:
+                        self.assemble(arch, scene)
+                    if is_part and shaders:
                         self.assemble(arch, *shaders, relocatable=True)
 
     def assemble(self, arch, *inputs, relocatable=False):
