@@ -30,6 +30,43 @@ struct Worker {
   SamplesNotFinite notFinite;
 };
 
+/// The sums of one pixel's finite samples.
+struct PixelSum {
+  double colors[RTSL_MAX_COLOR] = {};
+  double squares = 0; // of the means of the components
+  std::uint32_t counted = 0;
+
+  template <typename Count>
+  void add(const float *color, Count components) {
+    for (std::uint32_t c = 0; c < components; ++c)
+      colors[c] += double(color[c]);
+    ++counted;
+  }
+
+  template <typename Count>
+  void addSquare(const float *color, Count components) {
+    double value = 0;
+    for (std::uint32_t c = 0; c < components; ++c)
+      value += double(color[c]);
+    value /= double(components);
+    squares += value * value;
+  }
+
+  template <typename Count>
+  void load(const PixelSums &from, std::size_t pixel, Count components) {
+    std::copy_n(&from.colors[pixel * components], std::uint32_t(components), colors);
+    squares = from.squares[pixel];
+    counted = from.counted[pixel];
+  }
+
+  template <typename Count>
+  void store(PixelSums &to, std::size_t pixel, Count components) const {
+    std::copy_n(colors, std::uint32_t(components), &to.colors[pixel * components]);
+    to.squares[pixel] = squares;
+    to.counted[pixel] = counted;
+  }
+};
+
 std::uint64_t stackBytes(const Program &program, const RtslLaunch &launch) {
   return program.stackBytes ? program.stackBytes(launch.maxDepth, launch.referenceChain) : 0;
 }
@@ -100,6 +137,14 @@ void Renderer::onThread(const std::function<void()> &work) const {
   threads.run([&](unsigned) { work(); });
 }
 
+template <typename Count>
+bool isFinite(const float *color, Count components) {
+  bool finite = true;
+  for (std::uint32_t c = 0; c < components; ++c)
+    finite &= std::isfinite(color[c]);
+  return finite;
+}
+
 /// Sums of a pixel are taken in the order of its samples, whoever takes them. A sample that is not
 /// finite is left out of the mean, for it would take the whole pixel with it. A number of
 /// components that is a constant makes no loops of them.
@@ -112,46 +157,32 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
                 y1 = std::min(y0 + tileSize, launch.height);
   for (std::uint32_t y = y0; y < y1; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
-      double sum[RTSL_MAX_COLOR] = {}, squares = 0;
-      std::uint32_t taken = samplesBefore, counted = 0;
       const std::size_t index = std::size_t(y) * launch.width + x;
-      if (sums) {
-        std::copy_n(&sums->colors[index * components], std::uint32_t(components), sum);
-        squares = sums->squares[index];
-        counted = sums->counted[index];
-      }
+      PixelSum sum;
+      if (sums)
+        sum.load(*sums, index, components);
+      std::uint32_t taken = samplesBefore;
       for (; taken < samplesAfter && !watch->isStopped(); ++taken) {
         float color[RTSL_MAX_COLOR];
         sample(&worker.launch, x, y, taken, color);
-        bool finite = true;
-        for (std::uint32_t c = 0; c < components; ++c)
-          finite &= std::isfinite(color[c]);
-        if (!finite) {
+        if (!isFinite(color, components)) {
           worker.notFinite.add({x, y, taken});
           continue;
         }
-        ++counted;
-        for (std::uint32_t c = 0; c < components; ++c)
-          sum[c] += double(color[c]);
-        if (sums) {
-          double value = 0;
-          for (std::uint32_t c = 0; c < components; ++c)
-            value += double(color[c]);
-          value /= double(components);
-          squares += value * value;
-        }
+        sum.add(color, components);
+        if (sums)
+          sum.addSquare(color, components);
       }
-      if (sums) {
-        std::copy_n(sum, std::uint32_t(components), &sums->colors[index * components]);
-        sums->squares[index] = squares;
-        sums->counted[index] = counted;
-      }
+      if (sums)
+        sum.store(*sums, index, components);
       worker.samples += taken - samplesBefore;
       worker.pixels += taken == samplesAfter;
-      worker.pixelsWithoutSample += taken > 0 && counted == 0;
+      worker.pixelsWithoutSample += taken > 0 && sum.counted == 0;
       float *pixel = image->at(x, y);
       for (std::uint32_t c = 0; c < components; ++c)
-        pixel[c] = counted ? float(sum[c] / double(counted)) : taken ? options.withoutSample : 0.0f;
+        pixel[c] = sum.counted ? float(sum.colors[c] / double(sum.counted))
+                   : taken     ? options.withoutSample
+                               : 0.0f;
     }
 }
 
