@@ -64,6 +64,12 @@ function(rtsl_library name)
   rtsl_warnings(${name})
 endfunction()
 
+# rtsl_precompiled_options(target): for targets that read a command line by CLI11, whose headers take longer than our
+# files. They are precompiled by rtslCommandLine. Every file still includes what it uses.
+function(rtsl_precompiled_options target)
+  target_precompile_headers(${target} REUSE_FROM rtslCommandLine)
+endfunction()
+
 # For targets that read MLIR's headers: they are precompiled once, by rtslIr. Of g++'s result ccache reads a checksum
 # (codegen/ir/CMakeLists.txt): hashing its 484 MB for each file would take as long as compiling the file.
 function(rtsl_precompiled_ir target)

@@ -1,6 +1,16 @@
 # rtsl_unit_test(NAME SOURCES... LINK libraries...): the GoogleTest program test-NAME. Its tests are called NAME.Suite.Test.
 include(GoogleTest)
 
+# rtsl_precompiled_tests(NAME [OTHER]): for tests that do not read MLIR's headers. GoogleTest's are precompiled for
+# test-NAME, or those of test-OTHER are used, which is compiled with the same options.
+function(rtsl_precompiled_tests name)
+  if(ARGC EQUAL 1)
+    target_precompile_headers(test-${name} PRIVATE <gtest/gtest.h> <fmt/format.h>)
+  else()
+    target_precompile_headers(test-${name} REUSE_FROM test-${ARGV1})
+  endif()
+endfunction()
+
 function(rtsl_unit_test name)
   cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
   add_executable(test-${name} ${ARG_UNPARSED_ARGUMENTS})

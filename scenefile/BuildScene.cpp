@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 namespace rtsl::scene {
@@ -29,9 +30,9 @@ public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
                NamedBuffers &buffers)
       : description(description), program(*program), buffers(buffers), scene(std::move(program)),
-        files(description), images(description, [this](const std::string &className) {
-          return readsLevels(className);
-        }) {}
+        scope(description.scopes.front().get()), files(description),
+        images(description,
+               [this](const std::string &className) { return readsLevels(className); }) {}
 
   Scene build() {
     attempt([&] {
@@ -40,12 +41,16 @@ public:
       if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
         scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration", true));
     });
-    // Named objects are created in the order of their names, after those that they refer to.
-    for (const auto *section : sections)
-      for (const auto &object : *section)
-        attempt([&, &object = object] { named(object.first, object.second.className.place); });
+    // Named objects are created in the order of their names, after those that they refer to. With
+    // variables, what is used below a node is another object than what is used elsewhere.
+    if (!hasVariables())
+      addNamed();
+    addSelectors();
     for (std::size_t i = 0; i < description.objects.size(); ++i)
       attempt([&] { addGeometry(description.objects[i], i); });
+    scope = description.scopes.front().get();
+    if (hasVariables())
+      addNamed();
     for (std::size_t i = 0; i < description.lights.size(); ++i)
       attempt([&] {
         const ObjectDescription &light = description.lights[i];
@@ -71,10 +76,106 @@ public:
     errors.throwIfAny();
     for (const Warning &warning : description.warnings)
       scene.addWarning(warning);
+    warnOfUntakenVariables();
     return std::move(scene);
   }
 
 private:
+  void addNamed() {
+    for (const auto *section : sections)
+      for (const auto &object : *section)
+        attempt([&, &object = object] {
+          if (!isMade(object.first))
+            named(object.first, object.second.className.place);
+        });
+  }
+
+  //===--------------------------------------------------------------------===//
+  // Variables
+  //===--------------------------------------------------------------------===//
+
+  /// The variables that an object and those that it refers to take, in a fixed order.
+  using Taken = std::vector<const JsonValue *>;
+
+  bool hasVariables() const {
+    return std::any_of(description.scopes.begin(), description.scopes.end(),
+                       [](const auto &one) { return !one->variables.empty(); });
+  }
+
+  /// The definition that a member takes; null: none. An object in a variable does not take that
+  /// variable.
+  const std::pair<Place, const JsonValue *> *variableFor(const MemberInfo &member,
+                                                         const ObjectDescription &object) const {
+    if (!member.isPublic || object.constructor || isGiven(object, member.name))
+      return nullptr;
+    const auto *variable = scope->find(member.name);
+    return variable && std::find(beingTaken.begin(), beingTaken.end(), variable->second) ==
+                           beingTaken.end()
+               ? variable
+               : nullptr;
+  }
+
+  /// Looks at what a variable refers to.
+  template <typename Step>
+  auto insideOf(const JsonValue *variable, Step step) const {
+    struct Inside {
+      std::vector<const JsonValue *> &variables;
+      ~Inside() { variables.pop_back(); }
+    };
+    beingTaken.push_back(variable);
+    const Inside inside{beingTaken};
+    return step();
+  }
+
+  Taken takenBy(const ObjectDescription &object) const {
+    Taken taken;
+    std::set<const ObjectDescription *> open;
+    addTaken(object, taken, open);
+    return taken;
+  }
+  void addTaken(const ObjectDescription &object, Taken &taken,
+                std::set<const ObjectDescription *> &open) const {
+    const ClassInfo *classInfo = program.find(object.className.text);
+    if (!classInfo || !open.insert(&object).second)
+      return;
+    for (const MemberInfo &member : classInfo->members)
+      if (const auto *variable = variableFor(member, object)) {
+        taken.push_back(variable->second);
+        insideOf(variable->second, [&] { addTaken(*variable->second, taken, open); });
+      }
+    if (object.constructor)
+      forEachValue(*object.constructor,
+                   [&](const JsonValue &value) { addTaken(value, taken, open); });
+    for (const auto &member : object.members)
+      addTaken(*member.second, taken, open);
+    open.erase(&object);
+  }
+  void addTaken(const JsonValue &value, Taken &taken,
+                std::set<const ObjectDescription *> &open) const {
+    if (value.kind == Kind::String) {
+      if (const ObjectDescription *object = findNamed(value.string))
+        addTaken(*object, taken, open);
+    } else if (const JsonValue *className = value.find("class");
+               className && className->kind == Kind::String) {
+      addTaken(inPlace(value, "an object"), taken, open);
+    } else if (value.kind == Kind::Array) {
+      for (const JsonValue &element : value.elements)
+        addTaken(element, taken, open);
+    }
+  }
+
+  void warnOfUntakenVariables() {
+    std::set<const JsonValue *> seen;
+    for (const auto &one : description.scopes)
+      for (const auto &[name, variable] : one->variables)
+        if (!takenVariables.count(variable.second) && seen.insert(variable.second).second)
+          scene.addWarning(
+              {fmt::format("no object takes the variable `{}`: each sets the member itself, or no "
+                           "class has a public member of this name",
+                           name),
+               variable.first});
+  }
+
   /// Thrown when a reference is to an object that was rejected, which has been reported.
   struct Refused {};
 
@@ -115,6 +216,24 @@ private:
       values.constructor = std::move(arguments);
     }
     ErrorCollector ofMembers;
+    if (classInfo)
+      for (const MemberInfo &member : classInfo->members)
+        if (const auto *variable = variableFor(member, object))
+          ofMembers.attempt([&] {
+            takenVariables.insert(variable->second);
+            const std::string what =
+                fmt::format("the variable `{}`, which member `{}` of `{}` takes,", member.name,
+                            member.name, name);
+            const bool mayBeEmpty =
+                member.hasDefault && member.type.kind == ValueType::Kind::Reference;
+            values.members.push_back({member.name,
+                                      insideOf(variable->second,
+                                               [&] {
+                                                 return convert(*variable->second, &member.type,
+                                                                what, mayBeEmpty);
+                                               }),
+                                      variable->first});
+          });
     for (const auto &[key, value] : object.members)
       ofMembers.attempt([&, &key = key, &value = value] {
         const MemberInfo *member = classInfo ? find(classInfo->members, key.text) : nullptr;
@@ -128,7 +247,7 @@ private:
       });
     if (isLaunched && classInfo)
       for (const MemberInfo &member : classInfo->members)
-        if (member.type.isOutput && !isGiven(object, member.name))
+        if (member.type.isOutput && !isGiven(object, member.name) && !variableFor(member, object))
           ofMembers.attempt([&] {
             values.members.push_back({member.name, outputOf(member, name), object.place});
           });
@@ -333,19 +452,23 @@ private:
     return object;
   }
 
-  /// The helper, texture or material of this name, created on first use.
-  RtslRef named(const std::string &name, const Place &place) {
-    auto found = made.find(name);
-    if (found != made.end()) {
-      if (found->second == 0)
-        throw Error(ErrorCode::ReferenceCycle,
-                    fmt::format("`{}` refers to itself indirectly", name), place);
-      return found->second;
-    }
-    const ObjectDescription *object = nullptr;
+  const ObjectDescription *findNamed(const std::string &name) const {
     for (const auto *section : sections)
       if (auto known = section->find(name); known != section->end())
-        object = &known->second;
+        return &known->second;
+    return nullptr;
+  }
+
+  /// Is there an object of this name, with whatever variables?
+  bool isMade(const std::string &name) const {
+    const auto found = made.lower_bound({name, {}});
+    return found != made.end() && found->first.first == name;
+  }
+
+  /// The helper, texture or material of this name, created on first use, once for all uses for which
+  /// it takes the same variables.
+  RtslRef named(const std::string &name, const Place &place) {
+    const ObjectDescription *object = findNamed(name);
     if (!object) {
       Error error(ErrorCode::UnknownName,
                   fmt::format("no {}{}texture or material is named `{}`",
@@ -356,13 +479,20 @@ private:
         error.fix(near);
       throw error;
     }
+    const std::pair key(name, takenBy(*object));
+    if (const auto found = made.find(key); found != made.end()) {
+      if (found->second == 0)
+        throw Error(ErrorCode::ReferenceCycle,
+                    fmt::format("`{}` refers to itself indirectly", name), place);
+      return found->second;
+    }
     if (refused.count(name))
       throw Refused();
-    made[name] = 0; // being created
+    made[key] = 0; // being created
     try {
-      return made[name] = add(*object, name);
+      return made[key] = add(*object, name);
     } catch (...) {
-      made.erase(name);
+      made.erase(key);
       refused.insert(name);
       throw;
     }
@@ -376,44 +506,132 @@ private:
     return names;
   }
 
-  /// Adds all instances of a geometry. Instances of a primitive share its object.
-  void addGeometry(const GeometryDescription &geometry, std::size_t index) {
-    RtslRef material =
-        geometry.material.object
-            ? add(*geometry.material.object, geometry.material.object->className.text)
-            : named(geometry.material.name.text, geometry.material.name.place);
-    requireMaterial(material, geometry);
-    if (geometry.primitive) {
-      std::string name =
-          geometry.name.text.empty()
-              ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
-              : geometry.name.text;
-      const RtslRef primitive = add(*geometry.primitive, name);
-      for (const runtime::Placement &placement : geometry.placements)
-        scene.addPrimitive(primitive, material, placement);
-      return;
+  //===--------------------------------------------------------------------===//
+  // The graph
+  //===--------------------------------------------------------------------===//
+
+  /// An object written in place takes variables as a named one does: it is one object for all
+  /// instances for which it takes the same.
+  RtslRef addOnce(const ObjectDescription &object, const std::string &name) {
+    const std::pair key(&object, takenBy(object));
+    if (const auto known = inPlaces.find(key); known != inPlaces.end())
+      return known->second;
+    return inPlaces[key] = add(object, name);
+  }
+
+  RtslRef referred(const ReferenceDescription &reference) {
+    return reference.object ? addOnce(*reference.object, reference.object->className.text)
+                            : named(reference.name.text, reference.name.place);
+  }
+
+  void addSelectors() {
+    for (const SelectorDescription &selector : description.selectors) {
+      selections.push_back(0);
+      scope = selector.scope;
+      attempt([&] { selections.back() = addSelector(selector); });
     }
-    const std::uint32_t number = mesh(geometry);
-    for (const runtime::Placement &placement : geometry.placements)
+  }
+
+  std::uint32_t addSelector(const SelectorDescription &selector) {
+    const RtslRef object = referred(selector.object);
+    const LocatedName &name =
+        selector.object.object ? selector.object.object->className : selector.object.name;
+    requireRoot(object, "rt_Selector", "a selector", name);
+    return scene.addSelector(object, selector.children, selector.toWorld,
+                             selectionOf(selector.above, selector.childOfAbove));
+  }
+
+  /// The selection of a child of a selector, given as 1 + its index; 0: none.
+  std::uint32_t selectionOf(std::size_t selector, std::uint32_t child) const {
+    if (selector == 0)
+      return 0;
+    if (selections.at(selector - 1) == 0)
+      throw Refused();
+    return selections[selector - 1] + child;
+  }
+
+  /// The number of primitives that the object holds.
+  std::uint32_t countOf(const GeometryDescription &geometry, RtslRef primitive) const {
+    if (!geometry.count)
+      return 1;
+    if (geometry.count->kind == Kind::Number)
+      return std::uint32_t(geometry.count->number);
+    const ClassInfo &classInfo = scene.classOf(primitive);
+    const MemberInfo *member = find(classInfo.members, geometry.count->string);
+    if (member && member->type.bufferRank == 1) {
+      RtslBuffer buffer;
+      std::memcpy(&buffer, scene.record(primitive) + member->offset, sizeof buffer);
+      if (buffer.size[0] != 0)
+        return buffer.size[0];
+      throw Error(
+          ErrorCode::OutOfRange,
+          fmt::format("the buffer `{}` is empty: there would be no primitives", member->name),
+          geometry.count->place());
+    }
+    Error error(ErrorCode::UnknownName,
+                fmt::format("`count` is a number or the name of a buffer, and `{}` has no member "
+                            "`{}` that is one",
+                            classInfo.name, geometry.count->string),
+                geometry.count->place());
+    std::vector<std::string> names;
+    for (const MemberInfo &one : classInfo.members)
+      if (one.type.bufferRank == 1)
+        names.push_back(one.name);
+    if (const std::string near = closestName(geometry.count->string, names); !near.empty())
+      error.fix(near);
+    throw error;
+  }
+
+  /// Adds all instances of a geometry. Instances of a primitive share its object, unless they take
+  /// different variables.
+  void addGeometry(const GeometryDescription &geometry, std::size_t index) {
+    const std::string name =
+        !geometry.name.text.empty() ? geometry.name.text
+        : geometry.primitive
+            ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
+            : std::string();
+    RtslRef material = 0, primitive = 0;
+    std::uint32_t number = 0; // of the mesh, or of primitives
+    bool isFirst = true;
+    for (const InstanceDescription &instance : geometry.placements) {
+      if (isFirst || instance.scope != scope) {
+        scope = instance.scope;
+        material = referred(geometry.material);
+        requireRoot(material, "rt_Material", "a material",
+                    geometry.material.object ? geometry.material.object->className
+                                             : geometry.material.name);
+        if (geometry.primitive) {
+          primitive = addOnce(*geometry.primitive, name);
+          number = countOf(geometry, primitive);
+        }
+      }
+      if (isFirst && !geometry.primitive)
+        number = mesh(geometry);
+      isFirst = false;
+      runtime::Placement placement = instance;
+      placement.selection = selectionOf(instance.selector, instance.childOfSelector);
       try {
-        scene.addMeshInstance(number, material, placement);
+        if (primitive)
+          scene.addPrimitive(primitive, material, placement, number);
+        else
+          scene.addMeshInstance(number, material, placement);
       } catch (Error &error) {
         if (!error.place)
           error.place = geometry.place;
         throw;
       }
+    }
   }
 
-  /// The error is at the reference to the material.
-  void requireMaterial(RtslRef material, const GeometryDescription &geometry) const {
-    const ClassInfo &classInfo = scene.classOf(material);
-    if (classInfo.root == "rt_Material")
+  /// The error is at `name`, which refers to the object.
+  void requireRoot(RtslRef object, const char *root, const char *what,
+                   const LocatedName &name) const {
+    const ClassInfo &classInfo = scene.classOf(object);
+    if (classInfo.root == root)
       return;
-    const LocatedName &name =
-        geometry.material.object ? geometry.material.object->className : geometry.material.name;
     throw Error(ErrorCode::WrongClass,
-                fmt::format("`{}` is a `{}`, a `{}`, where a material is needed", name.text,
-                            classInfo.name, classInfo.root),
+                fmt::format("`{}` is a `{}`, a `{}`, where {} is needed", name.text, classInfo.name,
+                            classInfo.root, what),
                 name.place);
   }
 
@@ -455,7 +673,12 @@ private:
   const Program &program;
   NamedBuffers &buffers;
   Scene scene;
-  std::map<std::string, RtslRef> made; // 0: being created
+  const VariableScope *scope; // of what is being added
+  std::set<const JsonValue *> takenVariables;
+  mutable std::vector<const JsonValue *> beingTaken;     // from the outermost one on
+  std::map<std::pair<std::string, Taken>, RtslRef> made; // 0: being created
+  std::map<std::pair<const ObjectDescription *, Taken>, RtslRef> inPlaces;
+  std::vector<std::uint32_t> selections; // of child 0, by selector
   std::set<std::string> refused;
   ErrorCollector errors;
   MeshFiles files;

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -42,15 +43,18 @@ struct Node {
   Place transformPlace; // if it has one
   std::vector<Edge> children;
   std::optional<GeometryDescription> geometry;
+  std::optional<ReferenceDescription> selector; // among the children
+  std::optional<std::int32_t> id;
+  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
   std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
   bool isReported = false;     // its transform
 };
 
 class GraphReader {
 public:
-  GraphReader(const JsonValue &root, const ReadGeometry &readGeometry, SceneDescription &scene,
+  GraphReader(const JsonValue &root, const NodeReaders &readers, SceneDescription &scene,
               ErrorCollector &errors)
-      : root(root), readGeometry(readGeometry), scene(scene), errors(errors) {}
+      : root(root), readers(readers), scene(scene), errors(errors) {}
 
   void read() {
     const JsonValue *named = root.find("nodes");
@@ -92,10 +96,17 @@ private:
     // All names first: nodes may mention each other in any order.
     for (const auto &[key, member] : value.members) {
       numbers.emplace(key.text, nodes.size());
-      nodes.push_back({key.text, value.place(key), {}, {}, {}, std::nullopt, 0});
+      nodes.push_back(newNode(key.text, value.place(key)));
     }
     for (std::size_t i = 0; i < value.members.size(); ++i)
       attempt([&] { readNode(value.members[i].second, i, "a node"); });
+  }
+
+  static Node newNode(std::string name, const Place &place) {
+    Node node;
+    node.name = std::move(name);
+    node.place = place;
+    return node;
   }
 
   /// Reads the node `value`, which is number `number`.
@@ -110,13 +121,23 @@ private:
                               what),
                   value.place());
     if (isGeometry) {
-      GeometryDescription geometry = readGeometry(value);
+      GeometryDescription geometry = readers.geometry(value);
       if (geometry.name.text.empty())
         geometry.name = {nodes[number].name, nodes[number].place};
       nodes[number].geometry = std::move(geometry);
     } else {
-      checkKeys(value, {"child", "children", "transform"}, what);
+      checkKeys(value, {"child", "children", "selector", "transform", "id", "variables"}, what);
+      if (const JsonValue *id = value.find("id"))
+        nodes[number].id = readId(*id);
     }
+    if (const JsonValue *selector = value.find("selector")) {
+      if (!children)
+        throw Error(ErrorCode::UnknownKey, "a `selector` chooses among `children`: it needs a list",
+                    selector->place());
+      nodes[number].selector = readers.reference(*selector, "`selector`");
+    }
+    if (const JsonValue *variables = value.find("variables"))
+      nodes[number].variables = readVariables(*variables);
     if (const JsonValue *transform = value.find("transform")) {
       nodes[number].transform = readTransform(*transform);
       nodes[number].transformPlace = transform->place();
@@ -139,7 +160,7 @@ private:
   Edge readEdge(const JsonValue &value) {
     if (value.kind == Kind::Object) {
       const std::size_t number = nodes.size();
-      nodes.push_back({std::string(), value.place(), {}, {}, {}, std::nullopt, 0});
+      nodes.push_back(newNode({}, value.place()));
       readNode(value, number, "a node");
       return {number, value.place()};
     }
@@ -257,19 +278,21 @@ private:
     }
   }
 
+  struct Step {
+    std::size_t node, next;
+    InstanceDescription way; // to the node
+  };
+
   /// Adds an instance to the geometry at the end of each way down from a root.
   void placeInstances(std::size_t number) {
-    struct Step {
-      std::size_t node, next;
-      Transform toWorld;
-    };
     std::vector<Step> path;
-    const auto enter = [&](std::size_t node, const Transform &above) {
-      path.push_back({node, 0, nodes[node].transform.then(above)});
+    const auto enter = [&](std::size_t node, InstanceDescription way) {
+      addToWay(nodes[node], way);
+      path.push_back({node, 0, way});
       if (!nodes[node].geometry)
         return;
-      if (runtime::invertLinear(path.back().toWorld).condition <= runtime::largestCondition) {
-        place(*nodes[node].geometry, path.back().toWorld, number);
+      if (runtime::invertLinear(way.transform).condition <= runtime::largestCondition) {
+        place(*nodes[node].geometry, way);
         return;
       }
       std::size_t worst = node;
@@ -278,13 +301,43 @@ private:
           worst = above.node;
       reportFlat(nodes[node], nodes[worst]);
     };
-    enter(roots[number].node, {});
+    InstanceDescription start;
+    start.roots = 1u << number;
+    start.scope = scene.scopes.front().get();
+    enter(roots[number].node, start);
     while (!path.empty()) {
       Step &step = path.back();
-      if (step.next == nodes[step.node].children.size())
+      if (step.next == nodes[step.node].children.size()) {
         path.pop_back();
-      else
-        enter(nodes[step.node].children[step.next++].node, Transform(step.toWorld));
+        continue;
+      }
+      InstanceDescription way = step.way;
+      if (nodes[step.node].selector)
+        way.childOfSelector = std::uint32_t(step.next);
+      enter(nodes[step.node].children[step.next++].node, way);
+    }
+  }
+
+  /// What the node says of all that is below it.
+  void addToWay(const Node &node, InstanceDescription &way) {
+    way.transform = node.transform.then(way.transform);
+    if (node.id)
+      way.id = *node.id;
+    if (!node.variables.empty()) {
+      scene.scopes.push_back(
+          std::make_shared<VariableScope>(VariableScope{way.scope, node.variables}));
+      way.scope = scene.scopes.back().get();
+    }
+    if (node.selector) {
+      SelectorDescription selector;
+      selector.object = *node.selector;
+      selector.children = std::uint32_t(node.children.size());
+      selector.toWorld = way.transform;
+      selector.above = way.selector;
+      selector.childOfAbove = way.childOfSelector;
+      selector.scope = way.scope;
+      scene.selectors.push_back(std::move(selector));
+      way.selector = scene.selectors.size();
     }
   }
 
@@ -306,19 +359,28 @@ private:
               worst.transformPlace));
   }
 
-  /// What two roots lead to in the same place is one instance.
-  void place(GeometryDescription &geometry, const Transform &transform, std::size_t number) {
-    if (number > 0) {
+  /// What two roots lead to in the same place is one instance, unless it differs in something else.
+  void place(GeometryDescription &geometry, InstanceDescription way) {
+    way.mask = geometry.mask;
+    if (geometry.id)
+      way.id = *geometry.id;
+    if (way.roots != 1) {
       auto &known = placed[&geometry];
       if (known.size() != geometry.placements.size())
         for (std::size_t i = known.size(); i < geometry.placements.size(); ++i)
-          known.emplace(geometry.placements[i].transform.columns, i);
-      if (const auto same = known.find(transform.columns); same != known.end()) {
-        geometry.placements[same->second].roots |= 1u << number;
+          known.emplace(keyOf(geometry.placements[i]), i);
+      if (const auto same = known.find(keyOf(way)); same != known.end() && way.selector == 0) {
+        geometry.placements[same->second].roots |= way.roots;
         return;
       }
     }
-    geometry.placements.push_back({transform, geometry.mask, 1u << number});
+    geometry.placements.push_back(way);
+  }
+
+  using Key = std::tuple<std::array<std::array<double, 3>, 4>, std::int32_t, std::size_t,
+                         const VariableScope *>;
+  static Key keyOf(const InstanceDescription &instance) {
+    return {instance.transform.columns, instance.id, instance.selector, instance.scope};
   }
 
   void warnOfUnused(const JsonValue *named) {
@@ -340,24 +402,32 @@ private:
   }
 
   const JsonValue &root;
-  const ReadGeometry &readGeometry;
+  const NodeReaders &readers;
   SceneDescription &scene;
   ErrorCollector &errors;
   std::vector<Node> nodes;
   std::unordered_map<std::string, std::size_t> numbers; // of named nodes
   std::vector<Edge> roots;
   std::vector<std::size_t> order; // of nodes, children first
-  std::map<const GeometryDescription *, std::map<std::array<std::array<double, 3>, 4>, std::size_t>>
-      placed; // indices of placements by transform, of geometries below several roots
+  // indices of placements, of geometries below several roots
+  std::map<const GeometryDescription *, std::map<Key, std::size_t>> placed;
   bool hasMistakes = false;
 };
 
 } // namespace
 
-void readGraph(const JsonValue &root, const ReadGeometry &readGeometry, SceneDescription &scene,
+void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescription &scene,
                ErrorCollector &errors) {
   if (root.find("nodes") || root.find("root") || root.find("roots"))
-    GraphReader(root, readGeometry, scene, errors).read();
+    GraphReader(root, readers, scene, errors).read();
+}
+
+std::map<std::string, std::pair<Place, const JsonValue *>> readVariables(const JsonValue &value) {
+  expect(value, Kind::Object, "`variables`");
+  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
+  for (const auto &[key, member] : value.members)
+    variables[key.text] = {member.fromOverride ? member.place() : value.place(key), &member};
+  return variables;
 }
 
 } // namespace rtsl::scene

@@ -1,7 +1,8 @@
 //===- Graph.h - the nodes of a scene file --------------------------------===//
 //
-// A node is a geometry (a mesh or a primitive, with a material), or has children, other nodes; each
-// may have a transform, which applies to all that is below. Nodes may be shared: a node is an
+// A node is a geometry (a mesh or a primitive, with a material), or has children, other nodes, among
+// which a selector may choose; each may have a transform, an id and variables, which apply to all
+// that is below. Nodes may be shared: a node is an
 // instance of its geometry for each way from a root down to it. docs/scene-format.md has the keys.
 //
 //===----------------------------------------------------------------------===//
@@ -14,13 +15,22 @@
 
 namespace rtsl::scene {
 
-/// Reads the geometry of the node `value`, except its transform.
-using ReadGeometry = std::function<GeometryDescription(const JsonValue &value)>;
+/// How to read the parts of a node that are no part of the graph.
+struct NodeReaders {
+  /// The geometry of the node `value`, except its transform and variables.
+  std::function<GeometryDescription(const JsonValue &value)> geometry;
+  /// A reference to an object. `what` begins messages.
+  std::function<ReferenceDescription(const JsonValue &value, const std::string &what)> reference;
+};
 
 /// Reads `nodes`, and `root` or `roots`, of a scene: appends the geometries that a root leads to,
-/// with their instances, to `scene.objects`, and sets `scene.roots`. Nodes that no root leads to
-/// are noted in `scene.warnings`. Adds mistakes to `errors`.
-void readGraph(const JsonValue &root, const ReadGeometry &readGeometry, SceneDescription &scene,
+/// with their instances, to `scene.objects`, and sets `scene.roots`, `scene.selectors` and
+/// `scene.scopes`. Nodes that no root leads to are noted in `scene.warnings`. Adds mistakes to
+/// `errors`.
+void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescription &scene,
                ErrorCollector &errors);
+
+/// `variables` of a node or the scene. Throws WrongType.
+std::map<std::string, std::pair<Place, const JsonValue *>> readVariables(const JsonValue &value);
 
 } // namespace rtsl::scene

@@ -63,6 +63,16 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
   return std::uint32_t(number);
 }
 
+std::int32_t readId(const JsonValue &value) {
+  const double number = readNumber(value, "`id`");
+  if (number != std::floor(number) || number < -2147483648.0 || number > 2147483647.0)
+    throw Error(
+        ErrorCode::OutOfRange,
+        fmt::format("`id` is a whole number from -2147483648 to 2147483647, not {}", number),
+        value.place());
+  return std::int32_t(number);
+}
+
 std::vector<double> readNumbers(const JsonValue &value, std::size_t count,
                                 const std::string &what) {
   expect(value, JsonValue::Kind::Array, what);

@@ -25,6 +25,9 @@ double readNumber(const JsonValue &value, const std::string &what);
 std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uint32_t highest,
                           const std::string &what);
 
+/// Any 32-bit integer, for `id`.
+std::int32_t readId(const JsonValue &value);
+
 /// A list of exactly `count` numbers.
 std::vector<double> readNumbers(const JsonValue &value, std::size_t count, const std::string &what);
 

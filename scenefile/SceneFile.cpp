@@ -30,11 +30,10 @@ public:
     expect(root, Kind::Object, "a scene");
     readVersion();
     errors.attempt([&] {
-      refuseWhatComesLater();
-      checkKeys(root, {"$schema", "rtsl",      "import",   "camera",    "rayGeneration",
-                       "images",  "helpers",   "textures", "materials", "objects",
-                       "nodes",   "root",      "roots",    "lights",    "background",
-                       "ambient", "exception", "render",   "buffers",   "passes"},
+      checkKeys(root, {"$schema", "rtsl",     "import",     "camera",  "rayGeneration", "images",
+                       "helpers", "textures", "materials",  "objects", "nodes",         "root",
+                       "roots",   "lights",   "background", "ambient", "exception",     "render",
+                       "buffers", "passes",   "variables"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
@@ -45,10 +44,17 @@ public:
     readNamed("helpers", scene.helpers);
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
+    section("variables", [&](const JsonValue &variables) {
+      scene.scopes.front()->variables = readVariables(variables);
+    });
     readList("objects",
              [&](const JsonValue &object) { scene.objects.push_back(readObjectOfList(object)); });
-    readGraph(
-        root, [&](const JsonValue &node) { return readGeometry(node, "a node"); }, scene, errors);
+    readGraph(root,
+              {[&](const JsonValue &node) { return readGeometry(node, "a node"); },
+               [&](const JsonValue &value, const std::string &what) {
+                 return readReference(value, what);
+               }},
+              scene, errors);
     readList("lights",
              [&](const JsonValue &light) { scene.lights.push_back(readObject(light, "a light")); });
     section("background", [&](const JsonValue &background) {
@@ -72,16 +78,6 @@ public:
   }
 
 private:
-  /// Rejects keys of the format that this version does not support.
-  void refuseWhatComesLater() const {
-    for (const char *key : {"variables"})
-      for (const auto &member : root.members)
-        if (member.first.text == key)
-          throw Error(ErrorCode::NotSupported, fmt::format("`{}` is not supported yet", key),
-                      member.second.fromOverride ? member.second.place()
-                                                 : root.place(member.first));
-  }
-
   /// Reads the value of a key, if present. An error in it does not prevent reading other sections.
   template <typename Read>
   void section(const char *key, Read read) {
@@ -210,7 +206,7 @@ private:
     for (const auto &[key, value] : root.members) {
       const bool isOfNames = key.text == "images" || key.text == "helpers" ||
                              key.text == "textures" || key.text == "materials" ||
-                             key.text == "nodes";
+                             key.text == "nodes" || key.text == "variables";
       if (isOfNames)
         forEachValue(value, [&](const JsonValue &object) { readFilesIn(object); });
       else if (key.text != "roots" && key.text != "render")
@@ -325,8 +321,17 @@ private:
   GeometryDescription readObjectOfList(const JsonValue &value) {
     expect(value, Kind::Object, "an element of `objects`");
     GeometryDescription geometry = readGeometry(value, "an object");
-    runtime::Placement placement;
+    InstanceDescription placement;
     placement.mask = geometry.mask;
+    placement.id = geometry.id.value_or(0);
+    placement.scope = scene.scopes.front().get();
+    errors.attempt([&] {
+      if (const JsonValue *variables = value.find("variables")) {
+        scene.scopes.push_back(std::make_shared<VariableScope>(
+            VariableScope{placement.scope, readVariables(*variables)}));
+        placement.scope = scene.scopes.back().get();
+      }
+    });
     errors.attempt([&] {
       if (const JsonValue *transform = value.find("transform"))
         (geometry.primitive ? placement.transform : geometry.transform) = readTransform(*transform);
@@ -337,10 +342,10 @@ private:
 
   GeometryDescription readGeometry(const JsonValue &value, const std::string &what) {
     errors.attempt([&] {
-      checkKeys(
-          value,
-          {"name", "primitive", "mesh", "material", "transform", "mask", "textureCoordinates"},
-          what);
+      checkKeys(value,
+                {"name", "primitive", "mesh", "material", "transform", "mask", "id", "count",
+                 "textureCoordinates", "variables"},
+                what);
     });
     GeometryDescription geometry;
     geometry.place = value.place();
@@ -354,8 +359,24 @@ private:
       }
       if (const JsonValue *mask = value.find("mask"))
         geometry.mask = readInteger(*mask, 0, 0xffffffff, "`mask`");
+      if (const JsonValue *id = value.find("id"))
+        geometry.id = readId(*id);
+      readCount(value, geometry);
     });
     return geometry;
+  }
+
+  static void readCount(const JsonValue &value, GeometryDescription &geometry) {
+    const JsonValue *count = value.find("count");
+    if (!count)
+      return;
+    if (geometry.meshPath.empty() && count->kind == Kind::String)
+      geometry.count = count;
+    else if (geometry.meshPath.empty() && readInteger(*count, 1, 0x7fffffff, "`count`"))
+      geometry.count = count;
+    else
+      throw Error(ErrorCode::UnknownKey, "`count` is for a `primitive`: a mesh has its triangles",
+                  count->place());
   }
 
   void readShape(const JsonValue &value, const std::string &what,
@@ -481,6 +502,16 @@ private:
   ErrorCollector errors;
 };
 
+/// Calls visit(name, value) for the variables of all nodes and of the scene.
+template <typename Visit>
+void forEachVariable(const SceneDescription &description, Visit visit) {
+  std::set<const JsonValue *> visited; // a node may have several scopes
+  for (const auto &scope : description.scopes)
+    for (const auto &[name, value] : scope->variables)
+      if (visited.insert(value.second).second)
+        visit(name, *value.second);
+}
+
 /// Visits an object of the scene, in any position: its class, and its members.
 using ObjectVisitor = std::function<void(
     const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
@@ -529,6 +560,12 @@ void forEachObject(const SceneDescription &description, const ObjectVisitor &vis
     if (geometry.material.object)
       forEachObject(*geometry.material.object, visit);
   }
+  for (const SelectorDescription &selector : description.selectors)
+    if (selector.object.object)
+      forEachObject(*selector.object.object, visit);
+  forEachVariable(description, [&](const std::string &, const JsonValue &value) {
+    forEachObject(value, visit);
+  });
   for (const ObjectDescription &light : description.lights)
     forEachObject(light, visit);
   for (const auto &object : {description.background, description.exception})
@@ -604,6 +641,12 @@ std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription
     for (const auto &[member, value] : members)
       if (!isNothing(*value))
         ofClass.insert(member.text);
+  });
+  // Which objects take a variable shows when the classes are known.
+  forEachVariable(description, [&](const std::string &name, const JsonValue &value) {
+    if (!isNothing(value))
+      for (auto &[className, members] : given)
+        members.insert(name);
   });
   return given;
 }

@@ -53,6 +53,37 @@ struct ReferenceDescription {
   std::shared_ptr<ObjectDescription> object;
 };
 
+/// The variables of a node, which the objects below it take for members that they do not set, and
+/// those of the nodes above it.
+struct VariableScope {
+  const VariableScope *above = nullptr;
+  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
+
+  /// The nearest definition; null: there is none.
+  const std::pair<Place, const JsonValue *> *find(const std::string &name) const {
+    for (const VariableScope *scope = this; scope; scope = scope->above)
+      if (const auto found = scope->variables.find(name); found != scope->variables.end())
+        return &found->second;
+    return nullptr;
+  }
+};
+
+/// A selector above instances, once for each way to it.
+struct SelectorDescription {
+  ReferenceDescription object; // of an rt_Selector class
+  std::uint32_t children = 0;
+  runtime::Transform toWorld;
+  std::size_t above = 0; // 1 + the index of the selector above it; 0: none
+  std::uint32_t childOfAbove = 0;
+  const VariableScope *scope = nullptr;
+};
+
+struct InstanceDescription : runtime::Placement {
+  const VariableScope *scope = nullptr;
+  std::size_t selector = 0; // 1 + the index of the selector above it; 0: none
+  std::uint32_t childOfSelector = 0;
+};
+
 /// A mesh or a primitive with a material, and its instances.
 struct GeometryDescription {
   LocatedName name;                           // for messages; empty text: none
@@ -64,7 +95,9 @@ struct GeometryDescription {
   ReferenceDescription material;
   runtime::Transform transform; // of the vertices of a mesh in `objects`
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
-  std::vector<runtime::Placement> placements;
+  std::optional<std::int32_t> id;
+  const JsonValue *count = nullptr; // of primitives: a number, or the name of a buffer member
+  std::vector<InstanceDescription> placements;
   Place place;
 };
 
@@ -104,6 +137,9 @@ struct SceneDescription {
   std::map<std::string, const JsonValue *> buffers; // by name; in bufferValues
   std::vector<PassDescription> passes;              // empty: the one launch that `render` describes
   std::vector<GeometryDescription> objects;         // those of nodes come last
+  std::vector<SelectorDescription> selectors;       // those above others come first
+  // the first is that of the scene, above all nodes
+  std::vector<std::shared_ptr<VariableScope>> scopes{std::make_shared<VariableScope>()};
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
@@ -135,7 +171,7 @@ std::vector<std::string> classesUsed(const SceneDescription &description);
 std::vector<LocatedName> classMentions(const SceneDescription &description);
 
 /// The members that are set in some object of each class that the scene names, inherited ones
-/// included. Null, or a list of nulls, does not count.
+/// included, or may be set by a variable. Null, or a list of nulls, does not count.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
 
 /// How many launches the scene has: its passes, or one.

@@ -35,6 +35,10 @@ public:
       add(scene.lights[i],
           begin(Part::Role::Light, fmt::format("lights.{} ({})", i, scene.lights[i].className.text),
                 scene.lights[i].place));
+    for (std::size_t i = 0; i < scene.selectors.size(); ++i)
+      selector(scene.selectors[i], fmt::format("selector {}", i));
+    for (const auto &scope : scene.scopes)
+      variables(*scope);
     root("background", scene.background);
     root("exception", scene.exception);
     return std::move(parts);
@@ -68,6 +72,22 @@ private:
       add(*geometry.material.object, part);
     else
       refer(geometry.material.name.text, part);
+  }
+
+  void selector(const SelectorDescription &selector, const std::string &name) {
+    Part &part =
+        begin(Part::Role::Root, name,
+              selector.object.object ? selector.object.object->place : selector.object.name.place);
+    if (selector.object.object)
+      add(*selector.object.object, part);
+    else
+      refer(selector.object.name.text, part);
+  }
+
+  /// What variables refer to is used, whatever takes them.
+  void variables(const VariableScope &scope) {
+    for (const auto &[name, value] : scope.variables)
+      add(*value.second, begin(Part::Role::Root, "variable " + name, value.first));
   }
 
   void add(const ObjectDescription &object, Part &part) {

@@ -28,6 +28,7 @@ std::string runtimeFunction(mlir::Operation *op) {
       .Case([](ir::SpawnPayloadOp spawn) {
         return spawn.getLast() ? "rtsl_spawn_last_payload" : "rtsl_spawn_payload";
       })
+      .Case([](ir::VisitChildOp) { return "rtsl_visit_child"; })
       .Case([](ir::RaiseOp) { return "rtsl_raise"; })
       .Case([](ir::PrintOp) { return "rtsl_print"; })
       .Case([](ir::HitOp hit) { return hit.getError() ? "rtsl_hit_within" : "rtsl_hit"; })
@@ -68,7 +69,7 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
         return function(nothing, {pointer, f32, f32, f32, f32, f32, f32, f32, f32, pointer, i32,
                                   i32, f32, i32, i32});
       })
-      .Case([&](ir::RaiseOp) { return function(nothing, {pointer, i32}); })
+      .Case<ir::RaiseOp, ir::VisitChildOp>([&](auto) { return function(nothing, {pointer, i32}); })
       .Case([&](ir::PrintOp) { return function(nothing, {pointer, i32, pointer, i32}); })
       .Case([&](ir::HitOp hit) {
         return hit.getError() ? function(i32, {pointer, f32, f32}) : function(i32, {pointer, f32});

@@ -419,6 +419,15 @@ def Rtsl_HitAnsweredOp : Rtsl_Op<"hit_answered"> {
   let assemblyFormat = "attr-dict";
 }
 
+def Rtsl_VisitChildOp : Rtsl_Op<"visit_child"> {
+  let summary = "in `visit` of a selector: the ray may enter this child";
+  let description = [{
+    Example: `rtsl.visit_child %number`
+  }];
+  let arguments = (ins I32:$child);
+  let assemblyFormat = "$child attr-dict";
+}
+
 def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
   let summary = "records that the sample has raised an exception";
   let description = [{

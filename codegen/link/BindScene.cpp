@@ -206,6 +206,9 @@ constexpr GraphPart graphParts[] = {
     {RTSL_HAS_TRANSFORMS, "transforms", "some instance has one",
      "no instance has one: rays stay in world space"},
     {RTSL_HAS_ROOTS, "roots", "the scene has several", "all instances are below root 0"},
+    {RTSL_HAS_COUNTS, "counts", "some object holds several primitives",
+     "each object is one primitive"},
+    {RTSL_HAS_SELECTORS, "selectors", "some instance is below one", "the scene has none"},
 };
 
 } // namespace

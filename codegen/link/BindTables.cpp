@@ -31,10 +31,12 @@ std::vector<std::int32_t> wordsOf(const void *bytes, std::size_t size) {
   return words;
 }
 
-/// Are all instances primitives, few enough for a list?
+/// Is each instance one primitive, and are they few enough for a list?
 bool isListed(const std::vector<RtslInstance> &instances) {
   return !instances.empty() && instances.size() <= mostListed &&
-         llvm::all_of(instances, [](const RtslInstance &one) { return one.primitive != 0; });
+         llvm::all_of(instances, [](const RtslInstance &one) {
+           return one.primitive != 0 && one.boxCount == 0;
+         });
 }
 
 std::string reasonForList(std::size_t primitives) {
@@ -46,7 +48,7 @@ std::string reasonForTree(std::size_t instances) {
   if (instances == 0)
     return "the scene has no instance; its tree is empty";
   return instances > mostListed ? fmt::format("there are more than {} instances", mostListed)
-                                : "some instance is a mesh";
+                                : "some instance is a mesh, or holds several primitives";
 }
 
 Finding describe(const runtime::SceneFacts &scene) {

@@ -48,6 +48,12 @@ std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr 
   case Builtin::TracePayload:
     lowerTracePayload(expr);
     return Parts();
+  case Builtin::VisitChild: {
+    Value child = value(*expr.args[0]);
+    emitter.setLoc(location);
+    emitter.make<ir::VisitChildOp>(child);
+    return Parts();
+  }
   case Builtin::Print:
     if (module.options.prints)
       lowerPrint(expr);

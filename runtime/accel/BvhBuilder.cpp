@@ -1,11 +1,12 @@
 #include "runtime/accel/BvhBuilder.h"
 
+#include "runtime/device/traverse/Box.h"
 #include "runtime/device/traverse/Bvh.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <map>
 
 namespace rtsl::runtime {
 
@@ -220,11 +221,12 @@ Bvh buildBvh(std::vector<BvhItem> items) {
   return Builder(std::move(items)).build();
 }
 
-void Bvh::addMeshTree(std::size_t mesh, std::size_t meshCount, const Bvh &tree) {
-  meshTrees.resize(meshCount);
+void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
+  if (meshTrees.size() <= number)
+    meshTrees.resize(number + 1);
   const auto firstNode = std::int32_t(nodes.size()), firstItem = std::int32_t(items.size());
-  meshTrees[mesh] = tree.rootIsLeaf ? RtslMeshTree{~firstItem, std::uint32_t(tree.items.size())}
-                                    : RtslMeshTree{firstNode, 0};
+  meshTrees[number] = tree.rootIsLeaf ? RtslMeshTree{~firstItem, std::uint32_t(tree.items.size())}
+                                      : RtslMeshTree{firstNode, 0};
   for (RtslBvhNode node : tree.nodes) {
     for (std::int32_t &child : node.child)
       child = child >= 0 ? child + firstNode : ~(~child + firstItem);
@@ -245,24 +247,42 @@ static void addTriangles(const RtslMesh &mesh, std::uint32_t instance,
   }
 }
 
+/// The primitives of an object with several.
+static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance,
+                          std::uint32_t number, std::vector<BvhItem> &items) {
+  for (std::uint32_t i = 0; i < instance.boxCount; ++i) {
+    const RtslBox box = device::enlarged(launch.boxes[instance.firstBox + i]);
+    BvhItem item{{}, {number, i}};
+    std::copy_n(box.lower, 3, item.bounds.lower);
+    std::copy_n(box.upper, 3, item.bounds.upper);
+    items.push_back(item);
+  }
+}
+
 Bvh buildBvh(const Scene &scene) {
   RtslLaunch launch = scene.launch();
   std::vector<BvhItem> items;
-  std::set<std::uint32_t> withTree; // meshes
+  std::map<std::size_t, const RtslInstance *> withTree; // by number of the tree
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
-    if (instance.primitive != 0 || instance.transform != 0)
+    const bool isMesh = instance.primitive == 0, isOne = !isMesh && instance.boxCount == 0;
+    if (isOne || instance.transform != 0)
       items.push_back({scene.instanceBounds(i), {i, 0}});
-    else
+    else if (isMesh)
       addTriangles(launch.meshes[instance.mesh], i, items);
-    if (instance.primitive == 0 && instance.transform != 0)
-      withTree.insert(instance.mesh);
+    else
+      addPrimitives(launch, instance, i, items);
+    if (!isOne && instance.transform != 0)
+      withTree.emplace(isMesh ? instance.mesh : launch.meshCount + instance.mesh, &instance);
   }
   Bvh bvh = buildBvh(std::move(items));
-  for (std::uint32_t mesh : withTree) {
-    std::vector<BvhItem> triangles;
-    addTriangles(launch.meshes[mesh], RTSL_NO_HIT, triangles);
-    bvh.addMeshTree(mesh, launch.meshCount, buildBvh(std::move(triangles)));
+  for (const auto &[number, instance] : withTree) {
+    std::vector<BvhItem> inside;
+    if (instance->primitive == 0)
+      addTriangles(launch.meshes[instance->mesh], RTSL_NO_HIT, inside);
+    else
+      addPrimitives(launch, *instance, RTSL_NO_HIT, inside);
+    bvh.addMeshTree(number, buildBvh(std::move(inside)));
   }
   return bvh;
 }

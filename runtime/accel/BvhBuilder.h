@@ -16,14 +16,15 @@ namespace rtsl::runtime {
 struct Bvh {
   std::vector<RtslBvhNode> nodes; // the root is node 0, unless rootIsLeaf
   std::vector<RtslLeafItem> items;
-  std::vector<RtslMeshTree> meshTrees; // by mesh; empty if no instance has a transform
-  bool rootIsLeaf = false;             // there are so few items that there are no nodes
-  std::uint32_t rootItems = 0;         // the number of these items, from the first on
+  // by mesh, then by object with several primitives; empty if no instance has a transform
+  std::vector<RtslMeshTree> meshTrees;
+  bool rootIsLeaf = false;     // there are so few items that there are no nodes
+  std::uint32_t rootItems = 0; // the number of these items, from the first on
 
   /// Installs the tree in a launch, which must not outlive it.
   void install(RtslLaunch &launch) const;
-  /// Appends the tree of a mesh.
-  void addMeshTree(std::size_t mesh, std::size_t meshCount, const Bvh &tree);
+  /// Appends the tree of a mesh or an object with several primitives.
+  void addMeshTree(std::size_t number, const Bvh &tree);
   /// The longest path from the root; at most device::maxBvhDepth.
   unsigned depth() const;
 };
@@ -36,8 +37,9 @@ struct BvhItem {
 
 Bvh buildBvh(std::vector<BvhItem> items);
 
-/// The tree of a scene: of triangles and RTSL primitives, and of instances of meshes with
-/// transforms, for each of whose meshes there is another tree. Their items have no instance.
+/// The tree of a scene: of triangles and RTSL primitives, and of instances with transforms of meshes
+/// and of objects with several primitives, each of which has another tree. Their items have no
+/// instance.
 Bvh buildBvh(const Scene &scene);
 
 } // namespace rtsl::runtime

@@ -61,13 +61,14 @@ FlatScene flatten(const Scene &scene) {
   const std::uint64_t meshes =
       flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
   flattener.addAt(offsetof(RtslLaunch, transforms), launch.transforms, launch.transformCount);
+  flattener.addAt(offsetof(RtslLaunch, boxes), launch.boxes, launch.boxCount);
+  flattener.addAt(offsetof(RtslLaunch, selections), launch.selections, launch.selectionCount);
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
   flattener.addAt(offsetof(RtslLaunch, nodes), launch.nodes, bvh.nodes.size());
   flattener.addAt(offsetof(RtslLaunch, leafItems), launch.leafItems, bvh.items.size());
   flattener.addAt(offsetof(RtslLaunch, meshTrees), launch.meshTrees, bvh.meshTrees.size());
   flattener.addAt(offsetof(RtslLaunch, emitters), launch.emitters, launch.emitterCount);
-  flattener.addAt(offsetof(RtslLaunch, triangleChances), launch.triangleChances,
-                  launch.triangleChanceCount);
+  flattener.addAt(offsetof(RtslLaunch, partChances), launch.partChances, launch.partChanceCount);
   for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
     const RtslMesh &mesh = launch.meshes[i];
     const std::uint64_t place = meshes + i * sizeof(RtslMesh);

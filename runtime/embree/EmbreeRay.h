@@ -17,6 +17,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -48,14 +49,14 @@ struct EmbreeContext {
 /// An RTSL primitive in Embree.
 struct EmbreePrimitive {
   void (*intersect)(RtslState *, RtslRef);
-  RtslRef object;
-  std::uint32_t instance;
+  std::uint32_t instance; // in a space of its own: some instance of the object
+  std::uint32_t number;   // of several of one object
 };
 
-/// An instance of a mesh with a transform in Embree.
-struct EmbreeMeshInstance {
+/// An instance in Embree that has a space of its own.
+struct EmbreeInstance {
   std::uint32_t instance;
-  const EmbreeSpace *mesh;
+  const EmbreeSpace *inside;
 };
 
 /// A tree for rays with origins up to some distance.
@@ -66,14 +67,14 @@ struct EmbreeLevel {
   std::once_flag built;
 };
 
-/// The contents of one space, with trees over them: the world, or a mesh that has instances with
-/// transforms.
+/// The contents of one space, with trees over them: the world, or a mesh or an object with several
+/// primitives that has instances with transforms.
 struct EmbreeSpace {
   const EmbreeScene::Implementation *scene = nullptr;
   bool isWorld = true;
   LargeArray<TriangleBlock> blocks;
-  std::vector<EmbreePrimitive> primitives;       // of the world
-  std::vector<EmbreeMeshInstance> meshInstances; // of the world
+  std::vector<EmbreePrimitive> primitives;
+  std::vector<EmbreeInstance> instances; // of the world
   // by largestOrigin; the first one is built
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
 
@@ -88,10 +89,10 @@ struct EmbreeSpace {
 struct EmbreeScene::Implementation {
   std::uint64_t number = 0; // unique in the process; from 1
   RTCDevice device = nullptr;
-  const RtslInstance *instances = nullptr;
   EmbreeSpace world;
-  std::vector<std::unique_ptr<EmbreeSpace>> meshes;  // by mesh; null: no instance has a transform
-  void (*intersect)(RtslState *, RtslRef) = nullptr; // of any class
+  std::map<std::uint32_t, std::unique_ptr<EmbreeSpace>> spaces; // by number of device::treeOf
+  const Program::Slots *slots = nullptr;
+  RtslLaunch launch{};
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
@@ -155,7 +156,7 @@ struct EmbreeScene::Implementation {
       rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(tree, &context.embree, &rayHit);
-      device::findLostAttributes(state, triangleRay, intersect);
+      device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
     }
     return device::endSearch(state);
   }

@@ -2,6 +2,7 @@
 
 #include "runtime/embree/EmbreeRay.h"
 #include "runtime/embree/HostScene.h"
+#include "runtime/program/ProgramHost.h"
 
 #include <fmt/format.h>
 
@@ -75,30 +76,49 @@ void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
   context.occluder = arguments->primID;
 }
 
-bool testPrimitive(const EmbreeContext &context, unsigned number) {
-  const EmbreePrimitive &primitive = context.space->primitives[number];
-  return device::testPrimitive(*context.state, *context.ray,
-                               context.space->scene->instances[primitive.instance],
-                               {primitive.instance, 0}, primitive.intersect);
+template <typename Ray>
+RtslLeafItem itemOf(const EmbreeContext &context, const EmbreePrimitive &primitive) {
+  return {device::instanceOf(rayOf<Ray>(context), primitive.instance), primitive.number};
 }
 
+template <typename Ray>
+bool testPrimitive(const EmbreeContext &context, unsigned number) {
+  const EmbreePrimitive &primitive = context.space->primitives[number];
+  const RtslLeafItem item = itemOf<Ray>(context, primitive);
+  return device::testPrimitive(*context.state, rayOf<Ray>(context),
+                               context.space->scene->launch.instances[item.instance], item,
+                               primitive.intersect);
+}
+
+template <typename Ray>
 void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
   if (context.visitor)
-    visitItem(context, ray, {context.space->primitives[arguments->primID].instance, 0});
-  else if (testPrimitive(context, arguments->primID))
+    visitItem(context, ray, itemOf<Ray>(context, context.space->primitives[arguments->primID]));
+  else if (testPrimitive<Ray>(context, arguments->primID))
     ray.tfar = context.end(context.state->nearest);
 }
 
+template <typename Ray>
 void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
-  if (testPrimitive(contextOf(arguments), arguments->primID))
+  if (testPrimitive<Ray>(contextOf(arguments), arguments->primID))
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
-/// For a ray that Embree cannot trace: all triangles of a mesh. True if the search is over.
-[[gnu::cold, gnu::noinline]] bool testAllBlocks(const EmbreeContext &context,
-                                                const device::InstanceRay &ray, bool anyHit) {
+/// For a ray that Embree cannot trace: all that is in the space. True if the search is over.
+[[gnu::cold, gnu::noinline]] bool testAll(const EmbreeContext &context,
+                                          const device::InstanceRay &ray, bool anyHit) {
+  for (unsigned i = 0; i < context.space->primitives.size(); ++i) {
+    if (context.visitor) {
+      RTCRay unused{};
+      const EmbreePrimitive &primitive = context.space->primitives[i];
+      if (!visitItem(context, unused, itemOf<device::InstanceRay>(context, primitive)))
+        return true;
+    } else if (testPrimitive<device::InstanceRay>(context, i) && anyHit) {
+      return true;
+    }
+  }
   for (const TriangleBlock &block : context.space->blocks) {
     if (context.visitor) {
       RTCRay unused{};
@@ -112,13 +132,14 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   return false;
 }
 
-/// Searches an instance of a mesh. True if the search is over.
+/// Searches an instance that has a space of its own. True if the search is over.
 template <bool anyHit>
 bool searchInstance(const EmbreeContext &outer, unsigned number) {
-  const EmbreeMeshInstance &one = outer.space->meshInstances[number];
+  const EmbreeInstance &one = outer.space->instances[number];
+  const Implementation &scene = *outer.space->scene;
   RtslState &state = *outer.state;
   device::InstanceRay ray;
-  if (!device::isSeen(state, outer.space->scene->instances[one.instance]) ||
+  if (!device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots}) ||
       !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Epsilon, outer.limit(),
                              ray))
     return false;
@@ -126,14 +147,14 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   rtcInitIntersectContext(&context.embree);
   context.state = &state;
   context.ray = &ray;
-  context.space = one.mesh;
+  context.space = one.inside;
   context.visitor = outer.visitor;
   context.occluder = EmbreeContext::noBlock;
   context.toEmbree = 1;
   int exponent = 0;
   if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
     if (!EmbreeScene::canFollow(ray.origin, ray.direction))
-      return testAllBlocks(context, ray, anyHit);
+      return testAll(context, ray, anyHit);
     ++rayCounters().rescaledRays;
     exponent = device::exponentOf(device::largest(ray.direction));
   }
@@ -144,7 +165,7 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
     Implementation::fill(inner, origin, direction, state.Epsilon, context.toEmbree,
                          device::powerOfTwo(-exponent), context.end(outer.limit()));
   };
-  const RTCScene tree = one.mesh->treeFor(ray.origin);
+  const RTCScene tree = one.inside->treeFor(ray.origin);
   if constexpr (anyHit) {
     RTCRay inner;
     fill(inner);
@@ -214,17 +235,22 @@ void boundBlock(const RTCBoundsFunctionArguments *arguments) {
   setBounds(arguments, lower, upper);
 }
 
-void boundItem(const RTCBoundsFunctionArguments *arguments, std::uint32_t number) {
-  const RtslInstance &instance = levelOf(arguments).owner->scene->instances[number];
-  setBounds(arguments, instance.lower, instance.upper);
+RtslBox boxOf(const EmbreeSpace &space, const EmbreePrimitive &primitive) {
+  const RtslLaunch &launch = space.scene->launch;
+  return device::boxOf(launch, launch.instances[primitive.instance], primitive.number);
 }
 
 void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
-  boundItem(arguments, levelOf(arguments).owner->primitives[arguments->primID].instance);
+  const EmbreeSpace &space = *levelOf(arguments).owner;
+  const RtslBox box = boxOf(space, space.primitives[arguments->primID]);
+  setBounds(arguments, box.lower, box.upper);
 }
 
 void boundInstance(const RTCBoundsFunctionArguments *arguments) {
-  boundItem(arguments, levelOf(arguments).owner->meshInstances[arguments->primID].instance);
+  const EmbreeSpace &space = *levelOf(arguments).owner;
+  const RtslInstance &instance =
+      space.scene->launch.instances[space.instances[arguments->primID].instance];
+  setBounds(arguments, instance.lower, instance.upper);
 }
 
 //===----------------------------------------------------------------------===//
@@ -262,18 +288,23 @@ void attach(EmbreeLevel &level, std::size_t count, RTCBoundsFunction bounds,
   rtcReleaseGeometry(geometry);
 }
 
+template <typename Ray>
+void attachContents(EmbreeLevel &level) {
+  const EmbreeSpace &space = *level.owner;
+  attach(level, space.blocks.size(), boundBlock, intersectBlock<Ray>, occludedBlock<Ray>);
+  attach(level, space.primitives.size(), boundPrimitive, intersectPrimitive<Ray>,
+         occludedPrimitive<Ray>);
+}
+
 void buildLevel(EmbreeLevel &level) {
   const EmbreeSpace &space = *level.owner;
   level.scene = rtcNewScene(space.scene->device);
   rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_MEDIUM);
   if (space.isWorld)
-    attach(level, space.blocks.size(), boundBlock, intersectBlock<device::TriangleRay>,
-           occludedBlock<device::TriangleRay>);
+    attachContents<device::TriangleRay>(level);
   else
-    attach(level, space.blocks.size(), boundBlock, intersectBlock<device::InstanceRay>,
-           occludedBlock<device::InstanceRay>);
-  attach(level, space.primitives.size(), boundPrimitive, intersectPrimitive, occludedPrimitive);
-  attach(level, space.meshInstances.size(), boundInstance, intersectInstance, occludedInstance);
+    attachContents<device::InstanceRay>(level);
+  attach(level, space.instances.size(), boundInstance, intersectInstance, occludedInstance);
   rtcCommitScene(level.scene);
   check(*space.scene);
 }
@@ -285,17 +316,20 @@ void addLevels(EmbreeSpace &self) {
   for (const TriangleBlock &block : self.blocks)
     reaches.push_back(std::fabs(block.vertices[0][0][0]) + std::fabs(block.vertices[0][1][0]) +
                       std::fabs(block.vertices[0][2][0]));
-  const auto addInstance = [&](std::uint32_t number) {
-    const RtslInstance &instance = self.scene->instances[number];
+  const auto addBox = [&](const float lower[3], const float upper[3]) {
     float reach = 0;
     for (int i = 0; i < 3; ++i)
-      reach += std::max(std::fabs(instance.lower[i]), std::fabs(instance.upper[i]));
+      reach += std::max(std::fabs(lower[i]), std::fabs(upper[i]));
     reaches.push_back(reach);
   };
-  for (const EmbreePrimitive &primitive : self.primitives)
-    addInstance(primitive.instance);
-  for (const EmbreeMeshInstance &one : self.meshInstances)
-    addInstance(one.instance);
+  for (const EmbreePrimitive &primitive : self.primitives) {
+    const RtslBox box = boxOf(self, primitive);
+    addBox(box.lower, box.upper);
+  }
+  for (const EmbreeInstance &one : self.instances) {
+    const RtslInstance &instance = self.scene->launch.instances[one.instance];
+    addBox(instance.lower, instance.upper);
+  }
   float reach = 1;
   if (!reaches.empty()) {
     auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
@@ -329,9 +363,8 @@ EmbreeScene::Implementation::~Implementation() {
         rtcReleaseScene(level->scene);
   };
   release(world);
-  for (const auto &mesh : meshes)
-    if (mesh)
-      release(*mesh);
+  for (const auto &space : spaces)
+    release(*space.second);
   if (device)
     rtcReleaseDevice(device);
 }
@@ -363,29 +396,39 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   }
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
 
-  RtslLaunch launch = scene.launch();
-  self->instances = launch.instances;
-  self->intersect = slots.rt_Primitive_intersect;
+  self->launch = scene.launch();
+  self->slots = &slots;
   self->world.scene = self.get();
-  self->meshes.resize(launch.meshCount);
+  const RtslLaunch &launch = self->launch;
+  const auto addPrimitives = [&](EmbreeSpace &space, std::uint32_t number) {
+    const RtslInstance &instance = launch.instances[number];
+    auto *intersect = scene.classOf(instance.primitive).intersect;
+    for (std::uint32_t i = 0; i < std::max(instance.boxCount, 1u); ++i)
+      space.primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, number, i});
+  };
   std::vector<MeshUse> inWorld;
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
-    if (RtslRef object = instance.primitive) {
-      auto *intersect = scene.classOf(object).intersect;
-      self->world.primitives.push_back(
-          {intersect ? intersect : slots.rt_Primitive_intersect, object, i});
-    } else if (instance.transform == 0) {
+    const bool isMesh = instance.primitive == 0;
+    if (instance.transform != 0 && (isMesh || instance.boxCount != 0)) {
+      std::unique_ptr<EmbreeSpace> &inside =
+          self->spaces[isMesh ? instance.mesh : launch.meshCount + instance.mesh];
+      if (!inside) {
+        inside = std::make_unique<EmbreeSpace>();
+        inside->scene = self.get();
+        inside->isWorld = false;
+        std::vector<MeshUse> meshes;
+        if (isMesh)
+          meshes.push_back({0, &launch.meshes[instance.mesh]});
+        else
+          addPrimitives(*inside, i);
+        buildSpace(*inside, meshes, threads);
+      }
+      self->world.instances.push_back({i, inside.get()});
+    } else if (isMesh) {
       inWorld.push_back({i, &launch.meshes[instance.mesh]});
     } else {
-      std::unique_ptr<EmbreeSpace> &mesh = self->meshes[instance.mesh];
-      if (!mesh) {
-        mesh = std::make_unique<EmbreeSpace>();
-        mesh->scene = self.get();
-        mesh->isWorld = false;
-        buildSpace(*mesh, {{0, &launch.meshes[instance.mesh]}}, threads);
-      }
-      self->world.meshInstances.push_back({i, mesh.get()});
+      addPrimitives(self->world, i);
     }
   }
   buildSpace(self->world, inWorld, threads);

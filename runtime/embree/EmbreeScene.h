@@ -4,8 +4,9 @@
 // our own tree, so that both find the same hits, bit for bit. Embree's own triangles are not
 // suitable: near edges, between coincident triangles and for needles its test depends on its own
 // rounding. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower.
-// RTSL primitives are user geometry as well, and so are instances of meshes with transforms: such a
-// mesh has a tree of its own, which the ray in object space is traced through from a callback.
+// RTSL primitives are user geometry as well, and so are instances with transforms of meshes and of
+// objects with several primitives: these have a tree of their own, which the ray in object space is
+// traced through from a callback.
 //
 // Embree's box test has rounding errors that depend on the distance of a ray's origin. Boxes are
 // enlarged for origins up to some distance; for others there is another tree over the same blocks,
@@ -94,8 +95,9 @@ private:
 struct EmbreeTree {
   const EmbreeScene &scene;
 
-  template <typename Limit, typename Visit>
-  void forEach(RtslState &state, const device::TriangleRay &ray, Limit limit, Visit visit) const {
+  template <typename Limit, typename Enter, typename Visit>
+  void forEach(RtslState &state, const device::TriangleRay &ray, Limit limit, Enter,
+               Visit visit) const {
     struct Search {
       const device::TriangleRay &ray;
       Limit &limit;

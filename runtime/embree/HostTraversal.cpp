@@ -18,7 +18,7 @@ HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
     return;
   }
   embree = std::make_unique<EmbreeScene>(scene, slots, threads);
-  if (!(scene.launch().needs & RTSL_HAS_ROOTS))
+  if (!(scene.launch().needs & (RTSL_HAS_ROOTS | RTSL_HAS_SELECTORS)))
     seenByAll = embree.get();
 }
 
@@ -37,7 +37,7 @@ template <typename Tree>
 std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
   return how & RTSL_ASK_ANY_HIT
              ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
-             : device::findHit(state, how & RTSL_FIRST_HIT, slots.rt_Primitive_intersect, tree);
+             : device::findHit(state, how & RTSL_FIRST_HIT, FilledSlots{slots}, tree);
 }
 
 /// With our own tree, on a launch that has it: the ray's launch may not have one.

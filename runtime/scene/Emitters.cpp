@@ -2,6 +2,7 @@
 
 #include "runtime/program/ProgramHost.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -12,52 +13,6 @@ namespace {
 
 /// Points at which an instance is looked at.
 constexpr std::uint32_t points = 64;
-
-/// What instances of a scene send out, as far as it is seen; 0: nothing.
-class Finder {
-public:
-  Finder(const Objects &objects, const RtslLaunch &launch) : objects(objects), launch(launch) {}
-
-  /// The power of a primitive, or the mean radiance of a mesh.
-  double emissionOf(std::uint32_t number) {
-    const RtslInstance &instance = launch.instances[number];
-    if (!has(instance.material, "emission"))
-      return 0;
-    if (instance.primitive != 0)
-      return has(instance.primitive, "generateSample") && has(instance.primitive, "samplePDF")
-                 ? mean(number, 0)
-                 : 0;
-    // All instances of a mesh with one material shine alike.
-    const auto [known, isNew] = radiances.try_emplace({instance.mesh, instance.material}, 0.0);
-    if (isNew)
-      known->second = mean(number, launch.meshes[instance.mesh].triangleCount);
-    return known->second;
-  }
-
-private:
-  bool has(RtslRef object, const char *method) const {
-    return hasMethod(*objects.at(object).classInfo, method);
-  }
-
-  /// The mean over points, of a mesh over points of triangles spread over its list.
-  double mean(std::uint32_t number, std::uint32_t triangles) const {
-    double sum = 0;
-    for (std::uint32_t sample = 0; sample < points; ++sample) {
-      const auto triangle =
-          triangles ? static_cast<std::uint32_t>(
-                          (std::uint64_t(sample / 2) * 0x9e3779b97f4a7c15u >> 16) % triangles)
-                    : 0u;
-      const float one = objects.program().emittedPower(&launch, number, triangle, sample);
-      if (one > 0 && std::isfinite(one))
-        sum += double(one);
-    }
-    return sum / points;
-  }
-
-  const Objects &objects;
-  const RtslLaunch &launch;
-  std::map<std::pair<std::uint32_t, RtslRef>, double> radiances; // of meshes with a material
-};
 
 /// The area of a triangle in world space.
 double areaOf(const RtslLaunch &launch, const RtslInstance &instance, std::uint32_t triangle) {
@@ -89,6 +44,86 @@ std::vector<double> areasOf(const RtslLaunch &launch, const RtslInstance &instan
   return areas;
 }
 
+/// What an instance sends out.
+struct Emission {
+  double power = 0; // 0: nothing
+  /// For each triangle of a mesh, or primitive of an object with several, a measure of its share:
+  /// the sum of it and those before it.
+  std::vector<double> parts;
+};
+
+/// What instances of a scene send out, as far as it is seen.
+class Finder {
+public:
+  Finder(const Objects &objects, const RtslLaunch &launch) : objects(objects), launch(launch) {}
+
+  Emission emissionOf(std::uint32_t number) {
+    const RtslInstance &instance = launch.instances[number];
+    if (!has(instance.material, "emission"))
+      return {};
+    if (instance.primitive == 0)
+      return ofMesh(number, instance);
+    if (!has(instance.primitive, "generateSample") || !has(instance.primitive, "samplePDF"))
+      return {};
+    return instance.boxCount == 0 ? Emission{mean(number, 0), {}} : ofPrimitives(number, instance);
+  }
+
+private:
+  /// All instances of a mesh with one material shine alike.
+  Emission ofMesh(std::uint32_t number, const RtslInstance &instance) {
+    const auto [known, isNew] = radiances.try_emplace({instance.mesh, instance.material}, 0.0);
+    if (isNew)
+      known->second = mean(number, launch.meshes[instance.mesh].triangleCount);
+    if (!(known->second > 0))
+      return {};
+    Emission emission;
+    emission.parts = areasOf(launch, instance);
+    emission.power = known->second * emission.parts.back();
+    return emission;
+  }
+
+  /// Each primitive is looked at, at fewer points the more there are.
+  Emission ofPrimitives(std::uint32_t number, const RtslInstance &instance) const {
+    const std::uint32_t each = std::max(points / instance.boxCount, 2u);
+    Emission emission;
+    emission.parts.reserve(instance.boxCount);
+    for (std::uint32_t part = 0; part < instance.boxCount; ++part) {
+      double sum = 0;
+      for (std::uint32_t sample = 0; sample < each; ++sample)
+        sum += power(number, part, sample);
+      emission.parts.push_back(emission.power += sum / each);
+    }
+    return emission;
+  }
+
+  bool has(RtslRef object, const char *method) const {
+    return hasMethod(*objects.at(object).classInfo, method);
+  }
+
+  /// The mean over points, of a mesh over points of triangles spread over its list.
+  double mean(std::uint32_t number, std::uint32_t triangles) const {
+    double sum = 0;
+    for (std::uint32_t sample = 0; sample < points; ++sample) {
+      const auto triangle =
+          triangles ? static_cast<std::uint32_t>(
+                          (std::uint64_t(sample / 2) * 0x9e3779b97f4a7c15u >> 16) % triangles)
+                    : 0u;
+      sum += power(number, triangle, sample);
+    }
+    return sum / points;
+  }
+
+  /// 0 if it is not known.
+  double power(std::uint32_t number, std::uint32_t part, std::uint32_t sample) const {
+    const float one = objects.program().emittedPower(&launch, number, part, sample);
+    return one > 0 && std::isfinite(one) ? double(one) : 0;
+  }
+
+  const Objects &objects;
+  const RtslLaunch &launch;
+  std::map<std::pair<std::uint32_t, RtslRef>, double> radiances; // of meshes with a material
+};
+
 /// Adds the chances to choose one of several, or one before it: ascending sums over the last one,
 /// which gets 1.
 void addChances(const std::vector<double> &sums, std::vector<float> &chances) {
@@ -106,19 +141,12 @@ Emitters::Emitters(const Objects &objects, const RtslLaunch &complete) {
   std::vector<double> powers; // of each emitter and those before it
   double total = 0;
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
-    double power = finder.emissionOf(i);
-    if (!(power > 0))
+    const Emission emission = finder.emissionOf(i);
+    if (!(emission.power > 0 && std::isfinite(total + emission.power)))
       continue;
-    std::vector<double> areas; // of a mesh
-    if (const RtslInstance &instance = launch.instances[i]; instance.primitive == 0) {
-      areas = areasOf(launch, instance);
-      power *= areas.back();
-    }
-    if (!(power > 0 && std::isfinite(total + power)))
-      continue;
-    emitters.push_back({i, static_cast<std::uint32_t>(triangleChances.size()), 0});
-    addChances(areas, triangleChances);
-    powers.push_back(total += power);
+    emitters.push_back({i, static_cast<std::uint32_t>(partChances.size()), 0});
+    addChances(emission.parts, partChances);
+    powers.push_back(total += emission.power);
   }
   std::vector<float> chances;
   addChances(powers, chances);
@@ -129,8 +157,8 @@ Emitters::Emitters(const Objects &objects, const RtslLaunch &complete) {
 void Emitters::fill(RtslLaunch &launch) const {
   launch.emitters = emitters.data();
   launch.emitterCount = static_cast<std::uint32_t>(emitters.size());
-  launch.triangleChances = triangleChances.data();
-  launch.triangleChanceCount = static_cast<std::uint32_t>(triangleChances.size());
+  launch.partChances = partChances.data();
+  launch.partChanceCount = static_cast<std::uint32_t>(partChances.size());
 }
 
 } // namespace rtsl::runtime

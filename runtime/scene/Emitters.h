@@ -24,7 +24,7 @@ public:
 
 private:
   std::vector<RtslEmitter> emitters;
-  std::vector<float> triangleChances;
+  std::vector<float> partChances;
 };
 
 } // namespace rtsl::runtime

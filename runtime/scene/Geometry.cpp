@@ -10,57 +10,87 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// The result of the primitive's `computeBounds`; NaN for sides that it does not set.
-Bounds computeBounds(const Objects &objects, RtslRef primitive, const RtslLaunch &launch) {
-  Bounds given;
+/// The results of the object's `computeBounds` for its first `count` primitives; NaN for sides that
+/// it does not set.
+std::vector<RtslBox> computeBounds(const Objects &objects, RtslRef primitive, std::uint32_t count,
+                                   const RtslLaunch &launch) {
+  std::vector<RtslBox> given(count);
   callOutsideOfRays(launch, primitive, [&](RtslState &state) {
-    for (int i = 0; i < 3; ++i) { // what computeBounds leaves out shows
-      state.BoundMin[i] = std::numeric_limits<float>::quiet_NaN();
-      state.BoundMax[i] = std::numeric_limits<float>::quiet_NaN();
+    for (std::uint32_t number = 0; number < count; ++number) {
+      for (int i = 0; i < 3; ++i) { // what computeBounds leaves out shows
+        state.BoundMin[i] = std::numeric_limits<float>::quiet_NaN();
+        state.BoundMax[i] = std::numeric_limits<float>::quiet_NaN();
+      }
+      state.PrimitiveIndex = std::int32_t(number);
+      if (objects.program().slots.rt_Primitive_computeBounds)
+        objects.program().slots.rt_Primitive_computeBounds(&state, primitive);
+      std::copy_n(state.BoundMin, 3, given[number].lower);
+      std::copy_n(state.BoundMax, 3, given[number].upper);
     }
-    if (objects.program().slots.rt_Primitive_computeBounds)
-      objects.program().slots.rt_Primitive_computeBounds(&state, primitive);
-    std::copy_n(state.BoundMin, 3, given.lower);
-    std::copy_n(state.BoundMax, 3, given.upper);
   });
   return given;
 }
 
-/// Throws DegenerateGeometry for NaN or inverted bounds; warns if the box has no area.
-void checkBounds(const Bounds &given, const Objects::Object &info, std::vector<Warning> &warnings) {
+/// Throws DegenerateGeometry for NaN or inverted bounds of `what`. False if the box has no area: no
+/// ray can hit it.
+bool checkBounds(const RtslBox &given, const std::string &what, const Objects::Object &info) {
   const char axes[] = "xyz";
   int flatSides = 0;
   for (int i = 0; i < 3; ++i) {
     if (std::isnan(given.lower[i]) || std::isnan(given.upper[i]))
-      throw Error(
-          ErrorCode::DegenerateGeometry,
-          fmt::format("the bounds of primitive `{}` are not numbers (in {})", info.name, axes[i]),
-          info.place);
+      throw Error(ErrorCode::DegenerateGeometry,
+                  fmt::format("the bounds of {} are not numbers (in {})", what, axes[i]),
+                  info.place);
     if (given.lower[i] > given.upper[i])
       throw Error(ErrorCode::DegenerateGeometry,
-                  fmt::format("the bounds of primitive `{}` are inverted: {} runs from {} to {}",
-                              info.name, axes[i], given.lower[i], given.upper[i]),
+                  fmt::format("the bounds of {} are inverted: {} runs from {} to {}", what, axes[i],
+                              given.lower[i], given.upper[i]),
                   info.place);
     flatSides += given.lower[i] == given.upper[i];
   }
-  if (flatSides >= 2)
-    warnings.push_back({fmt::format("primitive `{}` is {}: no ray can hit it", info.name,
-                                    flatSides == 3 ? "a single point" : "a line without width"),
+  return flatSides < 2;
+}
+
+/// The bounds of the only primitive of an object.
+Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &launch,
+                   std::vector<Warning> &warnings) {
+  const Objects::Object &info = objects.at(primitive);
+  const RtslBox box = computeBounds(objects, primitive, 1, launch).front();
+  const std::string what = fmt::format("primitive `{}`", info.name);
+  if (!checkBounds(box, what, info)) {
+    const bool isPoint = std::equal(box.lower, box.lower + 3, box.upper);
+    warnings.push_back({fmt::format("{} is {}: no ray can hit it", what,
+                                    isPoint ? "a single point" : "a line without width"),
                         info.place});
+  }
+  Bounds bounds;
+  std::copy_n(box.lower, 3, bounds.lower);
+  std::copy_n(box.upper, 3, bounds.upper);
+  return bounds;
 }
 
 } // namespace
 
+/// Its index; 0 for the identity.
+std::uint32_t Geometry::addTransform(const Transform &transform, const std::string &name,
+                                     const std::optional<rtsl::Place> &where) {
+  if (transform.isIdentity())
+    return 0;
+  transforms.push_back(roundedTransform(transform, name, where));
+  return std::uint32_t(transforms.size() - 1);
+}
+
 RtslInstance Geometry::place(const Placement &placement, const std::string &name,
                              const std::optional<rtsl::Place> &where) {
+  if (placement.selection >= selections.size())
+    throw Error(ErrorCode::UnknownName,
+                fmt::format("the scene has no selection number {}", placement.selection), where);
   RtslInstance instance{};
   instance.mask = placement.mask;
   instance.roots = placement.roots;
-  if (!placement.transform.isIdentity()) {
-    const RtslTransform transform = roundedTransform(placement.transform, name, where);
-    instance.transform = std::uint32_t(transforms.size());
-    transforms.push_back(transform);
-  }
+  instance.id = placement.id;
+  instance.selection = placement.selection;
+  instance.transform = addTransform(placement.transform, name, where);
   return instance;
 }
 
@@ -76,25 +106,92 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
   treeItems += items;
   instanceNames.push_back(std::move(name));
   needs |= (instance.transform != 0 ? RTSL_HAS_TRANSFORMS : 0) |
-           (instance.roots != 1 ? RTSL_HAS_ROOTS : 0);
+           (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) |
+           (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
+           (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0);
   return std::uint32_t(instances.size() - 1);
 }
 
 std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, RtslRef material,
-                                     const Placement &placement,
+                                     const Placement &placement, std::uint32_t count,
                                      const std::function<RtslLaunch()> &launch,
                                      std::vector<Warning> &warnings) {
   objects.requireRole(primitive, "rt_Primitive", {"intersect", "computeBounds"});
   const Objects::Object &info = objects.at(primitive);
-  const Bounds given = computeBounds(objects, primitive, launch());
-  checkBounds(given, info, warnings);
+  if (count == 0)
+    throw Error(ErrorCode::OutOfRange, fmt::format("`{}` holds no primitives", info.name),
+                info.place);
   RtslInstance instance = place(placement, info.name, info.place);
   instance.primitive = primitive;
   instance.material = material;
+  Bounds given;
+  if (count == 1) {
+    given = boundsOfOne(objects, primitive, launch(), warnings);
+  } else {
+    const PrimitiveSet &set = primitiveSet(objects, primitive, count, launch, warnings);
+    instance.firstBox = set.firstBox;
+    instance.boxCount = set.count;
+    instance.mesh = set.number;
+    given = set.bounds;
+  }
   std::copy_n(given.lower, 3, instance.boundMin);
   std::copy_n(given.upper, 3, instance.boundMax);
   setWorldBounds(instance, given, transforms[instance.transform]);
-  return addInstance(objects, instance, info.name, 1);
+  return addInstance(objects, instance, info.name, instance.transform != 0 ? 1 : count);
+}
+
+const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, RtslRef primitive,
+                                                     std::uint32_t count,
+                                                     const std::function<RtslLaunch()> &launch,
+                                                     std::vector<Warning> &warnings) {
+  const Objects::Object &info = objects.at(primitive);
+  if (const auto known = sets.find(primitive); known != sets.end()) {
+    if (known->second.count != count)
+      throw Error(ErrorCode::OutOfRange,
+                  fmt::format("`{}` holds {} primitives in one instance and {} in another",
+                              info.name, known->second.count, count),
+                  info.place);
+    return known->second;
+  }
+  if (count > 0x7fffffffu - boxes.size())
+    throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives", info.place);
+  const std::vector<RtslBox> all = computeBounds(objects, primitive, count, launch());
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  PrimitiveSet set{std::uint32_t(boxes.size()),
+                   count,
+                   std::uint32_t(sets.size()),
+                   {{inf, inf, inf}, {-inf, -inf, -inf}}};
+  std::uint32_t flat = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    flat += !checkBounds(all[i], fmt::format("primitive {} of `{}`", i, info.name), info);
+    for (int axis = 0; axis < 3; ++axis) {
+      set.bounds.lower[axis] = std::min(set.bounds.lower[axis], all[i].lower[axis]);
+      set.bounds.upper[axis] = std::max(set.bounds.upper[axis], all[i].upper[axis]);
+    }
+  }
+  if (flat != 0)
+    warnings.push_back({fmt::format("{} of the {} primitives of `{}` are points or lines without "
+                                    "width: no ray can hit them",
+                                    flat, count, info.name),
+                        info.place});
+  boxes.insert(boxes.end(), all.begin(), all.end());
+  return sets.emplace(primitive, set).first->second;
+}
+
+std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
+                                    std::uint32_t children, const Transform &transform,
+                                    std::uint32_t above) {
+  objects.requireRole(selector, "rt_Selector", {"visit"});
+  const Objects::Object &info = objects.at(selector);
+  if (above >= selections.size())
+    throw Error(ErrorCode::UnknownName, fmt::format("the scene has no selection number {}", above),
+                info.place);
+  const auto first = std::uint32_t(selections.size());
+  const std::uint32_t space = addTransform(transform, info.name, info.place);
+  needs |= space != 0 ? RTSL_HAS_TRANSFORMS : 0;
+  for (std::uint32_t child = 0; child < children; ++child)
+    selections.push_back({selector, std::int32_t(child), space, above});
+  return first;
 }
 
 std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
@@ -175,13 +272,17 @@ Bounds Geometry::bounds(std::uint32_t instance) const {
 
 std::uint32_t Geometry::primitiveCount(std::uint32_t instance) const {
   const RtslInstance &one = instances.at(instance);
-  return one.primitive ? 1 : meshTable[one.mesh].triangleCount;
+  return one.primitive == 0 ? meshTable[one.mesh].triangleCount : std::max(one.boxCount, 1u);
 }
 
 void Geometry::fill(RtslLaunch &launch) const {
   launch.instances = instances.data();
   launch.meshes = meshTable.data();
   launch.transforms = transforms.data();
+  launch.boxes = boxes.data();
+  launch.boxCount = std::uint32_t(boxes.size());
+  launch.selections = selections.data();
+  launch.selectionCount = std::uint32_t(selections.size());
   launch.instanceCount = std::uint32_t(instances.size());
   launch.meshCount = std::uint32_t(meshTable.size());
   launch.transformCount = std::uint32_t(transforms.size());

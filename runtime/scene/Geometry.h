@@ -1,7 +1,7 @@
 //===- Geometry.h - the meshes and instances of a scene -------------------===//
 //
-// Rays hit instances. An instance is a primitive, an object of the program, or a mesh, with a
-// material and a transform.
+// Rays hit instances. An instance is an object of the program, which is one primitive or several, or
+// a mesh, with a material and a transform.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,8 +25,12 @@ class Geometry {
 public:
   /// Scene::addPrimitive. `launch` returns the scene's current launch, for `computeBounds`.
   std::uint32_t addPrimitive(const Objects &objects, RtslRef primitive, RtslRef material,
-                             const Placement &placement, const std::function<RtslLaunch()> &launch,
+                             const Placement &placement, std::uint32_t count,
+                             const std::function<RtslLaunch()> &launch,
                              std::vector<Warning> &warnings);
+  /// Scene::addSelector.
+  std::uint32_t addSelector(const Objects &objects, RtslRef selector, std::uint32_t children,
+                            const Transform &transform, std::uint32_t above);
   /// Scene::addMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name);
   /// Scene::addMeshInstance.
@@ -39,6 +44,7 @@ public:
   const std::vector<MeshAttribute> &meshAttributes() const { return attributes; }
 
   const std::vector<RtslInstance> &all() const { return instances; }
+  const std::vector<RtslSelection> &allSelections() const { return selections; }
   /// RTSL_HAS_* of RtslLaunch::needs.
   std::uint32_t sceneNeeds() const { return needs; }
   /// Scene::instanceBounds, primitiveCount and instanceName.
@@ -61,12 +67,27 @@ private:
                             std::uint32_t items);
   RtslInstance place(const Placement &placement, const std::string &name,
                      const std::optional<rtsl::Place> &where);
+  std::uint32_t addTransform(const Transform &transform, const std::string &name,
+                             const std::optional<rtsl::Place> &where);
   const Bounds &meshBounds(std::uint32_t mesh);
+
+  /// An object with several primitives.
+  struct PrimitiveSet {
+    std::uint32_t firstBox, count;
+    std::uint32_t number; // in the order of their addition
+    Bounds bounds;        // of all
+  };
+  const PrimitiveSet &primitiveSet(const Objects &objects, RtslRef primitive, std::uint32_t count,
+                                   const std::function<RtslLaunch()> &launch,
+                                   std::vector<Warning> &warnings);
   void dropUnusedAttributes(const Program &program);
 
   std::vector<std::unique_ptr<NamedMesh>> meshes;
   std::vector<RtslMesh> meshTable; // as long
   std::vector<RtslTransform> transforms{identityTransform()};
+  std::vector<RtslBox> boxes;
+  std::vector<RtslSelection> selections{RtslSelection{}}; // the first is unused
+  std::map<RtslRef, PrimitiveSet> sets;                   // by primitive
   std::vector<RtslInstance> instances;
   std::vector<std::string> instanceNames; // as long
   std::uint64_t treeItems = 0;

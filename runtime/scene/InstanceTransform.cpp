@@ -1,5 +1,6 @@
 #include "runtime/scene/InstanceTransform.h"
 
+#include "runtime/device/traverse/Box.h"
 #include "runtime/geometry/Transform.h"
 
 #include <fmt/format.h>
@@ -12,16 +13,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Boxes must be multiplied with each other without overflow; an infinite primitive gets the
-/// largest box.
-constexpr float largestSide = 1e18f;
-
-/// A few units in the last place outwards, because the author's sums are rounded.
-float outwards(float side, float direction) {
-  const float moved =
-      side + direction * (std::fabs(side) * 0x1p-21f + std::numeric_limits<float>::min());
-  return std::clamp(moved, -largestSide, largestSide);
-}
+using device::largestSide;
 
 } // namespace
 
@@ -65,8 +57,8 @@ RtslTransform roundedTransform(const Transform &transform, const std::string &na
 void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const RtslTransform &transform) {
   if (instance.transform == 0) {
     for (int i = 0; i < 3; ++i) {
-      instance.lower[i] = outwards(bounds.lower[i], -1);
-      instance.upper[i] = outwards(bounds.upper[i], 1);
+      instance.lower[i] = device::outwards(bounds.lower[i], -1);
+      instance.upper[i] = device::outwards(bounds.upper[i], 1);
     }
     return;
   }

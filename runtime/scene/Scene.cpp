@@ -100,11 +100,17 @@ std::vector<OutputBuffer> Scene::outputs() const {
 // Geometry
 //===----------------------------------------------------------------------===//
 
-std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement) {
+std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement,
+                                  std::uint32_t count) {
   self->emitters.reset();
   return self->geometry.addPrimitive(
-      self->objects, primitive, material, placement, [this] { return self->launch(); },
+      self->objects, primitive, material, placement, count, [this] { return self->launch(); },
       self->warnings);
+}
+
+std::uint32_t Scene::addSelector(RtslRef selector, std::uint32_t children,
+                                 const Transform &transform, std::uint32_t above) {
+  return self->geometry.addSelector(self->objects, selector, children, transform, above);
 }
 
 std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
@@ -166,6 +172,9 @@ SceneFacts Scene::facts() const {
     for (RtslRef root : {instance.primitive, instance.material})
       if (root != 0)
         roots.push_back(root);
+  for (const RtslSelection &selection : self->geometry.allSelections())
+    if (selection.selector != 0)
+      roots.push_back(selection.selector);
   const std::vector<RtslRef> list = self->objects.reachedFrom(std::move(roots));
   const std::unordered_set<RtslRef> reached(list.begin(), list.end());
   SceneFacts facts;

@@ -50,7 +50,17 @@ public:
   /// gives a warning, because no ray can hit it. A transform that is not finite, or so close to
   /// singular that it cannot be inverted exactly enough, throws DegenerateGeometry. Returns the
   /// instance's index.
-  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement = {});
+  ///
+  /// An object may hold several primitives, numbered by rt_PrimitiveIndex: `count` in all of its
+  /// instances, which share their tree if they have transforms. Throws OutOfRange for 0.
+  std::uint32_t addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement = {},
+                             std::uint32_t count = 1);
+
+  /// Adds a selector that lies in the space of `transform`, with as many children. Returns the
+  /// Placement::selection of what is below child 0; those of the others follow. `above`: that of the
+  /// selector itself.
+  std::uint32_t addSelector(RtslRef selector, std::uint32_t children,
+                            const Transform &transform = {}, std::uint32_t above = 0);
 
   /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
@@ -100,7 +110,7 @@ public:
   /// World bounds of an instance of an RTSL primitive, or of a mesh with a transform, slightly
   /// enlarged.
   Bounds instanceBounds(std::uint32_t instance) const;
-  /// Number of primitives that the instance holds: 1, or the triangles of its mesh.
+  /// Number of primitives that the instance holds: those of its object, or the triangles of its mesh.
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   /// The name of an instance for messages: that of its primitive or mesh.
   const std::string &instanceName(std::uint32_t instance) const;

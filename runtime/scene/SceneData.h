@@ -26,6 +26,9 @@ struct Placement {
   Transform transform;      // from its object space to world space
   std::uint32_t mask = ~0u; // rays see it whose mask has a common bit
   std::uint32_t roots = 1;  // bit r: rays that enter at root r can see it
+  std::int32_t id = 0;      // rt_InstanceId
+  /// Of Scene::addSelector: rays see it if the selector visits that child. 0: always.
+  std::uint32_t selection = 0;
 };
 
 /// A box. A side may be infinite.

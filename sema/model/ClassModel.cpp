@@ -18,7 +18,7 @@ static constexpr StateSet everyRay = {S::LaunchIndex, S::LaunchSize, S::Time, S:
                                       S::TimeSeed};
 // The transforms and ids of the object that is hit.
 static constexpr StateSet placement = {S::ObjectToWorld, S::WorldToObject, S::PrimitiveIndex,
-                                       S::InstanceIndex};
+                                       S::InstanceIndex, S::InstanceId};
 static constexpr StateSet ray = {S::RayOrigin, S::RayDirection, S::InverseRayDirection, S::Epsilon,
                                  S::HitDistance};
 static constexpr StateSet textureDerivatives = {S::dsdu, S::dsdv, S::dtdu, S::dtdv};
@@ -51,7 +51,7 @@ static RootModel primitiveModel() {
       {
           {"intersect", candidate, {}, ofAHit | AbilitySet{A::Hit, A::WriteScratch}},
           // Runs while the acceleration structure is built: there is no ray.
-          {"computeBounds", bounds, bounds, {}},
+          {"computeBounds", bounds | StateSet{S::PrimitiveIndex}, bounds, {}},
           {"computeNormal", withNormals, normals, ofAHit},
           {"computeTextureCoordinates", withCoordinates, textureCoordinates, ofAHit},
           {"computeDerivatives", withDerivatives, surfaceDerivatives | textureDerivatives, ofAHit},

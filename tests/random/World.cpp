@@ -71,7 +71,7 @@ extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
       how & RTSL_ASK_ANY_HIT
           ? rtsl::device::traverseAsking(*state, how, rtsl::runtime::FilledSlots{slots})
           : rtsl::device::traverseDevice(*state, how & RTSL_FIRST_HIT,
-                                         slots.rt_Primitive_intersect);
+                                         rtsl::runtime::FilledSlots{slots});
   raysThatHit += answer == RTSL_HIT;
   return answer;
 }

@@ -138,6 +138,7 @@ Code Builtins::builtin(const typed::BuiltinExpr &expr) {
   case Builtin::LightCount:
   case Builtin::Illuminate:
   case Builtin::IlluminateBySurface:
+  case Builtin::VisitChild:
     return with({name("rt")});
   case Builtin::Hit:
     return printer.function && context.signatures.takesScratch(*printer.function)
@@ -150,9 +151,6 @@ Code Builtins::builtin(const typed::BuiltinExpr &expr) {
     return printer.hitAnswers.endOfAnyHit(expr);
   case Builtin::Print:
     return context.options.prints ? print(expr) : Code{};
-  case Builtin::VisitChild:
-    context.unsupported(expr.range, std::string("`") + typed::name(expr.builtin) + "` in C++");
-    return integer(0);
   case Builtin::AtomicAdd:
   case Builtin::AtomicMin:
   case Builtin::AtomicMax:

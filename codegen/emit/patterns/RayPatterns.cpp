@@ -187,6 +187,17 @@ struct ConvertHitAnswered : ConvertOpToLLVMPattern<ir::HitAnsweredOp> {
   }
 };
 
+struct ConvertVisitChild : ConvertOpToLLVMPattern<ir::VisitChildOp> {
+  using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
+  LogicalResult matchAndRewrite(ir::VisitChildOp op, OpAdaptor adaptor,
+                                ConversionPatternRewriter &rewriter) const override {
+    callRuntime(rewriter, op.getLoc(), runtimeFunction(op),
+                {rayState(rewriter), adaptor.getChild()});
+    rewriter.eraseOp(op);
+    return mlir::success();
+  }
+};
+
 //===----------------------------------------------------------------------===//
 // Events
 //===----------------------------------------------------------------------===//
@@ -271,8 +282,8 @@ void addRayPatterns(mlir::LLVMTypeConverter &converter, mlir::RewritePatternSet 
   patterns.add<ConvertTrace, ConvertHit, ConvertRand, ConvertAmbient, ConvertLightCount,
                ConvertIlluminate, ConvertSpawn, ConvertTraceResult, ConvertMoveFrame,
                ConvertPayloadRay<ir::TracePayloadOp>, ConvertPayloadRay<ir::SpawnPayloadOp>,
-               ConvertRaise, ConvertPrint, ConvertPayload, ConvertRayType, ConvertAnswerHit,
-               ConvertHitAnswered>(converter);
+               ConvertRaise, ConvertPrint, ConvertPayload, ConvertRayType, ConvertVisitChild,
+               ConvertAnswerHit, ConvertHitAnswered>(converter);
 }
 
 } // namespace rtsl::codegen

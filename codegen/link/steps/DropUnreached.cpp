@@ -87,6 +87,7 @@ private:
       addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
     }
     addMethods("rt_Primitive", "intersect", {"finds hits", {}});
+    addMethods("rt_Selector", "visit", {"decides what rays may hit", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
       addMethods("rt_Exception", "exception", {"for samples that raise an exception", {}});
     if (context.request.isSampled) {

@@ -28,6 +28,7 @@ std::uint32_t needsOf(llvm::StringRef state) {
       .Cases({"Time", "TimeSeed"}, RTSL_NEEDS_TIME)
       .Cases({"LaunchIndex", "LaunchSize"}, RTSL_NEEDS_LAUNCH)
       .Case("LensCoord", RTSL_NEEDS_LENS)
+      .Case("InstanceId", RTSL_NEEDS_INSTANCE_ID)
       .Cases({"GeometricNormal", "ShadingNormal"}, RTSL_NEEDS_NORMALS)
       .Default(0);
 }
@@ -40,7 +41,7 @@ bool mayRunForCandidates(const Reader &reader) {
          !(method &&
            llvm::StringSwitch<bool>(method.getValue())
                .Cases({"computeNormal", "computeTextureCoordinates", "computeDerivatives"}, true)
-               .Cases({"generateSample", "samplePDF"}, true)
+               .Cases({"computeBounds", "generateSample", "samplePDF"}, true)
                .Default(false));
 }
 
@@ -51,7 +52,8 @@ bool isOfCandidate(llvm::StringRef state, const Reader &reader) {
     return !method || method != "computeBounds";
   }
   return llvm::StringSwitch<bool>(state)
-             .Cases({"PrimitiveIndex", "InstanceIndex", "ObjectToWorld", "WorldToObject"}, true)
+             .Cases({"PrimitiveIndex", "InstanceIndex", "InstanceId"}, true)
+             .Cases({"ObjectToWorld", "WorldToObject"}, true)
              .Default(false) &&
          mayRunForCandidates(reader);
 }
@@ -177,6 +179,10 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
   const std::uint32_t ofCoordinates =
       needsOfMethods(context, "rt_Primitive", "computeTextureCoordinates");
 
+  // The density with which a point of a lamp is chosen depends on the normal there
+  // (runtime/device/engines/Emitters.h).
+  const bool hasLamps = findNeeds(context) & RTSL_NEEDS_EMITTERS;
+
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {
     bool isLit = false;
@@ -184,6 +190,8 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
         needsReachedFrom(methods.lookup(linked.info->name), context, /*onItself=*/true, &isLit);
     if (isLit)
       needs |= ofLights;
+    if (hasLamps && linked.info->root == "rt_Material" && findMethod(context, linked, "emission"))
+      needs |= RTSL_NEEDS_NORMALS;
     if (needs & RTSL_NEEDS_DERIVATIVES)
       needs |= ofDerivatives;
     if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)

@@ -43,6 +43,7 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TEXTURE_COORDINATES, "computeTextureCoordinates"},
     {RTSL_NEEDS_DERIVATIVES, "computeDerivatives"},
     {RTSL_NEEDS_TRANSFORMS, "rt_ObjectToWorld, rt_WorldToObject"},
+    {RTSL_NEEDS_INSTANCE_ID, "rt_InstanceId"},
     {RTSL_NEEDS_INVERSE_DIRECTION, "rt_InverseRayDirection"},
     {RTSL_NEEDS_SAMPLING, "rt_BSDFSeed, rt_PDF and others of sampling"},
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},

@@ -82,6 +82,12 @@ inline bool hit(State<N> &rt, Scratch &scratch, float t, Error... error) {
   return isNearest;
 }
 
+/// In `visit` of a selector: the ray may enter the child of this number.
+template <int N>
+inline void visitChild(State<N> &rt, int child) {
+  rtsl_visit_child(rawState(rt), child);
+}
+
 /// Uniform in [0, 1).
 template <int N>
 inline float rand(State<N> &rt) {

@@ -9,6 +9,7 @@
 #include "runtime/device/engines/LaunchFacts.cpp"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/HitError.h"
+#include "runtime/device/traverse/Selector.h"
 
 using namespace rtsl;
 
@@ -36,14 +37,15 @@ uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float 
   return device::illuminateBySurface(*state, {px, py, pz});
 }
 
-float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t triangle,
+float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
                          uint32_t sample) {
-  return device::emittedPower(*launch, instance, triangle, sample);
+  return device::emittedPower(*launch, instance, part, sample);
 }
 
 #ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp calls the program
 /// Defaults that programs override if they define these functions.
 __attribute__((weak)) void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Selector_visit(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_generateSample(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_samplePDF(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Material_emission(RtslState *, RtslRef) {}
@@ -51,6 +53,10 @@ __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;
 }
 #endif
+
+void rtsl_visit_child(RtslState *state, int32_t child) {
+  device::visitChild(*state, child);
+}
 
 void rtsl_raise(RtslState *state, uint32_t exception) {
   device::raise(*state, exception);

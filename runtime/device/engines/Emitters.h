@@ -1,7 +1,8 @@
 //===- Emitters.h - surfaces that shine, as lights ------------------------===//
 //
 // `illuminate(P)` chooses one of the launch's emitters, with the probability that the table gives,
-// and a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`. A ray
+// and a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of an object
+// with several primitives one of them, likewise. A ray
 // towards the point finds what is seen there; only if that is the point itself does its light
 // count, so that each direction has the density of one point. A ray that meets an emitter by chance
 // finds the same density in rt_PDF: an engine weighs the two against one another (Veach and Guibas,
@@ -41,9 +42,15 @@ float probabilityOf(uint32_t number, ChanceOf chanceOf) {
 inline auto chancesOfEmitters(const RtslLaunch &launch) {
   return [emitters = launch.emitters](uint32_t i) { return emitters[i].chances; };
 }
-inline auto chancesOfTriangles(const RtslLaunch &launch, const RtslEmitter &emitter) {
-  return
-      [chances = launch.triangleChances + emitter.firstTriangle](uint32_t i) { return chances[i]; };
+/// Those of the triangles of a mesh, or of the primitives of an object with several.
+inline auto chancesOfParts(const RtslLaunch &launch, const RtslEmitter &emitter) {
+  return [chances = launch.partChances + emitter.firstPart](uint32_t i) { return chances[i]; };
+}
+/// Their number; 0: the instance is one primitive.
+inline uint32_t partsOf(const RtslLaunch &launch, const RtslInstance &instance) {
+  return instance.primitive == 0       ? launch.meshes[instance.mesh].triangleCount
+         : isCounted(launch, instance) ? instance.boxCount
+                                       : 0;
 }
 
 /// The vertices of a triangle of an instance in world space.
@@ -64,7 +71,7 @@ inline Vec3 doubleArea(const TriangleVertices &p) {
 }
 
 /// State of a primitive on whose surface a point is chosen; the rest is 0.
-inline void clearForSample(RtslState &state) {
+inline void clearForSample(RtslState &state, uint32_t primitive) {
   setVector(state.RayOrigin, 0, 0, 0);
   setVector(state.RayDirection, 0, 0, 0);
   setVector(state.InverseRayDirection, 0, 0, 0);
@@ -82,8 +89,9 @@ inline void clearForSample(RtslState &state) {
   state.PDF = 0;
   for (int i = 0; i < 16; ++i)
     state.ObjectToWorld[i] = state.WorldToObject[i] = 0;
-  state.PrimitiveIndex = 0;
+  state.PrimitiveIndex = int32_t(primitive);
   state.InstanceIndex = 0;
+  state.InstanceId = 0;
 }
 
 /// How many times larger an area is in world space than in object space, where the surface has this
@@ -114,11 +122,13 @@ inline float emitterDensity(const RtslState &hit) {
   const RtslInstance &instance = instanceAt(launch, hit.instance);
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
   float density = probabilityOf(first, chancesOfEmitters(launch));
+  const float ofPart =
+      partsOf(launch, instance) == 0
+          ? 1
+          : probabilityOf(hit.primitive, chancesOfParts(launch, launch.emitters[first]));
   if (instance.primitive == 0) {
     const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive));
-    density *= 2 *
-               probabilityOf(hit.primitive, chancesOfTriangles(launch, launch.emitters[first])) /
-               squareRoot(dot(twice, twice));
+    density *= 2 * ofPart / squareRoot(dot(twice, twice));
   } else {
     RtslState state;
     beginState(state, hit.launch);
@@ -128,7 +138,7 @@ inline float emitterDensity(const RtslState &hit) {
     state.dimension = 0;
     state.Time = hit.Time;
     state.Depth = hit.Depth;
-    clearForSample(state);
+    clearForSample(state, hit.primitive);
     store(state.HitPoint, load(hit.HitPoint));
     store(state.GeometricNormal, normal);
     float scale = 1;
@@ -141,7 +151,7 @@ inline float emitterDensity(const RtslState &hit) {
       scale = areaScale(transform, normal);
     }
     rtsl_rt_Primitive_samplePDF(&state, instance.primitive);
-    density *= state.PDF / scale;
+    density *= ofPart * state.PDF / scale;
   }
   const float along = absolute(dot(direction, normal));
   const float square = dot(direction, direction);
@@ -159,20 +169,20 @@ inline void describeEmitter(RtslState &state) {
 
 /// Numbers in [0, 1) that choose an emitter and a point on it.
 struct EmitterChoice {
-  float emitter, triangle, u, v;
+  float emitter, part, u, v;
 };
 
 /// A point on an instance in world space, and with it GeometricNormal and PDF (by area, in object
 /// space) of a primitive in `state`.
 inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
-                            const RtslInstance &instance, uint32_t triangle, float u, float v) {
+                            const RtslInstance &instance, uint32_t part, float u, float v) {
   if (instance.primitive == 0) {
     // Uniform on the triangle (Turk, "Generating Random Points in Triangles", 1990).
-    const TriangleVertices p = verticesInWorld(launch, instance, triangle);
+    const TriangleVertices p = verticesInWorld(launch, instance, part);
     const float root = squareRoot(u);
     return p.v0 + (p.v1 - p.v0) * (root * (1 - v)) + (p.v2 - p.v0) * (root * v);
   }
-  clearForSample(state);
+  clearForSample(state, part);
   rtsl_rt_Primitive_generateSample(&state, instance.primitive);
   const Vec3 point = load(state.HitPoint);
   return isTransformed(launch, instance) ? pointToWorld(transformOf(launch, instance), point)
@@ -196,15 +206,13 @@ inline void lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice, Emi
   const RtslEmitter &emitter =
       launch.emitters[chosenOf(launch.emitterCount, choice.emitter, chancesOfEmitters(launch))];
   const RtslInstance &instance = instanceAt(launch, emitter.instance);
-  uint32_t triangle = 0;
-  if (instance.primitive == 0)
-    triangle = chosenOf(launch.meshes[instance.mesh].triangleCount, choice.triangle,
-                        chancesOfTriangles(launch, emitter));
+  const uint32_t parts = partsOf(launch, instance);
+  const uint32_t part = parts ? chosenOf(parts, choice.part, chancesOfParts(launch, emitter)) : 0;
   light->density = 0;
   RtslState state;
   startShadowRay(state, ray);
   light->direction =
-      pointOnInstance(state, launch, instance, triangle, choice.u, choice.v) - ray.origin;
+      pointOnInstance(state, launch, instance, part, choice.u, choice.v) - ray.origin;
 
   // How much the hit's distance may differ from that of the point.
   constexpr float tolerance = 0x1p-10f;
@@ -234,7 +242,7 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
   state.PDF = 0;
   EmitterChoice choice;
   choice.emitter = randomNumber(state.randomKey, state.dimension);
-  choice.triangle = randomNumber(state.randomKey, state.dimension + 1);
+  choice.part = randomNumber(state.randomKey, state.dimension + 1);
   choice.u = randomNumber(state.randomKey, state.dimension + 2);
   choice.v = randomNumber(state.randomKey, state.dimension + 3);
   state.dimension += 4;
@@ -257,13 +265,13 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
 }
 
 /// rtsl_emitted_power.
-inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t triangle,
+inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t part,
                           uint32_t sample) {
   const RtslInstance &instance = instanceAt(launch, number);
   RtslState state;
   beginState(state, &launch);
   state.events = nullptr;
-  const Words4 key = hash4(number, triangle, sample, 0x656d6974u);
+  const Words4 key = hash4(number, part, sample, 0x656d6974u);
   state.randomKey[0] = key.x;
   state.randomKey[1] = key.y;
   state.dimension = 0;
@@ -275,11 +283,11 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t tr
   state.rayMask = ~0u;
   state.rayRoot = 0;
   const float u = unitFloat(key.z), v = unitFloat(key.w);
-  const Vec3 point = pointOnInstance(state, launch, instance, triangle, u, v);
+  const Vec3 point = pointOnInstance(state, launch, instance, part, u, v);
   Vec3 normal;
   float area = 1;
   if (instance.primitive == 0) {
-    normal = normalized(doubleArea(verticesInWorld(launch, instance, triangle)));
+    normal = normalized(doubleArea(verticesInWorld(launch, instance, part)));
     const float root = squareRoot(u);
     state.u = root * (1 - v);
     state.v = root * v;
@@ -298,7 +306,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t tr
   setDefaults(state, components);
   setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT}, 1);
   state.instance = number;
-  state.primitive = triangle;
+  state.primitive = part;
   for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
     state.attributes[i] = 0; // nothing was intersected
   describeHit(state);

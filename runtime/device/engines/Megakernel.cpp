@@ -17,7 +17,7 @@ uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
   uint32_t answer =
       mayAsk && how & RTSL_ASK_ANY_HIT
           ? device::traverseAsking(*state, how, device::LinkedPayloadSlots())
-          : device::traverseDevice(*state, how & RTSL_FIRST_HIT, rtsl_rt_Primitive_intersect);
+          : device::traverseDevice(*state, how & RTSL_FIRST_HIT, device::LinkedSlots());
   if (answer == RTSL_BAD_RAY)
     device::countUp(&state->launch->status->badRays);
   return answer;

@@ -30,16 +30,37 @@ typedef struct RtslBuffer {
 typedef struct RtslInstance {
   RtslRef primitive;
   RtslRef material;
-  uint32_t mesh;      // index into RtslLaunch::meshes when primitive is 0
+  // index into RtslLaunch::meshes when primitive is 0; of an object that holds several primitives,
+  // its number among such objects
+  uint32_t mesh;
   uint32_t needs;     // RTSL_NEEDS_* of its material
   uint32_t mask;      // visible to rays whose mask has a common bit
   uint32_t anyHit;    // rtslRayTypeBit of the payloads for which its material has `anyHit`
   uint32_t transform; // index into RtslLaunch::transforms; 0: object space is world space
   uint32_t roots;     // bit r: rays that enter at root r can see it
+  // the first of RtslLaunch::boxes of an object that holds several primitives, and their number;
+  // any other object is one primitive, and has 0 and 0
+  uint32_t firstBox, boxCount;
+  int32_t id;         // the scene's number for it, rt_InstanceId
+  uint32_t selection; // of RtslLaunch::selections: rays see it if this one is visited; 0: always
   float boundMin[3], boundMax[3]; // of an RTSL primitive, from `computeBounds`, in object space
   // the box for traversal in world space, slightly larger; not of a mesh without a transform
   float lower[3], upper[3];
 } RtslInstance;
+
+/// The bounds of one primitive of several, from `computeBounds`, in object space.
+typedef struct RtslBox {
+  float lower[3], upper[3];
+} RtslBox;
+
+/// The way through a selector to one of its children. Rays take it if `visit` calls visitChild with
+/// the number of the child, and if they take the way to the selector.
+typedef struct RtslSelection {
+  RtslRef selector;
+  int32_t child;
+  uint32_t transform; // of the space of the selector; as RtslInstance::transform
+  uint32_t above;     // the selection that leads to the selector; 0: none
+} RtslSelection;
 
 /// The transform of an instance: p -> linear p + translation, from object to world space. Matrices
 /// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double.
@@ -79,8 +100,8 @@ typedef struct RtslMeshTree {
 /// An instance that shines, as a light: its material has `emission`, and points on it can be chosen.
 typedef struct RtslEmitter {
   uint32_t instance;
-  // for a mesh: of the first of its triangles in RtslLaunch::triangleChances
-  uint32_t firstTriangle;
+  // for a mesh or an object with several primitives: of the first of them in RtslLaunch::partChances
+  uint32_t firstPart;
   // the probability that this one or one before it is chosen; of the last: 1
   float chances;
 } RtslEmitter;
@@ -91,6 +112,8 @@ typedef struct RtslLaunch {
   const RtslInstance *instances;
   const RtslMesh *meshes;
   const RtslTransform *transforms; // the first is the identity
+  const RtslBox *boxes;
+  const RtslSelection *selections; // the first is unused
   const RtslRef *lights;
   RtslRef camera;        // of the classic engine
   RtslRef rayGeneration; // of the programs engine
@@ -99,6 +122,7 @@ typedef struct RtslLaunch {
   float backgroundColor[RTSL_MAX_COLOR];
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, transformCount, lightCount;
+  uint32_t boxCount, selectionCount;
   uint32_t colorComponents;
   uint32_t maxDepth; // 0: camera rays only
   // the maximum number of references from one object to the next, in a chain
@@ -107,12 +131,14 @@ typedef struct RtslLaunch {
   uint32_t seed;
   const RtslBvhNode *nodes; // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
-  // by mesh: the tree of a mesh that has instances with transforms, in its object space
+  // by mesh: the tree of a mesh that has instances with transforms, in its object space; then those
+  // of objects that hold several primitives, likewise
   const RtslMeshTree *meshTrees;
   const RtslEmitter *emitters; // in the order of their instances
-  // of an emitter's mesh: the probability that this triangle or one before it is chosen
-  const float *triangleChances;
-  uint32_t emitterCount, triangleChanceCount;
+  // of the triangles of an emitter's mesh, or of its primitives: the probability that this one or one
+  // before it is chosen
+  const float *partChances;
+  uint32_t emitterCount, partChanceCount;
   uint32_t rootIsLeaf,
       nodeCount;  // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
   uint32_t needs; // RTSL_NEEDS_*: what the classes of the scene read
@@ -215,6 +241,8 @@ typedef struct RtslState {
   float candidateNear,
       candidateFar; // range of the ray in the box of the RTSL primitive that is being tested
   uint32_t areAttributesLost; // 1: a hit that lost has overwritten those of the hit so far
+  int32_t wantedChild;        // while `visit` of a selector runs: which child leads on,
+  uint32_t isChildVisited;    // and 1: visitChild was called with it
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
@@ -249,15 +277,19 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_ANY_HIT 512u // no state: some ray's hits may be rejected
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_HIT_ERRORS 2048u  // no state: rays leave hits, so the error of t matters
-#define RTSL_NEEDS_ATTRIBUTES 4096u  // no state: what `intersect` wrote to scratch members
-#define RTSL_NEEDS_CAMERA_RAY 65536u // RayOrigin RayDirection in `generate`
-#define RTSL_NEEDS_EMITTERS 131072u  // no state: points are lit by surfaces that shine
-#define RTSL_NEEDS_ALL (8191u | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
+#define RTSL_NEEDS_HIT_ERRORS 2048u   // no state: rays leave hits, so the error of t matters
+#define RTSL_NEEDS_ATTRIBUTES 4096u   // no state: what `intersect` wrote to scratch members
+#define RTSL_NEEDS_INSTANCE_ID 32768u // InstanceId
+#define RTSL_NEEDS_CAMERA_RAY 65536u  // RayOrigin RayDirection in `generate`
+#define RTSL_NEEDS_EMITTERS 131072u   // no state: points are lit by surfaces that shine
+#define RTSL_NEEDS_ALL                                                                             \
+  (8191u | RTSL_NEEDS_INSTANCE_ID | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
-#define RTSL_HAS_TRANSFORMS 8192u // some instance has a transform
-#define RTSL_HAS_ROOTS 16384u     // some instance is not below root 0, or below another one
-#define RTSL_HAS_ALL (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS)
+#define RTSL_HAS_TRANSFORMS 8192u  // some instance has a transform
+#define RTSL_HAS_ROOTS 16384u      // some instance is not below root 0, or below another one
+#define RTSL_HAS_COUNTS 262144u    // some object holds several primitives
+#define RTSL_HAS_SELECTORS 524288u // some instance is below a selector
+#define RTSL_HAS_ALL (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u
@@ -304,7 +336,7 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 /// RtslLaunch::instances. A program that was bound to a scene of few instances has a copy of them,
 /// so that what it loads from there at a constant index is a constant.
 const RtslInstance *rtsl_instances(const RtslLaunch *launch);
-/// The number of instances of such a scene if all of them are primitives: the project's own
+/// The number of instances of such a scene if each of them is one primitive: the project's own
 /// traversal tests them one after the other. Otherwise 0, and it searches the tree.
 uint32_t rtsl_listed_instances(const RtslLaunch *launch);
 
@@ -350,14 +382,17 @@ uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float 
 
 /// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of its
 /// own choice times the area that the point stands for; for a mesh the radiance at a point of the
-/// triangle. The mean of the color's components; not finite: unknown. `sample` numbers the points.
-float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t triangle,
+/// triangle. `part` is the triangle, or one of the primitives of an object. The mean of the color's components; not finite: unknown. `sample` numbers the points.
+float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
                          uint32_t sample);
 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);
 /// `randOpen()`: uniform in (0, 1).
 float rtsl_rand_open(RtslState *state);
+
+/// `visitChild(child)` of the language.
+void rtsl_visit_child(RtslState *state, int32_t child);
 
 /// Records that the sample has met an exception.
 void rtsl_raise(RtslState *state, uint32_t exception);

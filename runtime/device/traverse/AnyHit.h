@@ -101,23 +101,17 @@ public:
 
   /// The same for an item that was found before.
   void testAgain(const RtslLeafItem &item) const {
-    const RtslInstance &instance = instanceOf(item);
-    if (instance.primitive != 0 || !isTransformed(*state.launch, instance)) {
-      test(item, triangleRay);
-      return;
-    }
-    InstanceRay entered;
-    if (enterInstance(*state.launch, triangleRay, item.instance, state.Epsilon, state.nearest,
-                      entered))
-      test(item, entered);
+    visitInItsSpace(state, triangleRay, item, state.nearest,
+                    [&](const RtslLeafItem &, const auto &ray) { return test(item, ray); });
   }
 
   /// Calls visit(item, ray in its space) for items that may be hit before limit() until it returns
   /// true.
   template <typename Limit, typename Visit>
   void forEach(Limit limit, Visit visit) const {
-    tree.forEach(state, triangleRay, limit, [&](const RtslLeafItem &item, const auto &ray) {
-      return isSeen(state, instanceOf(item)) && visit(item, ray);
+    const auto sees = [&](const RtslInstance &instance) { return isSeen(state, instance, slots); };
+    tree.forEach(state, triangleRay, limit, sees, [&](const RtslLeafItem &item, const auto &ray) {
+      return sees(instanceOf(item)) && visit(item, ray);
     });
   }
 

@@ -3,22 +3,26 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/traverse/Box.h"
 #include "runtime/device/traverse/Instance.h"
 
 namespace rtsl::device {
 
-/// The bounds of an RTSL primitive's instance, from `computeBounds`.
-inline void describeBounds(RtslState &state, const RtslInstance &instance) {
-  store(state.BoundMin, load(instance.boundMin));
-  store(state.BoundMax, load(instance.boundMax));
+/// The bounds of an RTSL primitive, from `computeBounds`.
+inline void describeBounds(RtslState &state, const RtslInstance &instance, uint32_t primitive) {
+  const RtslBox bounds = boundsOf(*state.launch, instance, primitive);
+  store(state.BoundMin, load(bounds.lower));
+  store(state.BoundMax, load(bounds.upper));
 }
 
 /// State of the tested primitive and its transforms that `intersect` may read.
 inline void describeCandidate(RtslState &state) {
   const RtslInstance &instance = instanceAt(*state.launch, state.candidateInstance);
-  describeBounds(state, instance);
+  describeBounds(state, instance, state.candidatePrimitive);
   state.PrimitiveIndex = int32_t(state.candidatePrimitive);
   state.InstanceIndex = int32_t(state.candidateInstance);
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_INSTANCE_ID)
+    state.InstanceId = instance.id;
   describeTransforms(state, instance);
 }
 

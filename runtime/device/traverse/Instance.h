@@ -147,14 +147,25 @@ inline float moveIntoInstance(const InstanceRay &ray, float t) {
 /// goes out of scope. Without a transform it does nothing.
 class InObjectSpace {
 public:
-  InObjectSpace(RtslState &state, const RtslInstance &instance)
-      : state(state), isActive(isTransformed(*state.launch, instance)) {
+  /// `transform`: an index into the launch's transforms, as RtslInstance::transform.
+  InObjectSpace(RtslState &state, uint32_t transform)
+      : state(state), isActive(hasTransforms(*state.launch) && transform != 0) {
     if (!isActive)
       return;
-    const RtslTransform &transform = transformOf(*state.launch, instance);
+    const RtslTransform &toWorld = state.launch->transforms[transform];
     origin = load(state.RayOrigin);
     direction = load(state.RayDirection);
-    setRay(pointToObject(transform, origin), vectorToObject(transform, direction));
+    setRay(pointToObject(toWorld, origin), vectorToObject(toWorld, direction));
+  }
+  InObjectSpace(RtslState &state, const RtslInstance &instance)
+      : InObjectSpace(state, instance.transform) {}
+  /// The same for a ray that is in world space, or has entered the instance.
+  InObjectSpace(RtslState &state, const RtslInstance &instance, const TriangleRay &)
+      : InObjectSpace(state, instance.transform) {}
+  InObjectSpace(RtslState &state, const RtslInstance &, const InstanceRay &entered)
+      : state(state), isActive(true), origin(load(state.RayOrigin)),
+        direction(load(state.RayDirection)) {
+    setRay(entered.origin, entered.direction);
   }
   InObjectSpace(const InObjectSpace &) = delete;
   ~InObjectSpace() {
@@ -175,13 +186,13 @@ private:
   Vec3 origin = {}, direction = {};
 };
 
-/// The matrices of the instance, for RTSL_NEEDS_TRANSFORMS.
-inline void describeTransforms(RtslState &state, const RtslInstance &instance) {
+/// The matrices of a transform, an index into the launch's, for RTSL_NEEDS_TRANSFORMS.
+inline void describeTransforms(RtslState &state, uint32_t number) {
   for (int i = 0; i < 16; ++i)
     state.ObjectToWorld[i] = state.WorldToObject[i] = i % 5 == 0 ? 1.0f : 0.0f;
-  if (!isTransformed(*state.launch, instance))
+  if (!hasTransforms(*state.launch) || number == 0)
     return;
-  const RtslTransform &transform = transformOf(*state.launch, instance);
+  const RtslTransform &transform = state.launch->transforms[number];
   const Vec3 origin = pointToObject(transform, {0, 0, 0});
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) {
@@ -192,6 +203,9 @@ inline void describeTransforms(RtslState &state, const RtslInstance &instance) {
     state.ObjectToWorld[12 + row] = transform.translation[row];
     state.WorldToObject[12 + row] = origin[row];
   }
+}
+inline void describeTransforms(RtslState &state, const RtslInstance &instance) {
+  describeTransforms(state, instance.transform);
 }
 
 } // namespace rtsl::device

@@ -140,7 +140,7 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
                          fused(t, direction.z, origin.z)});
   state.hitPointError = primitivePointError(origin, direction, t);
   if (rtsl_needs(state.launch) & RTSL_NEEDS_CANDIDATE)
-    describeBounds(state, instance);
+    describeBounds(state, instance, state.primitive);
   if (needs & RTSL_NEEDS_NORMALS) {
     setVector(state.GeometricNormal, 0, 0, 0);
     setVector(state.ShadingNormal, 0, 0, 0);
@@ -194,6 +194,8 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   const RtslInstance &instance = instanceAt(launch, state.instance);
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
+  if (needs & RTSL_NEEDS_INSTANCE_ID)
+    state.InstanceId = instance.id;
   clearCoordinates(state, needs);
   if (needs & RTSL_NEEDS_TRANSFORMS)
     describeTransforms(state, instance);

@@ -6,6 +6,7 @@
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/Selector.h"
 #include "runtime/device/traverse/Triangle.h"
 
 namespace rtsl::device {
@@ -20,12 +21,26 @@ inline bool isGoodRay(const RtslState &state) {
 }
 
 /// Is the instance visible to the ray?
-inline bool isSeen(const RtslState &state, const RtslInstance &instance) {
+template <typename Slots>
+bool isSeen(RtslState &state, const RtslInstance &instance, const Slots &slots) {
   const bool isBelowRoot = rtsl_needs(state.launch) & RTSL_HAS_ROOTS
                                ? uint32_t(state.rayRoot) < 32 &&
                                      (instance.roots >> (uint32_t(state.rayRoot) & 31) & 1) != 0
                                : state.rayRoot == 0;
-  return isBelowRoot && (instance.mask & state.rayMask);
+  return isBelowRoot && (instance.mask & state.rayMask) && isSelected(state, instance, slots);
+}
+
+/// Have the primitives of the instance boxes in its own space? Then they are tested with the ray
+/// that has entered it.
+inline bool hasOwnSpace(const RtslLaunch &launch, const RtslInstance &instance) {
+  return isTransformed(launch, instance) &&
+         (instance.primitive == 0 || isCounted(launch, instance));
+}
+
+/// The tree of such an instance.
+inline RtslMeshTree treeOf(const RtslLaunch &launch, const RtslInstance &instance) {
+  return launch
+      .meshTrees[instance.primitive == 0 ? instance.mesh : launch.meshCount + instance.mesh];
 }
 
 struct TriangleVertices {
@@ -86,13 +101,18 @@ inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
 }
 
 /// Runs `intersect` of an RTSL primitive, intersect(state, object), as if nothing else had been
-/// hit. True if it commits a hit that wins. It must not be the hit so far.
-template <typename Intersect>
-bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance &instance,
+/// hit. True if it commits a hit that wins. It must not be the hit so far. `Ray` is a TriangleRay
+/// in world space or an InstanceRay.
+template <typename Ray, typename Intersect>
+bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instance,
                    const RtslLeafItem &item, Intersect intersect) {
-  Range range = rangeInBox(instance.lower, instance.upper, ray.origin, ray.inverse, 0, infinity);
-  const Range widened = range.widened();
-  if (range.isEmpty() || widened.near > state.nearest || widened.far < state.Epsilon)
+  const RtslBox box = boxOf(*state.launch, instance, item.primitive);
+  const Range range = rangeInBox(box.lower, box.upper, ray.origin, ray.inverse, 0, infinity);
+  if (range.isEmpty())
+    return false;
+  const Range inBox = range.widened();
+  const Range widened = {moveIntoInstance(ray, inBox.near), moveIntoInstance(ray, inBox.far)};
+  if (widened.near > state.nearest || widened.far < state.Epsilon)
     return false;
   const float end = state.HitDistance;
   const uint32_t dimension = state.dimension;
@@ -101,7 +121,7 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
   state.candidateFar = widened.far;
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
-    const InObjectSpace space(state, instance);
+    const InObjectSpace space(state, instance, ray);
     intersect(&state, instance.primitive);
   }
   const bool hasHit = state.HitDistance < end;
@@ -111,6 +131,19 @@ bool testPrimitive(RtslState &state, const TriangleRay &ray, const RtslInstance 
   if (hasHit && !hasWon && rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES)
     state.areAttributesLost = 1;
   return hasWon;
+}
+
+/// Calls visit(item, ray) for an item with the ray in its space. False if the ray does not enter
+/// that before `limit`, or if visit returns false.
+template <typename Visit>
+bool visitInItsSpace(const RtslState &state, const TriangleRay &ray, const RtslLeafItem &item,
+                     float limit, Visit visit) {
+  const RtslLaunch &launch = *state.launch;
+  if (!hasOwnSpace(launch, instanceAt(launch, item.instance)))
+    return visit(item, ray);
+  InstanceRay entered;
+  return enterInstance(launch, ray, item.instance, state.Epsilon, limit, entered) &&
+         visit(item, entered);
 }
 
 /// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they
@@ -125,11 +158,13 @@ void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect inte
   const RtslLeafItem item = {state.instance, state.primitive};
   state.nearest = state.HitDistance;
   state.instance = RTSL_NO_HIT;
-  testPrimitive(state, ray, instance, item, intersect);
+  visitInItsSpace(state, ray, item, state.nearest, [&](const RtslLeafItem &, const auto &inside) {
+    return testPrimitive(state, inside, instance, item, intersect);
+  });
 }
 
-/// Tests one leaf item, in the space of a ray that has entered the item's instance if that is a
-/// mesh with a transform, and commits it if it wins.
+/// Tests one leaf item, in the space of a ray that has entered the item's instance if that has its
+/// own, and commits it if it wins.
 template <typename Ray, typename Intersect>
 bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Intersect intersect) {
   const RtslInstance &instance = instanceAt(*state.launch, item.instance);
@@ -168,10 +203,12 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
 
 /// The tree of the launch, or the list of its instances. A tree calls visit(item, ray) for each
 /// leaf item that may have hits before limit(), nearer ones first on the whole, until it returns
-/// true. `ray` is the ray in world space, or the InstanceRay for items of meshes with transforms.
+/// true. `ray` is the ray in world space, or the InstanceRay for items that have their own space.
+/// It passes over instances with a space that enter(instance) is false for.
 struct LaunchTree {
-  template <typename Limit, typename Visit>
-  void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Visit visit) const {
+  template <typename Limit, typename Enter, typename Visit>
+  void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Enter enter,
+               Visit visit) const {
     const RtslLaunch &launch = *state.launch;
     const float tMin = maximum(state.Epsilon, 0.0f);
     if (const uint32_t count = rtsl_listed_instances(&launch)) {
@@ -184,30 +221,34 @@ struct LaunchTree {
       if (!hasTransforms(launch))
         return visit(item, ray);
       const RtslInstance &instance = instanceAt(launch, item.instance);
-      if (instance.primitive != 0 || instance.transform == 0)
+      if (!hasOwnSpace(launch, instance))
         return visit(item, ray);
       InstanceRay entered;
-      if (!isSeen(state, instance) ||
+      if (!enter(instance) ||
           !enterInstance(launch, ray, item.instance, state.Epsilon, limit(), entered))
         return false;
-      return traverseBvh(launch, launch.meshTrees[instance.mesh], entered, tMin, limit,
-                         [&](const RtslLeafItem &triangle) {
-                           return visit(RtslLeafItem{item.instance, triangle.primitive}, entered);
+      return traverseBvh(launch, treeOf(launch, instance), entered, tMin, limit,
+                         [&](const RtslLeafItem &inside) {
+                           return visit(RtslLeafItem{item.instance, inside.primitive}, entered);
                          });
     });
   }
 };
 
-/// rtsl_traverse for a good ray, with any tree. intersect(state, object) is the slot of
-/// rt_Primitive.
-template <typename Intersect, typename Tree>
-uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree &tree) {
+/// rtsl_traverse for a good ray, with any tree. `slots` has the methods that it needs as members
+/// with the names of Slots.def.
+template <typename Slots, typename Tree>
+uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &tree) {
   TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
+  const auto intersect = [&](RtslState *ray, RtslRef object) {
+    slots.rt_Primitive_intersect(ray, object);
+  };
+  const auto sees = [&](const RtslInstance &instance) { return isSeen(state, instance, slots); };
   beginSearch(state);
   tree.forEach(
-      state, ray, [&] { return state.nearest; },
+      state, ray, [&] { return state.nearest; }, sees,
       [&](const RtslLeafItem &item, const auto &inItsSpace) {
-        return isSeen(state, instanceAt(*state.launch, item.instance)) &&
+        return sees(instanceAt(*state.launch, item.instance)) &&
                testItem(state, inItsSpace, item, intersect) && anyHit;
       });
   if (!anyHit)
@@ -216,9 +257,9 @@ uint32_t findHit(RtslState &state, bool anyHit, Intersect intersect, const Tree 
 }
 
 /// rtsl_traverse with the tree of the launch.
-template <typename Intersect>
-uint32_t traverseDevice(RtslState &state, bool anyHit, Intersect intersect) {
-  return isGoodRay(state) ? findHit(state, anyHit, intersect, LaunchTree()) : RTSL_BAD_RAY;
+template <typename Slots>
+uint32_t traverseDevice(RtslState &state, bool anyHit, const Slots &slots) {
+  return isGoodRay(state) ? findHit(state, anyHit, slots, LaunchTree()) : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

@@ -167,6 +167,27 @@ def outputs():
     }
 
 
+def graph():
+    """Objects of several primitives, selectors, ids and variables."""
+    balls = [[0, 0, 0, 1], [1.2, 0, 0, 0.5], [-1.2, 0, 0, 0.5], [0, 1.2, 0, 0.5]]
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Graph.rtsl")],
+        "camera": {"class": "Look"},
+        "variables": {"tint": [0.3, 0.6, 0.8]},
+        "nodes": {
+            "many": {"primitive": {"class": "Balls", "balls": balls}, "count": "balls", "material": {"class": "Paint"}, "id": 5},
+            "one": {"primitive": {"class": "Balls", "balls": [[0, 0, 0, 1.3]]}, "material": {"class": "Paint"}},
+            "lod": {"selector": {"class": "Near", "limit": 14.6}, "children": ["many", "one"]},
+            "dice": {"selector": {"class": "Chance"}, "children": ["many", "one", {"child": "one", "transform": {"scale": 0.5}}]},
+            "world": {"children": ["many", {"child": "lod", "transform": {"translate": [-4, 0, -6]}, "variables": {"tint": [1, 0, 0]}},
+                                   {"child": "dice", "transform": {"scale": [0.5, 1.5, 1], "rotate": [20, 30, 0], "translate": [3, 0, 0]}}]},
+        },
+        "root": "world",
+        "render": {"size": [40, 30], "spp": 4, "depth": 3},
+    }
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -187,6 +208,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--trace=recurse"], [images()]),
     ("g++", ["-O1"], ["--undefined=nan"], [outputs()]),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--exceptions"], [outputs()]),
+    ("g++", ["-O1"], ["--undefined=nan"], [graph()]),
+    ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [graph()]),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]

@@ -19,6 +19,11 @@ std::uint32_t classOf(const RtslState *state, RtslRef object) {
   return *reinterpret_cast<const std::uint32_t *>(state->launch->records + object);
 }
 
+/// Of the primitive that the state is about.
+Vec3 centerOf(const RtslState *state, const test::SphereRecord &sphere) {
+  return load(sphere.center) + Vec3{1.1f, -0.6f, 0.4f} * float(state->PrimitiveIndex);
+}
+
 } // namespace
 
 //===----------------------------------------------------------------------===//
@@ -42,7 +47,7 @@ void rtsl_rt_Primitive_intersect(RtslState *state, RtslRef object) {
   if (classOf(state, object) != test::sphereId)
     return;
   const auto &sphere = record<test::SphereRecord>(state, object);
-  Vec3 d = load(state->RayDirection), f = load(sphere.center) - load(state->RayOrigin);
+  Vec3 d = load(state->RayDirection), f = centerOf(state, sphere) - load(state->RayOrigin);
   float dd = dot(d, d), b = dot(f, d) / dd;
   Vec3 away = f - d * b;
   float h = sphere.radius * sphere.radius - dot(away, away);
@@ -62,14 +67,14 @@ void rtsl_rt_Primitive_computeBounds(RtslState *state, RtslRef object) {
   }
   const auto &sphere = record<test::SphereRecord>(state, object);
   Vec3 r = {sphere.radius, sphere.radius, sphere.radius};
-  store(state->BoundMin, load(sphere.center) - r);
-  store(state->BoundMax, load(sphere.center) + r);
+  store(state->BoundMin, centerOf(state, sphere) - r);
+  store(state->BoundMax, centerOf(state, sphere) + r);
 }
 
 void rtsl_rt_Primitive_computeNormal(RtslState *state, RtslRef object) {
   const auto &sphere = record<test::SphereRecord>(state, object);
   store(state->GeometricNormal,
-        (load(state->HitPoint) - load(sphere.center)) * (1.0f / sphere.radius));
+        (load(state->HitPoint) - centerOf(state, sphere)) * (1.0f / sphere.radius));
 }
 
 void rtsl_rt_Primitive_computeTextureCoordinates(RtslState *, RtslRef) {}
@@ -78,6 +83,13 @@ void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
 void rtsl_rt_Texture_lookup(RtslState *, RtslRef) {}
 void rtsl_rt_RayGeneration_generate(RtslState *, RtslRef) {}
 void rtsl_rt_Exception_exception(RtslState *, RtslRef) {}
+void rtsl_rt_Selector_visit(RtslState *state, RtslRef) {
+  const float sum = state->RayOrigin[0] + 0.7f * state->RayOrigin[1] + state->RayDirection[2];
+  if (sum < 0.5f)
+    rtsl_visit_child(state, 0);
+  if (sum > -0.5f && rtsl_rand(state) < 0.75f)
+    rtsl_visit_child(state, 1);
+}
 
 static void shadeLambert(RtslState *state, const test::LambertRecord &lambert) {
   Vec3 n = load(state->ShadingNormal);
@@ -296,6 +308,7 @@ std::shared_ptr<Program> fakeProgram() {
                                       {member("lower", vec3Type(), offsetof(BoxedRecord, lower)),
                                        member("upper", vec3Type(), offsetof(BoxedRecord, upper))},
                                       {"intersect", "computeBounds"}));
+  program->classes.push_back(describe("Chooser", "rt_Selector", chooserId, 4, {}, {"visit"}));
   program->classes.push_back(everything());
 #define RTSL_SLOT(base, method) program->slots.base##_##method = rtsl_##base##_##method;
 #include "language/Slots.def"

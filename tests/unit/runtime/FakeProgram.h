@@ -23,6 +23,7 @@ enum ClassId : std::uint32_t {
   lightId,
   skyId,
   boxedId,
+  chooserId,
 };
 
 struct CameraRecord {
@@ -51,8 +52,9 @@ struct BoxedRecord {
   float lower[3], upper[3];
 };
 
-/// Classes Camera, Sphere, Lambert, Mirror, Noise, Normal, Light, Sky, Boxed, and Everything, a
-/// material with one member of each type.
+/// Classes Camera, Sphere, Lambert, Mirror, Noise, Normal, Light, Sky, Boxed, Chooser, and
+/// Everything, a material with one member of each type. A Sphere that holds several primitives is a
+/// row of spheres. A Chooser visits child 0, 1 or both, by the ray.
 std::shared_ptr<Program> fakeProgram();
 
 Value vector(double x, double y, double z);

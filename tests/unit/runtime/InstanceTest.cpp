@@ -43,7 +43,8 @@ Mesh clump(std::mt19937 &random, int triangles) {
   return mesh;
 }
 
-/// Instances of two meshes, one of which is in world space too, and of spheres.
+/// Instances of two meshes, one of which is in world space too, of spheres, and of rows of spheres;
+/// some of them below selectors, one of which is below the other.
 Scene randomScene(unsigned seed, int instances) {
   std::mt19937 random(seed);
   Scene scene(fakeProgram());
@@ -54,13 +55,22 @@ Scene randomScene(unsigned seed, int instances) {
   const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)),
                                   scene.addMesh(clump(random, 3))};
   const RtslRef sphere = scene.addObject("Sphere", {vector(0.25, 0, 0), 0.75});
+  const RtslRef row = scene.addObject("Sphere", {vector(-1, 0.5, 0), 0.35});
+  const RtslRef chooser = scene.addObject("Chooser", members({}));
+  const std::uint32_t outer = scene.addSelector(chooser, 2),
+                      inner = scene.addSelector(chooser, 2, randomTransform(random), outer + 1);
   scene.addMeshInstance(meshes[0], material);
+  scene.addPrimitive(row, material, {}, 7);
   for (int i = 0; i < instances; ++i) {
     Placement placement;
     placement.transform = randomTransform(random);
     placement.mask = i % 4 == 0 ? 1 : 3;
     placement.roots = i % 3 == 0 ? 2 : i % 3 == 1 ? 3 : 1;
-    if (i % 3 == 2)
+    placement.id = i - 20;
+    placement.selection = i % 5 == 0 ? outer + random() % 2 : i % 5 == 1 ? inner + random() % 2 : 0;
+    if (i % 6 == 5)
+      scene.addPrimitive(row, material, placement, 7);
+    else if (i % 3 == 2)
       scene.addPrimitive(sphere, material, placement);
     else
       scene.addMeshInstance(meshes[i % 2], material, placement);
@@ -76,22 +86,15 @@ void bruteForce(RtslState &state) {
   device::beginSearch(state);
   for (std::uint32_t i = launch.instanceCount; i-- > 0;) {
     const RtslInstance &instance = launch.instances[i];
-    if (!device::isSeen(state, instance))
+    if (!device::isSeen(state, instance, device::LinkedSlots()))
       continue;
-    if (instance.primitive) {
-      device::testPrimitive(state, world, instance, {i, 0}, rtsl_rt_Primitive_intersect);
-      continue;
-    }
-    const RtslMesh &mesh = launch.meshes[instance.mesh];
-    device::InstanceRay entered;
-    if (instance.transform != 0 &&
-        !device::enterInstance(launch, world, i, state.Epsilon, state.nearest, entered))
-      continue;
-    for (std::uint32_t t = mesh.triangleCount; t-- > 0;)
-      if (instance.transform != 0)
-        device::testTriangle(state, entered, mesh, i, t);
-      else
-        device::testTriangle(state, world, mesh, i, t);
+    const std::uint32_t count = instance.primitive == 0 ? launch.meshes[instance.mesh].triangleCount
+                                                        : std::max(instance.boxCount, 1u);
+    for (std::uint32_t number = count; number-- > 0;)
+      device::visitInItsSpace(
+          state, world, {i, number}, state.nearest, [&](const RtslLeafItem &item, const auto &ray) {
+            return device::testItem(state, ray, item, rtsl_rt_Primitive_intersect);
+          });
   }
   device::endSearch(state);
 }
@@ -110,9 +113,9 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
   const HostScene embree(scene, true, 1), own(scene, false, 1);
   RtslLaunch launch = scene.launch();
   launch.host = &embree;
-  EXPECT_EQ(launch.needs & RTSL_HAS_ALL, RTSL_HAS_ALL);
+  EXPECT_EQ(launch.needs & RTSL_HAS_ALL, RTSL_HAS_ALL); // and all of them are tested
   std::mt19937 random(5);
-  int hits = 0, hitsOfInstances = 0;
+  int hits = 0, hitsOfInstances = 0, hitsOfRows = 0, hitsBelowSelectors = 0;
   for (int i = 0; i < 6000; ++i) {
     const Ray ray = randomRay(random, 1);
     const float epsilon = i % 3 ? 0 : 0.25f, distance = i % 5 ? INFINITY : 4;
@@ -129,10 +132,17 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
     ASSERT_NO_FATAL_FAILURE(expectSame(ofOwn, brute, i));
     ASSERT_NO_FATAL_FAILURE(expectSame(ofEmbree, brute, i));
     hits += isHit;
-    hitsOfInstances += isHit && launch.instances[brute.instance].transform != 0;
+    if (!isHit)
+      continue;
+    const RtslInstance &hit = launch.instances[brute.instance];
+    hitsOfInstances += hit.transform != 0;
+    hitsOfRows += hit.boxCount != 0;
+    hitsBelowSelectors += hit.selection != 0;
   }
   EXPECT_GT(hits, 3000);
   EXPECT_GT(hitsOfInstances, 2000);
+  EXPECT_GT(hitsOfRows, 200);
+  EXPECT_GT(hitsBelowSelectors, 300);
 }
 
 TEST(Instances, AreDescribedInWorldSpace) {
@@ -150,6 +160,8 @@ TEST(Instances, AreDescribedInWorldSpace) {
     const RtslInstance &instance = launch.instances[state.instance];
     const RtslTransform &transform = launch.transforms[instance.transform];
     describeHit(state, RTSL_NEEDS_ALL & ~RTSL_NEEDS_HIT_ERRORS, device::LinkedSlots());
+    EXPECT_EQ(state.InstanceId,
+              int(state.instance) - 22); // two instances come before those with ids
     const Vec3 normal = device::load(state.GeometricNormal);
     EXPECT_NEAR(device::dot(normal, normal), 1, 1e-6f);
     // The ray is in world space again.

@@ -137,3 +137,26 @@ TEST(SceneGraph, WarnsOfNodesOutsideOfTheScene) {
             "the node `b` is not part of the scene: no root leads to it");
   EXPECT_EQ(scene.warnings[0].place->line, 3u);
 }
+
+TEST(SceneGraph, HasSelectorsAndVariablesForEachWayDown) {
+  const SceneDescription scene = parse(R"("variables": {"v": 1},
+"nodes": {
+  )" + leaf + R"(,
+  "lod": {"selector": {"class": "Near"}, "children": ["a", {"child": "a", "id": 5}], "id": 3},
+  "two": {"children": ["lod", {"child": "lod", "variables": {"v": 2}, "transform": {"translate": [1, 0, 0]}}]}},
+"root": "two")");
+  ASSERT_EQ(scene.selectors.size(), 2u);
+  EXPECT_EQ(scene.selectors[1].children, 2u);
+  EXPECT_EQ(scene.selectors[1].toWorld.columns[3][0], 1);
+  EXPECT_EQ(scene.selectors[1].above, 0u);
+  ASSERT_EQ(scene.objects.size(), 1u);
+  const auto &placements = scene.objects[0].placements;
+  ASSERT_EQ(placements.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(placements[i].selector, 1 + i / 2);
+    EXPECT_EQ(placements[i].childOfSelector, i % 2);
+    EXPECT_EQ(placements[i].id, i % 2 ? 5 : 3);
+    EXPECT_EQ(placements[i].scope->find("v")->second->number, i / 2 + 1.0);
+    EXPECT_EQ(placements[i].scope->find("w"), nullptr);
+  }
+}

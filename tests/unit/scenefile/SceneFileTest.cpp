@@ -111,11 +111,6 @@ TEST(SceneFile, WrongTypesAndRanges) {
       "arguments by name, not a number");
 }
 
-TEST(SceneFile, WhatComesLaterIsRefusedClearly) {
-  EXPECT_EQ(parseError(withCamera("\"variables\": []")),
-            "dir/s.json:2:2+9: notSupported: `variables` is not supported yet");
-}
-
 TEST(SceneFile, TransformsOfPrimitivesPlaceThem) {
   const SceneDescription scene = parseScene(
       withCamera("\"objects\": [{\"primitive\": {\"class\": \"S\"}, \"material\": \"m\", "

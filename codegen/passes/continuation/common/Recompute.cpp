@@ -11,9 +11,9 @@ namespace rtsl::continuation {
 
 /// State that only the runtime writes, before a shader runs: calls do not change it.
 static constexpr llvm::StringLiteral fixedState[] = {
-    "Epsilon",       "HitDistance",    "ScreenCoord",   "LensCoord",    "TimeSeed",
-    "LaunchIndex",   "LaunchSize",     "Time",          "Depth",        "ObjectToWorld",
-    "WorldToObject", "PrimitiveIndex", "InstanceIndex", "ExceptionCode"};
+    "Epsilon",       "HitDistance",    "ScreenCoord",   "LensCoord",  "TimeSeed",
+    "LaunchIndex",   "LaunchSize",     "Time",          "Depth",      "ObjectToWorld",
+    "WorldToObject", "PrimitiveIndex", "InstanceIndex", "InstanceId", "ExceptionCode"};
 
 bool StateWrites::add(const StateWrites &other) {
   bool isNew = other.any && !any;

@@ -135,6 +135,15 @@ TEST(Bind, AMeshNeedsTheTree) {
   EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
 }
 
+TEST(Bind, AnObjectOfSeveralPrimitivesNeedsTheTree) {
+  Linked linked(lenses, {{"Lens", "Ball"}, {}});
+  runtime::SceneFacts facts;
+  facts.instances = {instanceOf(16), instanceOf(32)};
+  facts.instances[1].boxCount = 2;
+  bindScene(*linked.ir, facts);
+  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+}
+
 TEST(Bind, ManyPrimitivesNeedTheTree) {
   Linked linked(lenses, {{"Lens", "Ball"}, {}});
   runtime::SceneFacts facts;

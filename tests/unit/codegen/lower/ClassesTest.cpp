@@ -376,30 +376,5 @@ class P : rt_Primitive {
   EXPECT_EQ(shader.state.HitDistance, 3.0F);
 }
 
-/// The only message for `source`, or what there was instead.
-std::string onlyMessage(const std::string &source, std::string &place) {
-  Lowered lowered(source, {}, /*expectErrors=*/true);
-  if (lowered.messages().all().size() != 1)
-    return renderText(lowered.messages(), false);
-  const Diagnostic &message = lowered.messages().all().front();
-  EXPECT_EQ(message.code, Code::notSupportedYet);
-  place = lowered.messages().sources().text(message.range);
-  return message.message;
-}
-
-TEST(Unsupported, IsReportedWhereItStands) {
-  struct {
-    const char *source, *message, *place;
-  } const cases[] = {
-      {"class C : rt_Selector { void visit() { visitChild(0); } };",
-       "`visitChild` is not supported yet", "visitChild(0)"},
-  };
-  for (const auto &expected : cases) {
-    std::string place;
-    EXPECT_EQ(onlyMessage(expected.source, place), expected.message);
-    EXPECT_EQ(place, expected.place);
-  }
-}
-
 } // namespace
 } // namespace rtsl::test

@@ -1,0 +1,58 @@
+//===- Selector.h - instances that rays see by choice ---------------------===//
+//
+// A selector decides for each ray which of its children the ray may enter: `visit` calls visitChild
+// for them. It runs when a traversal reaches the box of an instance below the selector, as often as
+// that happens, and must give the same answer each time: it sees the ray and its own object, and
+// random numbers of its own. So what a ray sees does not depend on the order of a traversal.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/traverse/Instance.h"
+
+namespace rtsl::device {
+
+/// The first dimension of the random numbers in `visit` of a selector: beyond those of any method
+/// that runs once per ray, and different for each selector.
+inline uint32_t dimensionOfSelector(RtslRef selector, uint32_t transform) {
+  const uint32_t mixed = selector * 0xc2b2ae35u ^ (transform + 1) * 0x27d4eb2fu;
+  return 0xc0000000u | mixed >> 4;
+}
+
+/// `visitChild(child)`.
+inline void visitChild(RtslState &state, int32_t child) {
+  if (child == state.wantedChild)
+    state.isChildVisited = 1;
+}
+
+/// Does the selector let the ray take the way? visit(state, object) is the slot of rt_Selector.
+template <typename Slots>
+bool isTaken(RtslState &state, const RtslSelection &selection, const Slots &slots) {
+  const uint32_t dimension = state.dimension;
+  state.dimension = dimensionOfSelector(selection.selector, selection.transform);
+  state.wantedChild = selection.child;
+  state.isChildVisited = 0;
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_TRANSFORMS)
+    describeTransforms(state, selection.transform);
+  {
+    const InObjectSpace space(state, selection.transform);
+    slots.rt_Selector_visit(&state, selection.selector);
+  }
+  state.dimension = dimension;
+  return state.isChildVisited;
+}
+
+/// Do all selectors above the instance let the ray reach it?
+template <typename Slots>
+bool isSelected(RtslState &state, const RtslInstance &instance, const Slots &slots) {
+  if (!(rtsl_needs(state.launch) & RTSL_HAS_SELECTORS))
+    return true;
+  for (uint32_t number = instance.selection; number != 0;
+       number = state.launch->selections[number].above)
+    if (!isTaken(state, state.launch->selections[number], slots))
+      return false;
+  return true;
+}
+
+} // namespace rtsl::device

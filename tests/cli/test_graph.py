@@ -1,0 +1,326 @@
+"""The scene graph beyond instances: objects that hold several primitives, selectors, ids, and variables along the graph."""
+
+import copy
+import json
+import math
+import random
+import shutil
+import struct
+import unittest
+
+from harness import EXAMPLES, Case
+
+SHADERS = EXAMPLES.parent / "tests" / "cpp" / "scenes" / "Graph.rtsl"
+CLUSTER = [[0, 0, 0, 1], [1.2, 0, 0, 0.5], [-1.2, 0, 0, 0.5], [0, 1.2, 0, 0.5], [0, -1.2, 0, 0.4]]
+SQUASHED = {"scale": [0.5, 1.5, 1], "rotate": [20, 30, 0], "translate": [4, 0, 0]}
+
+
+def balls(*all, **more):
+    return {"primitive": {"class": "Balls", "balls": [list(ball) for ball in all]}, "count": len(all), "material": "paint", **more}
+
+
+def scene(nodes=None, **more):
+    """A scene of all features, or of these nodes."""
+    result = {
+        "rtsl": 1,
+        "import": ["Graph.rtsl"],
+        "camera": {"class": "Look"},
+        "background": [0.1, 0.1, 0.2],
+        "materials": {"paint": {"class": "Paint"}},
+        "nodes": nodes or {
+            "cluster": balls(*CLUSTER),
+            "one": balls([0, 0, 0, 1.5]),
+            "lod": {"selector": {"class": "Near", "limit": 14.6}, "children": ["cluster", "one"]},
+            "dice": {"selector": {"class": "Chance"}, "children": ["cluster", "one", {"child": "one", "transform": {"scale": 0.5}}]},
+            "world": {"children": [
+                {"child": "cluster", "id": 7},
+                {"child": "cluster", "transform": SQUASHED, "variables": {"tint": [0.2, 0.9, 0.3]}, "id": -2},
+                {"child": "lod", "transform": {"translate": [-4, 0, 0]}},
+                {"child": "lod", "transform": {"translate": [-4, 0, -6]}, "variables": {"tint": [0.9, 0.5, 0.1]}},
+                {"selector": {"class": "Some", "mask": 6}, "children": [{"child": "one", "transform": {"scale": 100}}, "far", "dice"],
+                 "transform": {"translate": [3, 2, -4]}},
+            ]},
+            "far": {"child": "lod", "transform": {"translate": [0, 2, 0]}},
+        },
+        "root": "world",
+        "variables": {"shine": 0.5},
+        "render": {"size": [48, 32], "spp": 4, "depth": 3},
+    }
+    result.update(more)
+    return result
+
+
+class GraphCase(Case):
+    def setUp(self):
+        super().setUp()
+        shutil.copy(SHADERS, self.folder)
+        self.number = 0
+
+    def render(self, scene, *options):
+        """The file of the picture, and what was said."""
+        self.number += 1
+        path = self.write(f"scene{self.number}.json", json.dumps(scene, indent=1))
+        picture = self.folder / f"{self.number}.exr"
+        _, error = self.run_rtslc("render", path, "-o", picture, *options)
+        return picture, error
+
+    def mean_of(self, picture):
+        said, _ = self.run_rtslc("compare", picture, picture, "--json")
+        return sum(json.loads(said)["means"][0]) / 3
+
+    def assert_same_picture(self, first, second):
+        self.assert_same_bits(self.render(first)[0], self.render(second)[0])
+
+    def mistakes(self, scene, *options):
+        path = self.write("scene.json", json.dumps(scene, indent=1))
+        return self.diagnose("check", path, *options)
+
+
+class EveryPath(GraphCase):
+    def test_gives_the_same_bits(self):
+        expected, _ = self.render(scene())
+        for options in (["--trace=recurse"], ["--traversal=device"], ["--traversal=device", "--trace=recurse"], ["-O0"],
+                        ["--target=host-megakernel"], ["--keep=all"], ["--target=host-megakernel", "--keep=graph"]):
+            picture, _ = self.render(scene(), *options)
+            self.assert_same_bits(picture, expected, options)
+
+    def test_in_double_precision_it_is_nearly_the_same(self):
+        expected, _ = self.render(scene())
+        picture, _ = self.render(scene(), "--fp=double")
+        said, _ = self.run_rtslc("compare", picture, expected, "--json", status=None)
+        self.assertLess(json.loads(said)["rmse"], 0.02, said)
+
+
+class Counts(GraphCase):
+    def test_several_primitives_are_found_like_several_objects(self):
+        """Nothing but the numbers of primitives and instances may differ."""
+        together = {"all": balls(*CLUSTER), "again": {"child": "all", "transform": SQUASHED}, "root": {"children": ["all", "again"]}}
+        each = {f"b{i}": balls(ball) for i, ball in enumerate(CLUSTER)}
+        apart = {**each, "all": {"children": list(each)}, "again": {"child": "all", "transform": SQUASHED},
+                 "root": {"children": ["all", "again"]}}
+        text = SHADERS.read_text().replace("(facing + mark)", "facing")
+        self.write("Graph.rtsl", text)
+        for traversal in ("embree", "device"):
+            first, _ = self.render(scene(together, root="root"), f"--traversal={traversal}")
+            second, _ = self.render(scene(apart, root="root"), f"--traversal={traversal}")
+            self.assert_same_bits(first, second)
+
+    def test_the_count_may_be_that_of_a_buffer(self):
+        numbers = {"all": balls(*CLUSTER)}
+        named = copy.deepcopy(numbers)
+        named["all"]["count"] = "balls"
+        self.assert_same_picture(scene(numbers, root="all"), scene(named, root="all"))
+
+    def test_fewer_than_the_buffer_holds(self):
+        fewer, all = {"all": balls(*CLUSTER)}, {"all": balls(*CLUSTER[:3])}
+        fewer["all"]["count"] = 3
+        self.assert_same_picture(scene(fewer, root="all"), scene(all, root="all"))
+
+    def test_a_hundred_thousand_primitives_in_a_file(self):
+        shuffle = random.Random(1)
+        with open(self.folder / "balls.raw", "wb") as file:
+            for _ in range(100000):
+                file.write(struct.pack("<4f", *(shuffle.uniform(-6, 6) for _ in range(3)), shuffle.uniform(0.005, 0.03)))
+        many = scene({"all": {"primitive": {"class": "Balls", "balls": {"buffer": "balls.raw", "shape": [100000]}}, "count": "balls",
+                              "material": "paint"},
+                      "two": {"children": ["all", {"child": "all", "transform": {"rotate": [0, 40, 0], "translate": [0, 0, -9]}}]}},
+                     root="two")
+        first, _ = self.render(many)
+        second, _ = self.render(many, "--traversal=device")
+        self.assert_same_bits(first, second)
+
+    def test_primitives_of_one_object_shine_like_several_objects(self):
+        """Chosen by what each sends out; the mean of the picture is known, and must not depend on how they are grouped. (Their
+        emission reads no state, above all no normal, which the density of a point on them depends on.)"""
+        self.write("Floor.rtsl", """
+class Floor : rt_Primitive {
+  void intersect() {
+    float t = -rt_RayOrigin.y / rt_RayDirection.y;
+    vec3 p = rt_RayOrigin + t * rt_RayDirection;
+    if (abs(p.x) < 50.0 && abs(p.z) < 50.0) hit(t);
+  }
+  void computeBounds() { rt_BoundMin = vec3(-50.0, 0.0, -50.0); rt_BoundMax = vec3(50.0, 0.0, 50.0); }
+  void computeNormal() { rt_GeometricNormal = vec3(0.0, 1.0, 0.0); }
+};
+class Under : rt_Camera {
+  void generateRay() { rt_RayOrigin = vec3(0.0, 0.2, 0.0); rt_RayDirection = vec3(0.01 * rt_ScreenCoord.x, -1.0, 0.01 * rt_ScreenCoord.y); }
+};
+""")
+        lamps = [[-2, 3, 0, 0.2], [2, 2, 1, 0.4], [0, 4, -2, 0.1], [1, 1.5, -1, 0.05]]
+        floor = {"primitive": {"class": "Floor"}, "material": {"class": "Lambert", "reflectance": 1}}
+
+        def lit(nodes, children):
+            nodes = {**nodes, "root": {"children": [*children, floor]}}
+            return scene(nodes, root="root", camera={"class": "Under"}, background=0, variables={},
+                         materials={"paint": {"class": "Paint", "tint": [8, 8, 8]}},
+                         render={"engine": "path", "size": [16, 16], "spp": 256, "depth": 1},
+                         **{"import": ["Graph.rtsl", "Floor.rtsl", "std.materials"]})
+
+        together = lit({"lamps": balls(*lamps, transform={"scale": 1.25})}, ["lamps"])
+        apart = lit({f"l{i}": balls(lamp, transform={"scale": 1.25}) for i, lamp in enumerate(lamps)}, [f"l{i}" for i in range(4)])
+        # A sphere of radiance L under the angle asin(r / d) lights a white floor by L (r / d)^2 cos(theta).
+        distances = [math.hypot(*lamp[:3]) for lamp in lamps]
+        exact = sum(8 * (lamp[3] / d) ** 2 * lamp[1] / d for lamp, d in zip(lamps, distances))
+        for one in (together, apart):
+            self.assertAlmostEqual(self.mean_of(self.render(one)[0]) / exact, 1, delta=0.02)
+
+    def test_mistakes(self):
+        def one(**more):
+            return scene({"all": {**balls(*CLUSTER), **more}}, root="all")
+
+        self.assert_message(self.mistakes(one(count=0)), "E0805", "`count`")
+        self.assert_message(self.mistakes(one(count="ball")), "E0806", "no member `ball`")
+        self.assertEqual(self.mistakes(one(count="ball"))[0]["fixes"][0]["replacement"], "balls")
+        empty = one(count="balls")
+        empty["nodes"]["all"]["primitive"]["balls"] = []
+        self.assert_message(self.mistakes(empty), "E0805", "is empty")
+        mesh = scene({"all": {"mesh": "a.obj", "material": "paint", "count": 3}}, root="all")
+        self.assert_message(self.mistakes(mesh), "E0802", "a mesh has its triangles")
+        broken = one()
+        broken["nodes"]["all"]["primitive"]["balls"][3][3] = -1
+        path = self.write("scene.json", json.dumps(broken, indent=1))
+        self.assert_message(self.diagnose("check", path), "E0816", "primitive 3 of `all` are inverted")
+
+
+class Ids(GraphCase):
+    def test_the_nearest_one_counts(self):
+        by_child = {"one": balls(*CLUSTER), "root": {"children": [{"child": {"child": "one", "id": 3}, "id": 4}]}}
+        of_geometry = {"one": balls(*CLUSTER, id=3), "root": {"children": [{"child": "one", "id": 9}]}}
+        other = {"one": balls(*CLUSTER, id=4), "root": {"children": ["one"]}}
+        self.assert_same_picture(scene(by_child, root="root"), scene(of_geometry, root="root"))
+        first, second = (self.render(scene(nodes, root="root"))[0] for nodes in (by_child, other))
+        self.assertNotEqual(first.read_bytes(), second.read_bytes())
+
+    def test_of_an_object(self):
+        plain = scene({"one": balls(*CLUSTER, id=5)}, root="one")
+        listed = scene()
+        del listed["nodes"], listed["root"]
+        listed["objects"] = [balls(*CLUSTER, id=5)]
+        self.assert_same_picture(plain, listed)
+
+    def test_a_32_bit_number(self):
+        for id in (2 ** 31, -2 ** 31 - 1, 2 ** 32, 0.5):
+            self.assert_message(self.mistakes(scene({"one": balls(*CLUSTER, id=id)}, root="one")), "E0805", "`id` is a whole number")
+        for id in (2 ** 31 - 1, -2 ** 31):
+            self.render(scene({"one": balls(*CLUSTER, id=id)}, root="one"))
+
+
+class Selectors(GraphCase):
+    def test_what_is_visited_is_seen_and_nothing_else(self):
+        three = {f"b{i}": balls([2.5 * i - 2.5, 0, 0, 1], id=i) for i in range(3)}
+        for mask in (0, 2, 5, 7):
+            some = {**three, "root": {"selector": {"class": "Some", "mask": mask}, "children": list(three)}}
+            seen = [name for i, name in enumerate(three) if mask >> i & 1]
+            plain = {**three, "root": {"children": seen or [{"child": "b0", "transform": {"translate": [0, 1e4, 0]}}]}}
+            self.assert_same_picture(scene(some, root="root"), scene(plain, root="root"))
+
+    def test_the_origin_is_in_the_space_of_the_node(self):
+        """Scaled by 4, the same distance is a quarter."""
+        lod = {"near": balls([0, 0, 0, 0.25]), "away": balls([0, 0, 0, 0.5]),
+               "lod": {"selector": {"class": "Near", "limit": 3.6}, "children": ["near", "away"]},
+               "root": {"child": "lod", "transform": {"scale": 4}}}
+        plain = {"near": balls([0, 0, 0, 0.25]), "root": {"child": "near", "transform": {"scale": 4}}}
+        # 3.58 units from the node: sqrt(3^2 + 14^2) / 4
+        self.assert_same_picture(scene(lod, root="root", variables={}), scene(plain, root="root", variables={}))
+
+    def test_chance_is_fair_and_the_same_for_every_traversal(self):
+        """One child in six, one in six, and two in three: by the mean of many samples."""
+        dice = {"wall": balls([0, 0, -100, 95]), "gone": balls([0, 1e5, 0, 1]),
+                "root": {"selector": {"class": "Chance"}, "children": ["gone", "gone2", "wall"]}, "gone2": balls([0, -1e5, 0, 1])}
+        plain = {"root": balls([0, 0, -100, 95])}
+        self.write("Graph.rtsl", SHADERS.read_text().replace("(facing + mark)", "1.0"))
+        extra = {"variables": {"shine": 0}, "background": 0, "render": {"size": [16, 16], "spp": 64, "depth": 0}}
+        means = []
+        for nodes in (dice, plain):
+            picture, _ = self.render(scene(nodes, root="root", **extra))
+            means.append(self.mean_of(picture))
+        self.assertAlmostEqual(means[0] / means[1], 2 / 3, delta=0.02)
+
+    def test_below_others(self):
+        """An instance is seen if all selectors above it say so."""
+        one = {"b": balls([0, 0, 0, 1])}
+        nothing = scene({"b": balls([0, 1e5, 0, 1])}, root="b")
+        for outer, inner in ((1, 1), (1, 2), (2, 1)):
+            nested = {**one, "inner": {"selector": {"class": "Some", "mask": inner}, "children": ["b"]},
+                      "outer": {"selector": {"class": "Some", "mask": outer}, "children": ["inner"]}}
+            plain = scene(one, root="b") if outer == inner == 1 else nothing
+            self.assert_same_picture(scene(nested, root="outer"), plain)
+
+    def test_mistakes(self):
+        def world(**node):
+            return scene({"b": balls(*CLUSTER), "root": node}, root="root")
+
+        self.assert_message(self.mistakes(world(selector={"class": "Some", "mask": 1}, child="b")), "E0802", "chooses among `children`")
+        self.assert_message(self.mistakes(world(selector={"class": "Balls", "balls": []}, children=["b"])), "E0811", "where a selector is needed")
+        self.assert_message(self.mistakes(world(selector="paint", children=["b"])), "E0811", "where a selector is needed")
+        self.assert_message(self.mistakes(world(selector="pant", children=["b"])), "E0806", "`pant`")
+        self.assert_message(self.mistakes(world(selector=3, children=["b"])), "E0804", "`selector`")
+
+
+class Variables(GraphCase):
+    def tinted(self, material, **nodes):
+        return scene({"b": balls(*CLUSTER), "root": {"children": ["b"]}, **nodes}, root="root", materials={"paint": material},
+                     variables={})
+
+    def test_the_nearest_definition_counts(self):
+        red, green, blue = [1, 0, 0], [0, 1, 0], [0, 0, 1]
+        tinted = [self.render(self.tinted({"class": "Paint", "tint": c}))[0] for c in (red, green, blue)]
+        plain = {"class": "Paint"}
+        above = {**self.tinted(plain), "variables": {"tint": red}}
+        self.assert_same_bits(self.render(above)[0], tinted[0])
+        group = {**self.tinted(plain, root={"children": ["b"], "variables": {"tint": green}}), "variables": {"tint": red}}
+        self.assert_same_bits(self.render(group)[0], tinted[1])
+        geometry = copy.deepcopy(group)
+        geometry["nodes"]["b"]["variables"] = {"tint": blue}
+        self.assert_same_bits(self.render(geometry)[0], tinted[2])
+        own = copy.deepcopy(geometry)
+        own["materials"]["paint"]["tint"] = red
+        picture, said = self.render(own)
+        self.assert_same_bits(picture, tinted[0])
+        self.assertIn("no object takes the variable `tint`", said)
+
+    def test_what_an_object_refers_to_takes_them_too(self):
+        inner = {"class": "Paint", "inner": {"class": "Paint"}}
+        expected = {"class": "Paint", "tint": [0.2, 0.3, 0.9], "inner": {"class": "Paint", "tint": [0.2, 0.3, 0.9]}}
+        taken = {**self.tinted(inner), "variables": {"tint": [0.2, 0.3, 0.9]}}
+        self.assert_same_picture(taken, self.tinted(expected))
+        named = {**taken, "materials": {"paint": {"class": "Paint", "inner": "other"}, "other": {"class": "Paint"}}}
+        self.assert_same_picture(named, self.tinted(expected))
+
+    def test_a_variable_may_be_an_object(self):
+        other = {"class": "Paint", "tint": [0, 1, 0]}
+        taken = {**self.tinted({"class": "Paint"}), "variables": {"inner": other}}
+        self.assert_same_picture(taken, self.tinted({"class": "Paint", "inner": other}))
+
+    def test_primitives_selectors_and_cameras_take_them(self):
+        taken = scene({"b": {"primitive": {"class": "Balls"}, "count": "balls", "material": "paint"},
+                       "lod": {"selector": {"class": "Near"}, "children": ["b", {"child": "b", "transform": {"scale": 0.3}}]}},
+                      root="lod", variables={"balls": CLUSTER, "limit": 2, "distance": 9})
+        given = scene({"b": balls(*CLUSTER),
+                       "lod": {"selector": {"class": "Near", "limit": 2}, "children": ["b", {"child": "b", "transform": {"scale": 0.3}}]}},
+                      root="lod", variables={}, camera={"class": "Look", "distance": 9})
+        self.assert_same_picture(taken, given)
+
+    def test_where_all_agree_it_is_a_constant(self):
+        def explained(nodes):
+            path = self.write("scene.json", json.dumps(nodes))
+            said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
+            return {f["subject"]: f for item in json.loads(said)["items"] for f in item["entries"]}
+
+        same = {**self.tinted({"class": "Paint"}), "variables": {"tint": [1, 0, 0]}}
+        self.assertIn("in the code", explained(same)["Paint.tint"]["reason"])
+        two = {"children": [{"child": "b", "variables": {"tint": [1, 0, 0]}}, {"child": "b", "variables": {"tint": [0, 1, 0]}}]}
+        self.assertTrue(explained(self.tinted({"class": "Paint"}, root=two))["Paint.tint"]["needed"])
+
+    def test_mistakes(self):
+        wrong = {**self.tinted({"class": "Paint"}), "variables": {"tint": "red"}}
+        messages = self.mistakes(wrong)
+        self.assertIn("the variable `tint`, which member `tint` of `paint` takes,", messages[0]["message"])
+        self.assert_message(self.mistakes(self.tinted({"class": "Paint"}, root={"children": ["b"], "variables": 3})), "E0804",
+                            "`variables`")
+        untaken = {**self.tinted({"class": "Paint"}), "variables": {"tinte": 3}}
+        self.assertIn("no object takes the variable `tinte`", self.render(untaken)[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
