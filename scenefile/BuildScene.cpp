@@ -30,9 +30,12 @@ public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
                NamedBuffers &buffers)
       : description(description), program(*program), buffers(buffers), scene(std::move(program)),
-        scope(description.scopes.front().get()), files(description),
-        images(description,
-               [this](const std::string &className) { return readsLevels(className); }) {}
+        scope(description.scopes.front().get()),
+        hasAnyVariable(std::any_of(description.scopes.begin(), description.scopes.end(),
+                                   [](const auto &one) { return !one->variables.empty(); })),
+        files(description), images(description, [this](const std::string &className) {
+          return readsLevels(className);
+        }) {}
 
   Scene build() {
     attempt([&] {
@@ -43,13 +46,13 @@ public:
     });
     // Named objects are created in the order of their names, after those that they refer to. With
     // variables, what is used below a node is another object than what is used elsewhere.
-    if (!hasVariables())
+    if (!hasAnyVariable)
       addNamed();
     addSelectors();
     for (std::size_t i = 0; i < description.objects.size(); ++i)
       attempt([&] { addGeometry(description.objects[i], i); });
     scope = description.scopes.front().get();
-    if (hasVariables())
+    if (hasAnyVariable)
       addNamed();
     for (std::size_t i = 0; i < description.lights.size(); ++i)
       attempt([&] {
@@ -94,13 +97,9 @@ private:
   // Variables
   //===--------------------------------------------------------------------===//
 
-  /// The variables that an object and those that it refers to take, in a fixed order.
-  using Taken = std::vector<const JsonValue *>;
-
-  bool hasVariables() const {
-    return std::any_of(description.scopes.begin(), description.scopes.end(),
-                       [](const auto &one) { return !one->variables.empty(); });
-  }
+  /// The definitions that an object and those that it refers to take. In another scope, an object
+  /// that takes the same is the same.
+  using Taken = std::set<const JsonValue *>;
 
   /// The definition that a member takes; null: none. An object in a variable does not take that
   /// variable.
@@ -129,38 +128,38 @@ private:
 
   Taken takenBy(const ObjectDescription &object) const {
     Taken taken;
-    std::set<const ObjectDescription *> open;
-    addTaken(object, taken, open);
+    std::set<const ObjectDescription *> seen;
+    if (hasAnyVariable)
+      addTaken(object, taken, seen);
     return taken;
   }
   void addTaken(const ObjectDescription &object, Taken &taken,
-                std::set<const ObjectDescription *> &open) const {
+                std::set<const ObjectDescription *> &seen) const {
     const ClassInfo *classInfo = program.find(object.className.text);
-    if (!classInfo || !open.insert(&object).second)
+    if (!classInfo)
       return;
     for (const MemberInfo &member : classInfo->members)
-      if (const auto *variable = variableFor(member, object)) {
-        taken.push_back(variable->second);
-        insideOf(variable->second, [&] { addTaken(*variable->second, taken, open); });
-      }
+      if (const auto *variable = variableFor(member, object);
+          variable && taken.insert(variable->second).second)
+        insideOf(variable->second, [&] { addTaken(*variable->second, taken, seen); });
     if (object.constructor)
       forEachValue(*object.constructor,
-                   [&](const JsonValue &value) { addTaken(value, taken, open); });
+                   [&](const JsonValue &value) { addTaken(value, taken, seen); });
     for (const auto &member : object.members)
-      addTaken(*member.second, taken, open);
-    open.erase(&object);
+      addTaken(*member.second, taken, seen);
   }
   void addTaken(const JsonValue &value, Taken &taken,
-                std::set<const ObjectDescription *> &open) const {
+                std::set<const ObjectDescription *> &seen) const {
     if (value.kind == Kind::String) {
-      if (const ObjectDescription *object = findNamed(value.string))
-        addTaken(*object, taken, open);
+      if (const ObjectDescription *object = findNamed(value.string);
+          object && seen.insert(object).second)
+        addTaken(*object, taken, seen);
     } else if (const JsonValue *className = value.find("class");
                className && className->kind == Kind::String) {
-      addTaken(inPlace(value, "an object"), taken, open);
+      addTaken(inPlace(value, "an object"), taken, seen);
     } else if (value.kind == Kind::Array) {
       for (const JsonValue &element : value.elements)
-        addTaken(element, taken, open);
+        addTaken(element, taken, seen);
     }
   }
 
@@ -674,6 +673,7 @@ private:
   NamedBuffers &buffers;
   Scene scene;
   const VariableScope *scope; // of what is being added
+  const bool hasAnyVariable;
   std::set<const JsonValue *> takenVariables;
   mutable std::vector<const JsonValue *> beingTaken;     // from the outermost one on
   std::map<std::pair<std::string, Taken>, RtslRef> made; // 0: being created

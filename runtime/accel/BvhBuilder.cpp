@@ -1,6 +1,6 @@
 #include "runtime/accel/BvhBuilder.h"
 
-#include "runtime/device/traverse/Box.h"
+#include "runtime/device/ray/Box.h"
 #include "runtime/device/traverse/Bvh.h"
 
 #include <algorithm>

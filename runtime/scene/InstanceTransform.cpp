@@ -1,6 +1,6 @@
 #include "runtime/scene/InstanceTransform.h"
 
-#include "runtime/device/traverse/Box.h"
+#include "runtime/device/ray/Box.h"
 #include "runtime/geometry/Transform.h"
 
 #include <fmt/format.h>

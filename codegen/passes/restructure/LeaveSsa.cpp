@@ -268,12 +268,16 @@ void Variables::storeDefinitions() {
 
 void Variables::loadUses() {
   for (auto [value, web] : webOf) {
+    llvm::SmallDenseMap<mlir::Operation *, Value> loaded; // by user, which may use it twice
     for (mlir::OpOperand &use : llvm::make_early_inc_range(value.getUses())) {
       mlir::Operation *user = use.getOwner();
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
       if (store && store.getAddress() == webs[web].address && value.getDefiningOp())
         continue;
-      use.set(load(value, user));
+      Value &own = loaded[user];
+      if (!own)
+        own = load(value, user);
+      use.set(own);
     }
   }
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Vector.h"
-#include "runtime/device/traverse/Box.h"
 #include "runtime/device/traverse/Instance.h"
 
 namespace rtsl::device {

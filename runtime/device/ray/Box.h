@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
-#include "runtime/device/ray/Hit.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
