@@ -1,6 +1,7 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "scenefile/MeshFiles.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/Variables.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 
@@ -29,13 +30,10 @@ class SceneBuilder {
 public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
                NamedBuffers &buffers)
-      : description(description), program(*program), buffers(buffers), scene(std::move(program)),
-        scope(description.scopes.front().get()),
-        hasAnyVariable(std::any_of(description.scopes.begin(), description.scopes.end(),
-                                   [](const auto &one) { return !one->variables.empty(); })),
-        files(description), images(description, [this](const std::string &className) {
-          return readsLevels(className);
-        }) {}
+      : description(description), program(*program), variables(description, *program),
+        buffers(buffers), scene(std::move(program)), files(description),
+        images(description,
+               [this](const std::string &className) { return readsLevels(className); }) {}
 
   Scene build() {
     attempt([&] {
@@ -46,13 +44,13 @@ public:
     });
     // Named objects are created in the order of their names, after those that they refer to. With
     // variables, what is used below a node is another object than what is used elsewhere.
-    if (!hasAnyVariable)
+    if (!variables.any())
       addNamed();
     addSelectors();
     for (std::size_t i = 0; i < description.objects.size(); ++i)
       attempt([&] { addGeometry(description.objects[i], i); });
-    scope = description.scopes.front().get();
-    if (hasAnyVariable)
+    variables.leaveNodes();
+    if (variables.any())
       addNamed();
     for (std::size_t i = 0; i < description.lights.size(); ++i)
       attempt([&] {
@@ -79,7 +77,8 @@ public:
     errors.throwIfAny();
     for (const Warning &warning : description.warnings)
       scene.addWarning(warning);
-    warnOfUntakenVariables();
+    for (const Warning &warning : variables.warnings())
+      scene.addWarning(warning);
     return std::move(scene);
   }
 
@@ -91,88 +90,6 @@ private:
           if (!isMade(object.first))
             named(object.first, object.second.className.place);
         });
-  }
-
-  //===--------------------------------------------------------------------===//
-  // Variables
-  //===--------------------------------------------------------------------===//
-
-  /// The definitions that an object and those that it refers to take. In another scope, an object
-  /// that takes the same is the same.
-  using Taken = std::set<const JsonValue *>;
-
-  /// The definition that a member takes; null: none. An object in a variable does not take that
-  /// variable.
-  const std::pair<Place, const JsonValue *> *variableFor(const MemberInfo &member,
-                                                         const ObjectDescription &object) const {
-    if (!member.isPublic || object.constructor || isGiven(object, member.name))
-      return nullptr;
-    const auto *variable = scope->find(member.name);
-    return variable && std::find(beingTaken.begin(), beingTaken.end(), variable->second) ==
-                           beingTaken.end()
-               ? variable
-               : nullptr;
-  }
-
-  /// Looks at what a variable refers to.
-  template <typename Step>
-  auto insideOf(const JsonValue *variable, Step step) const {
-    struct Inside {
-      std::vector<const JsonValue *> &variables;
-      ~Inside() { variables.pop_back(); }
-    };
-    beingTaken.push_back(variable);
-    const Inside inside{beingTaken};
-    return step();
-  }
-
-  Taken takenBy(const ObjectDescription &object) const {
-    Taken taken;
-    std::set<const ObjectDescription *> seen;
-    if (hasAnyVariable)
-      addTaken(object, taken, seen);
-    return taken;
-  }
-  void addTaken(const ObjectDescription &object, Taken &taken,
-                std::set<const ObjectDescription *> &seen) const {
-    const ClassInfo *classInfo = program.find(object.className.text);
-    if (!classInfo)
-      return;
-    for (const MemberInfo &member : classInfo->members)
-      if (const auto *variable = variableFor(member, object);
-          variable && taken.insert(variable->second).second)
-        insideOf(variable->second, [&] { addTaken(*variable->second, taken, seen); });
-    if (object.constructor)
-      forEachValue(*object.constructor,
-                   [&](const JsonValue &value) { addTaken(value, taken, seen); });
-    for (const auto &member : object.members)
-      addTaken(*member.second, taken, seen);
-  }
-  void addTaken(const JsonValue &value, Taken &taken,
-                std::set<const ObjectDescription *> &seen) const {
-    if (value.kind == Kind::String) {
-      if (const ObjectDescription *object = findNamed(value.string);
-          object && seen.insert(object).second)
-        addTaken(*object, taken, seen);
-    } else if (const JsonValue *className = value.find("class");
-               className && className->kind == Kind::String) {
-      addTaken(inPlace(value, "an object"), taken, seen);
-    } else if (value.kind == Kind::Array) {
-      for (const JsonValue &element : value.elements)
-        addTaken(element, taken, seen);
-    }
-  }
-
-  void warnOfUntakenVariables() {
-    std::set<const JsonValue *> seen;
-    for (const auto &one : description.scopes)
-      for (const auto &[name, variable] : one->variables)
-        if (!takenVariables.count(variable.second) && seen.insert(variable.second).second)
-          scene.addWarning(
-              {fmt::format("no object takes the variable `{}`: each sets the member itself, or no "
-                           "class has a public member of this name",
-                           name),
-               variable.first});
   }
 
   /// Thrown when a reference is to an object that was rejected, which has been reported.
@@ -217,20 +134,16 @@ private:
     ErrorCollector ofMembers;
     if (classInfo)
       for (const MemberInfo &member : classInfo->members)
-        if (const auto *variable = variableFor(member, object))
+        if (const Variables::Definition *variable = variables.of(member, object))
           ofMembers.attempt([&] {
-            takenVariables.insert(variable->second);
             const std::string what =
                 fmt::format("the variable `{}`, which member `{}` of `{}` takes,", member.name,
                             member.name, name);
             const bool mayBeEmpty =
                 member.hasDefault && member.type.kind == ValueType::Kind::Reference;
+            const Variables::Taking taking(variables, *variable);
             values.members.push_back({member.name,
-                                      insideOf(variable->second,
-                                               [&] {
-                                                 return convert(*variable->second, &member.type,
-                                                                what, mayBeEmpty);
-                                               }),
+                                      convert(*variable->second, &member.type, what, mayBeEmpty),
                                       variable->first});
           });
     for (const auto &[key, value] : object.members)
@@ -246,7 +159,7 @@ private:
       });
     if (isLaunched && classInfo)
       for (const MemberInfo &member : classInfo->members)
-        if (member.type.isOutput && !isGiven(object, member.name) && !variableFor(member, object))
+        if (member.type.isOutput && !isGiven(object, member.name) && !variables.of(member, object))
           ofMembers.attempt([&] {
             values.members.push_back({member.name, outputOf(member, name), object.place});
           });
@@ -262,11 +175,6 @@ private:
       error.place = place;
       throw;
     }
-  }
-
-  static bool isGiven(const ObjectDescription &object, const std::string &member) {
-    return std::any_of(object.members.begin(), object.members.end(),
-                       [&](const auto &one) { return one.first.text == member; });
   }
 
   /// An element for each launch index.
@@ -395,7 +303,7 @@ private:
                     fmt::format("{} is a `{}`: an image needs a `file`, `slices` or `raw`", what,
                                 type->className),
                     json.place());
-      ObjectDescription object = inPlace(json, what);
+      ObjectDescription object = objectInPlace(json, what);
       return Value::reference(add(object, object.className.text)).at(json.place());
     }
     case Kind::Null:
@@ -428,36 +336,6 @@ private:
                   json.place());
   }
 
-  /// An object written in place of a reference.
-  static ObjectDescription inPlace(const JsonValue &json, const std::string &what) {
-    const JsonValue *className = json.find("class");
-    if (!className || className->kind != Kind::String)
-      throw Error(ErrorCode::MissingKey, fmt::format("{}: an object needs a `class`", what),
-                  json.place());
-    ObjectDescription object;
-    object.className = {className->string, className->place()};
-    object.place = json.place();
-    for (const auto &[key, member] : json.members) {
-      if (key.text == "constructor")
-        object.constructor = &member;
-      else if (key.text != "class")
-        object.members.push_back({{key.text, json.place(key)}, &member});
-    }
-    if (object.constructor && object.constructor->kind != Kind::Array &&
-        object.constructor->kind != Kind::Object)
-      throw Error(ErrorCode::WrongType,
-                  "`constructor` is a list of arguments or an object of arguments by name",
-                  object.constructor->place());
-    return object;
-  }
-
-  const ObjectDescription *findNamed(const std::string &name) const {
-    for (const auto *section : sections)
-      if (auto known = section->find(name); known != section->end())
-        return &known->second;
-    return nullptr;
-  }
-
   /// Is there an object of this name, with whatever variables?
   bool isMade(const std::string &name) const {
     const auto found = made.lower_bound({name, {}});
@@ -467,7 +345,7 @@ private:
   /// The helper, texture or material of this name, created on first use, once for all uses for which
   /// it takes the same variables.
   RtslRef named(const std::string &name, const Place &place) {
-    const ObjectDescription *object = findNamed(name);
+    const ObjectDescription *object = findObject(description, name);
     if (!object) {
       Error error(ErrorCode::UnknownName,
                   fmt::format("no {}{}texture or material is named `{}`",
@@ -478,7 +356,7 @@ private:
         error.fix(near);
       throw error;
     }
-    const std::pair key(name, takenBy(*object));
+    const std::pair key(name, variables.takenBy(*object));
     if (const auto found = made.find(key); found != made.end()) {
       if (found->second == 0)
         throw Error(ErrorCode::ReferenceCycle,
@@ -512,7 +390,7 @@ private:
   /// An object written in place takes variables as a named one does: it is one object for all
   /// instances for which it takes the same.
   RtslRef addOnce(const ObjectDescription &object, const std::string &name) {
-    const std::pair key(&object, takenBy(object));
+    const std::pair key(&object, variables.takenBy(object));
     if (const auto known = inPlaces.find(key); known != inPlaces.end())
       return known->second;
     return inPlaces[key] = add(object, name);
@@ -526,7 +404,7 @@ private:
   void addSelectors() {
     for (const SelectorDescription &selector : description.selectors) {
       selections.push_back(0);
-      scope = selector.scope;
+      variables.enter(selector.scope);
       attempt([&] { selections.back() = addSelector(selector); });
     }
   }
@@ -593,8 +471,8 @@ private:
     std::uint32_t number = 0; // of the mesh, or of primitives
     bool isFirst = true;
     for (const InstanceDescription &instance : geometry.placements) {
-      if (isFirst || instance.scope != scope) {
-        scope = instance.scope;
+      if (isFirst || instance.scope != variables.scope()) {
+        variables.enter(instance.scope);
         material = referred(geometry.material);
         requireRoot(material, "rt_Material", "a material",
                     geometry.material.object ? geometry.material.object->className
@@ -670,14 +548,11 @@ private:
       &description.images, &description.helpers, &description.textures,
       &description.materials}; // of named objects
   const Program &program;
+  Variables variables;
   NamedBuffers &buffers;
   Scene scene;
-  const VariableScope *scope; // of what is being added
-  const bool hasAnyVariable;
-  std::set<const JsonValue *> takenVariables;
-  mutable std::vector<const JsonValue *> beingTaken;     // from the outermost one on
-  std::map<std::pair<std::string, Taken>, RtslRef> made; // 0: being created
-  std::map<std::pair<const ObjectDescription *, Taken>, RtslRef> inPlaces;
+  std::map<std::pair<std::string, Variables::Taken>, RtslRef> made; // 0: being created
+  std::map<std::pair<const ObjectDescription *, Variables::Taken>, RtslRef> inPlaces;
   std::vector<std::uint32_t> selections; // of child 0, by selector
   std::set<std::string> refused;
   ErrorCollector errors;

@@ -597,6 +597,41 @@ SceneDescription readSceneFile(const std::string &path, const std::vector<std::s
   return parseScene(readFile(path), path, overrides);
 }
 
+const ObjectDescription *findObject(const SceneDescription &description, const std::string &name) {
+  for (const auto *section :
+       {&description.images, &description.helpers, &description.textures, &description.materials})
+    if (const auto found = section->find(name); found != section->end())
+      return &found->second;
+  return nullptr;
+}
+
+bool isGiven(const ObjectDescription &object, const std::string &member) {
+  return std::any_of(object.members.begin(), object.members.end(),
+                     [&](const auto &one) { return one.first.text == member; });
+}
+
+ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) {
+  const JsonValue *className = json.find("class");
+  if (!className || className->kind != Kind::String)
+    throw Error(ErrorCode::MissingKey, fmt::format("{}: an object needs a `class`", what),
+                json.place());
+  ObjectDescription object;
+  object.className = {className->string, className->place()};
+  object.place = json.place();
+  for (const auto &[key, member] : json.members) {
+    if (key.text == "constructor")
+      object.constructor = &member;
+    else if (key.text != "class")
+      object.members.push_back({{key.text, json.place(key)}, &member});
+  }
+  if (object.constructor && object.constructor->kind != Kind::Array &&
+      object.constructor->kind != Kind::Object)
+    throw Error(ErrorCode::WrongType,
+                "`constructor` is a list of arguments or an object of arguments by name",
+                object.constructor->place());
+  return object;
+}
+
 std::size_t launchCount(const SceneDescription &description) {
   return std::max<std::size_t>(description.passes.size(), 1);
 }

@@ -174,6 +174,13 @@ std::vector<LocatedName> classMentions(const SceneDescription &description);
 /// included, or may be set by a variable. Null, or a list of nulls, does not count.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
 
+/// The image, helper, texture or material of this name; null: there is none.
+const ObjectDescription *findObject(const SceneDescription &description, const std::string &name);
+/// Does the object set the member?
+bool isGiven(const ObjectDescription &object, const std::string &member);
+/// An object written in place of a reference. `what` begins messages. Throws MissingKey, WrongType.
+ObjectDescription objectInPlace(const JsonValue &json, const std::string &what);
+
 /// How many launches the scene has: its passes, or one.
 std::size_t launchCount(const SceneDescription &description);
 /// The scene of one launch, which has no passes.

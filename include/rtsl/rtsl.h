@@ -43,9 +43,21 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
  * and the mask of the next instance that is added. Fails if a number is not finite. */
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
+/* Sets rt_InstanceId of the next instance that is added, and the `selection` (rtslSceneAddSelector)
+ * below which it is; 0: none. */
+int rtslMark(RtslScene *scene, int32_t id, uint32_t selection);
+
+/* Adds a selector with as many children, in the space of `transform` (as above; null: world space).
+ * Returns the selection of child 0; those of the others follow. `above`: that of the selector
+ * itself; 0: none. */
+uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
+                              const double *transform, uint32_t above);
 
 /* Geometry that rays can hit: an instance of a primitive's object. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
+/* The same for an object that holds `count` primitives, numbered by rt_PrimitiveIndex. */
+int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t count,
+                           RtslObject material);
 /* An instance of a mesh file (OBJ, PLY, glTF). Its vertices are first transformed by `transform`:
  * 12 numbers, four columns of three, or null. */
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,

@@ -142,19 +142,45 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
   });
 }
 
+static runtime::Transform finiteTransform(const double *transform) {
+  if (!transform)
+    return {};
+  if (!std::all_of(transform, transform + 12, [](double x) { return std::isfinite(x); }))
+    throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "the transform is not finite");
+  return transformOf(transform);
+}
+
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
   return guarded(0, [&] {
-    if (transform &&
-        !std::all_of(transform, transform + 12, [](double x) { return std::isfinite(x); }))
-      throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "the transform is not finite");
-    scene->placement = {transform ? transformOf(transform) : runtime::Transform(), mask};
+    scene->placement.transform = finiteTransform(transform);
+    scene->placement.mask = mask;
     return 1;
   });
 }
 
-int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material) {
+int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
   return guarded(0, [&] {
-    scene->scene.addPrimitive(primitive, material, scene->takePlacement());
+    scene->placement.id = id;
+    scene->placement.selection = selection;
+    return 1;
+  });
+}
+
+uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
+                              const double *transform, uint32_t above) {
+  return guarded<uint32_t>(0, [&] {
+    return scene->scene.addSelector(selector, children, finiteTransform(transform), above);
+  });
+}
+
+int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material) {
+  return rtslSceneAddPrimitives(scene, primitive, 1, material);
+}
+
+int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t count,
+                           RtslObject material) {
+  return guarded(0, [&] {
+    scene->scene.addPrimitive(primitive, material, scene->takePlacement(), count);
     return 1;
   });
 }

@@ -84,6 +84,14 @@ class EveryPath(GraphCase):
             picture, _ = self.render(scene(), *options)
             self.assert_same_bits(picture, expected, options)
 
+    def test_gives_the_same_forest(self):
+        shutil.copytree(EXAMPLES / "forest", self.folder, dirs_exist_ok=True)
+        first = None
+        for number, options in enumerate(([], ["--trace=recurse"], ["--traversal=device"], ["--target=host-megakernel"])):
+            self.run_rtslc("render", "forest.json", "-o", f"{number}.exr", "--set", "render.size=[64, 36]", "--spp", "1", *options)
+            first = first or "0.exr"
+            self.assert_same_bits(f"{number}.exr", first, options)
+
     def test_in_double_precision_it_is_nearly_the_same(self):
         expected, _ = self.render(scene())
         picture, _ = self.render(scene(), "--fp=double")

@@ -20,6 +20,7 @@ static int fail(const char *what) {
 static int mistakes(void) {
   const double one = 1.0, infinite[12] = {HUGE_VAL};
   RtslScene *scene;
+  RtslObject sphere, endless;
   if (rtslSceneCreate(NULL) != NULL)
     return fail("no shaders are shaders");
   printf("%s\n", rtslError());
@@ -48,15 +49,27 @@ static int mistakes(void) {
   if (rtslSceneAddMeshInstance(scene, 7, 0) != 0)
     return fail("an instance of no mesh");
   printf("%s\n", rtslError());
+  if (rtslSceneAddSelector(scene, rtslSceneAddObject(scene, "Code"), 2, NULL, 0) != 0)
+    return fail("an exception program as selector");
+  printf("%s\n", rtslError());
+  sphere = rtslSceneAddObject(scene, "Sphere");
+  endless = rtslSceneAddObject(scene, "Endless");
+  if (!rtslMark(scene, 3, 5) || rtslSceneAddPrimitive(scene, sphere, endless) != 0)
+    return fail("an instance below no selector");
+  printf("%s\n", rtslError());
+  if (rtslSceneAddPrimitives(scene, sphere, 0, endless) != 0)
+    return fail("no primitives");
+  printf("%s\n", rtslError());
   rtslSceneDestroy(scene);
   return 0;
 }
 
 int main(int count, char **arguments) {
   const double curve[] = {0.5, 0.25}, center[] = {0.0, 0.0, 0.0}, radius = 2.0;
-  const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, nearer[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
   RtslRenderSettings settings = rtslRenderDefaults();
   RtslObject eye, code, sphere, endless;
+  uint32_t child;
   RtslScene *scene;
   float pixels[4 * 4 * 3];
   int lines = 0, again = 0;
@@ -73,9 +86,14 @@ int main(int count, char **arguments) {
   rtslMember(scene, "radius", &radius, 1);
   sphere = rtslSceneAddObject(scene, "Sphere");
   endless = rtslSceneAddObject(scene, "Endless");
-  if (!rtslSceneSetRayGeneration(scene, eye) || !rtslSceneSetException(scene, code) ||
-      !rtslPlace(scene, identity, ~0u) || !rtslSceneAddPrimitive(scene, sphere, endless))
+  if (!rtslSceneSetRayGeneration(scene, eye) || !rtslSceneSetException(scene, code))
     return fail("objects");
+  /* No ray sees the first one. */
+  child = rtslSceneAddSelector(scene, rtslSceneAddObject(scene, "Second"), 2, NULL, 0);
+  if (child == 0 || !rtslPlace(scene, nearer, ~0u) || !rtslMark(scene, 1, child) ||
+      !rtslSceneAddPrimitive(scene, sphere, endless) || !rtslPlace(scene, identity, ~0u) ||
+      !rtslMark(scene, 2, child + 1) || !rtslSceneAddPrimitives(scene, sphere, 1, endless))
+    return fail("instances");
   settings.width = settings.height = 4;
   settings.samplesPerPixel = 2;
   settings.maxDepth = 5;

@@ -1,0 +1,83 @@
+#include "scenefile/Variables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::scene {
+
+Variables::Variables(const SceneDescription &description, const runtime::Program &program)
+    : description(description), program(program),
+      hasAny(std::any_of(description.scopes.begin(), description.scopes.end(),
+                         [](const auto &one) { return !one->variables.empty(); })),
+      current(description.scopes.front().get()) {}
+
+const Variables::Definition *Variables::of(const runtime::MemberInfo &member,
+                                           const ObjectDescription &object) const {
+  if (!hasAny || !member.isPublic || object.constructor || isGiven(object, member.name))
+    return nullptr;
+  const Definition *found = current->find(member.name);
+  return found && std::find(open.begin(), open.end(), found->second) == open.end() ? found
+                                                                                   : nullptr;
+}
+
+Variables::Taking::Taking(const Variables &variables, const Definition &definition)
+    : variables(variables) {
+  variables.open.push_back(definition.second);
+  variables.everTaken.insert(definition.second);
+}
+
+Variables::Taken Variables::takenBy(const ObjectDescription &object) const {
+  Taken taken;
+  Seen seen;
+  if (hasAny)
+    addTaken(object, taken, seen);
+  return taken;
+}
+
+void Variables::addTaken(const ObjectDescription &object, Taken &taken, Seen &seen) const {
+  const runtime::ClassInfo *classInfo = program.find(object.className.text);
+  if (!classInfo)
+    return;
+  for (const runtime::MemberInfo &member : classInfo->members)
+    if (const Definition *definition = of(member, object);
+        definition && taken.insert(definition->second).second) {
+      const Taking taking(*this, *definition);
+      addTaken(*definition->second, taken, seen);
+    }
+  if (object.constructor)
+    forEachValue(*object.constructor,
+                 [&](const JsonValue &value) { addTaken(value, taken, seen); });
+  for (const auto &member : object.members)
+    addTaken(*member.second, taken, seen);
+}
+
+void Variables::addTaken(const JsonValue &value, Taken &taken, Seen &seen) const {
+  using Kind = JsonValue::Kind;
+  if (value.kind == Kind::String) {
+    if (const ObjectDescription *object = findObject(description, value.string);
+        object && seen.insert(object).second)
+      addTaken(*object, taken, seen);
+  } else if (const JsonValue *className = value.find("class");
+             className && className->kind == Kind::String) {
+    addTaken(objectInPlace(value, "an object"), taken, seen);
+  } else if (value.kind == Kind::Array) {
+    for (const JsonValue &element : value.elements)
+      addTaken(element, taken, seen);
+  }
+}
+
+std::vector<Warning> Variables::warnings() const {
+  std::vector<Warning> warnings;
+  std::set<const JsonValue *> seen; // a node may have several scopes
+  for (const auto &one : description.scopes)
+    for (const auto &[name, definition] : one->variables)
+      if (!everTaken.count(definition.second) && seen.insert(definition.second).second)
+        warnings.push_back({fmt::format("no object takes the variable `{}`: each sets the member "
+                                        "itself, or no class has a public member of this name",
+                                        name),
+                            definition.first});
+  return warnings;
+}
+
+} // namespace rtsl::scene

@@ -1,0 +1,69 @@
+//===- Variables.h - which variables of a scene its objects take ----------===//
+//
+// A public member that an object does not set takes the nearest variable of its name, on the way
+// from the instance to the root. So one object of the scene file may be several of the program.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "scenefile/SceneFile.h"
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rtsl::scene {
+
+class Variables {
+public:
+  using Definition = std::pair<Place, const JsonValue *>;
+
+  /// Outside of all nodes.
+  Variables(const SceneDescription &description, const runtime::Program &program);
+
+  /// Is there a variable at all?
+  bool any() const { return hasAny; }
+
+  /// What follows is below the node of this scope.
+  void enter(const VariableScope *scope) { current = scope; }
+  void leaveNodes() { current = description.scopes.front().get(); }
+  const VariableScope *scope() const { return current; }
+
+  /// What a member of the object takes; null: nothing. An object in a variable does not take that
+  /// variable, and one that is made by its constructor takes none.
+  const Definition *of(const runtime::MemberInfo &member, const ObjectDescription &object) const;
+
+  /// What an object and those that it refers to take. In another scope, an object that takes the same
+  /// is the same.
+  using Taken = std::set<const JsonValue *>;
+  Taken takenBy(const ObjectDescription &object) const;
+
+  /// As long as it lives, objects in the definition are looked at.
+  class Taking {
+  public:
+    Taking(const Variables &variables, const Definition &definition);
+    Taking(const Taking &) = delete;
+    ~Taking() { variables.open.pop_back(); }
+
+  private:
+    const Variables &variables;
+  };
+
+  /// For variables that no object has taken.
+  std::vector<Warning> warnings() const;
+
+private:
+  using Seen = std::set<const ObjectDescription *>;
+  void addTaken(const ObjectDescription &object, Taken &taken, Seen &seen) const;
+  void addTaken(const JsonValue &value, Taken &taken, Seen &seen) const;
+
+  const SceneDescription &description;
+  const runtime::Program &program;
+  const bool hasAny;
+  const VariableScope *current;
+  mutable std::vector<const JsonValue *> open; // by Taking
+  mutable std::set<const JsonValue *> everTaken;
+};
+
+} // namespace rtsl::scene
