@@ -99,15 +99,15 @@ write("far.obj", vertices, [], faces)
 
 autumn = [[0.3, 0.5, 0.12], [0.36, 0.5, 0.1], [0.55, 0.45, 0.08], [0.7, 0.35, 0.07], [0.25, 0.42, 0.14]]
 nodes = {
-    "trunk": {"mesh": "tree.obj", "material": {"class": "Lit", "tint": [0.28, 0.2, 0.14]}},
+    "trunk": {"mesh": "tree.obj", "material": {"class": "Sunlit", "tint": [0.28, 0.2, 0.14]}},
     "leaves": {"mesh": "leaves.obj", "material": {"class": "Leaves"}},
-    "far": {"mesh": "far.obj", "material": {"class": "Lit"}},
+    "far": {"mesh": "far.obj", "material": {"class": "Sunlit"}},
     "tree": {"selector": {"class": "Detail"}, "children": [{"children": ["trunk", "leaves"]}, "far"]},
     "grove": group("tree", 9, 6, 1.8),
     "copse": group("grove", 16, 18, 0),
     "wood": group("copse", 16, 72, 0),
     "forest": group("wood", 16, 288, 0),
-    "meadow": {"primitive": {"class": "Meadow"}, "material": {"class": "Ground", "tint": [0.2, 0.3, 0.08]}},
+    "meadow": {"primitive": {"class": "Meadow"}, "material": {"class": "Clearing", "tint": [0.2, 0.3, 0.08]}},
 }
 for i, one in enumerate(nodes["copse"]["children"]):
     one["variables"] = {"tint": autumn[i % 5]}

@@ -92,6 +92,15 @@ class EveryPath(GraphCase):
             first = first or "0.exr"
             self.assert_same_bits(f"{number}.exr", first, options)
 
+    def test_what_a_scene_does_not_have_is_left_out(self):
+        parts = {"transforms", "counts", "selectors"}
+        plain = scene({"one": balls([0, 0, 0, 1])}, root="one")
+        for one, needed in ((scene(), parts), (plain, set())):
+            path = self.write("scene.json", json.dumps(one))
+            said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
+            graph = next(item for item in json.loads(said)["items"] if item["item"] == "graph")
+            self.assertEqual({entry["subject"] for entry in graph["entries"] if entry["needed"]}, needed)
+
     def test_in_double_precision_it_is_nearly_the_same(self):
         expected, _ = self.render(scene())
         picture, _ = self.render(scene(), "--fp=double")

@@ -111,7 +111,7 @@ public:
   void forEach(Limit limit, Visit visit) const {
     const auto sees = [&](const RtslInstance &instance) { return isSeen(state, instance, slots); };
     tree.forEach(state, triangleRay, limit, sees, [&](const RtslLeafItem &item, const auto &ray) {
-      return sees(instanceOf(item)) && visit(item, ray);
+      return isSeen(state, item, ray, slots) && visit(item, ray);
     });
   }
 

@@ -30,6 +30,16 @@ bool isSeen(RtslState &state, const RtslInstance &instance, const Slots &slots) 
   return isBelowRoot && (instance.mask & state.rayMask) && isSelected(state, instance, slots);
 }
 
+/// The same for an item with the ray in its space: an instance that the ray has entered is seen.
+template <typename Slots>
+bool isSeen(RtslState &state, const RtslLeafItem &item, const TriangleRay &, const Slots &slots) {
+  return isSeen(state, instanceAt(*state.launch, item.instance), slots);
+}
+template <typename Slots>
+bool isSeen(RtslState &, const RtslLeafItem &, const InstanceRay &, const Slots &) {
+  return true;
+}
+
 /// Have the primitives of the instance boxes in its own space? Then they are tested with the ray
 /// that has entered it.
 inline bool hasOwnSpace(const RtslLaunch &launch, const RtslInstance &instance) {
@@ -243,12 +253,12 @@ uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &
   const auto intersect = [&](RtslState *ray, RtslRef object) {
     slots.rt_Primitive_intersect(ray, object);
   };
-  const auto sees = [&](const RtslInstance &instance) { return isSeen(state, instance, slots); };
   beginSearch(state);
   tree.forEach(
-      state, ray, [&] { return state.nearest; }, sees,
+      state, ray, [&] { return state.nearest; },
+      [&](const RtslInstance &instance) { return isSeen(state, instance, slots); },
       [&](const RtslLeafItem &item, const auto &inItsSpace) {
-        return sees(instanceAt(*state.launch, item.instance)) &&
+        return isSeen(state, item, inItsSpace, slots) &&
                testItem(state, inItsSpace, item, intersect) && anyHit;
       });
   if (!anyHit)
