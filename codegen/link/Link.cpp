@@ -58,12 +58,13 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::makeEntries(context);
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 
-  const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
+  const std::uint32_t needs = linking::findNeeds(context);
+  const std::vector<std::uint32_t> needsOfClasses = linking::findNeedsOfClasses(context, needs);
   const llvm::StringSet<> membersOfProgram = membersRead(ir);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
     info.id = linked.id;
-    info.needs = needs[index];
+    info.needs = needsOfClasses[index];
     for (runtime::MemberInfo &member : info.members)
       member.isRead = membersOfProgram.contains(member.name);
     if (info.root == "rt_Material")
@@ -73,8 +74,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.engine = request.engine;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
-  program.needs = (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : linking::findNeeds(context)) &
-                  ~linking::needsLeftOut(context);
+  program.needs =
+      (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : needs) & ~linking::needsLeftOut(context);
   program.keepsMeshes = request.keep.has(Item::Meshes);
   return true;
 }

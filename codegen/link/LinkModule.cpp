@@ -57,10 +57,10 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
   ModuleFacts facts;
   facts.rayTypes = linking::rayTypesOf(context);
   facts.attributeWords = linking::attributeWordsOf(context);
-  const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context);
+  facts.needs = linking::findNeeds(context);
+  const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context, facts.needs);
   for (const auto &[index, linked] : llvm::enumerate(context.classes))
     facts.needsOfClass[linked.info] = needs[index];
-  facts.needs = linking::findNeeds(context);
   return facts;
 }
 

@@ -164,7 +164,7 @@ std::uint32_t needsOfMethods(const LinkContext &context, llvm::StringRef root,
 
 } // namespace
 
-std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
+std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::uint32_t ofProgram) {
   if (context.request.keep.has(Item::Outputs))
     return std::vector<std::uint32_t>(context.classes.size(), RTSL_NEEDS_ALL);
   llvm::StringMap<std::vector<mlir::func::FuncOp>> methods; // by class
@@ -181,7 +181,7 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context) {
 
   // The density with which a point of a lamp is chosen depends on the normal there
   // (runtime/device/engines/Emitters.h).
-  const bool hasLamps = findNeeds(context) & RTSL_NEEDS_EMITTERS;
+  const bool hasLamps = ofProgram & RTSL_NEEDS_EMITTERS;
 
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {

@@ -177,8 +177,8 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
 bool isRead(mlir::Value address);
 /// The outputs that functions of the program read; the runtime computes no others.
 std::uint32_t findNeeds(const LinkContext &context);
-/// ClassInfo::needs of each of the context's classes.
-std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context);
+/// ClassInfo::needs of each of the context's classes. `ofProgram`: findNeeds.
+std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::uint32_t ofProgram);
 
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked,
