@@ -2,6 +2,7 @@
 
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/traverse/Traverse.h"
 
 #include <algorithm>
 #include <cmath>
@@ -259,29 +260,34 @@ static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance
   }
 }
 
+/// The triangles of a mesh, or the primitives of an object with several, as items of instance
+/// `number`.
+static void addContents(const RtslLaunch &launch, const RtslInstance &instance,
+                        std::uint32_t number, std::vector<BvhItem> &items) {
+  if (instance.primitive == 0)
+    addTriangles(launch.meshes[instance.mesh], number, items);
+  else
+    addPrimitives(launch, instance, number, items);
+}
+
 Bvh buildBvh(const Scene &scene) {
   RtslLaunch launch = scene.launch();
   std::vector<BvhItem> items;
   std::map<std::size_t, const RtslInstance *> withTree; // by number of the tree
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
-    const bool isMesh = instance.primitive == 0, isOne = !isMesh && instance.boxCount == 0;
-    if (isOne || instance.transform != 0)
+    const bool isOnePrimitive = instance.primitive != 0 && instance.boxCount == 0;
+    if (device::hasOwnSpace(launch, instance))
+      withTree.emplace(device::treeNumber(launch, instance), &instance);
+    if (isOnePrimitive || instance.transform != 0)
       items.push_back({scene.instanceBounds(i), {i, 0}});
-    else if (isMesh)
-      addTriangles(launch.meshes[instance.mesh], i, items);
     else
-      addPrimitives(launch, instance, i, items);
-    if (!isOne && instance.transform != 0)
-      withTree.emplace(isMesh ? instance.mesh : launch.meshCount + instance.mesh, &instance);
+      addContents(launch, instance, i, items);
   }
   Bvh bvh = buildBvh(std::move(items));
   for (const auto &[number, instance] : withTree) {
     std::vector<BvhItem> inside;
-    if (instance->primitive == 0)
-      addTriangles(launch.meshes[instance->mesh], RTSL_NO_HIT, inside);
-    else
-      addPrimitives(launch, *instance, RTSL_NO_HIT, inside);
+    addContents(launch, *instance, RTSL_NO_HIT, inside);
     bvh.addMeshTree(number, buildBvh(std::move(inside)));
   }
   return bvh;

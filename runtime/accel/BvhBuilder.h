@@ -37,9 +37,9 @@ struct BvhItem {
 
 Bvh buildBvh(std::vector<BvhItem> items);
 
-/// The tree of a scene: of triangles and RTSL primitives, and of instances with transforms of meshes
-/// and of objects with several primitives, each of which has another tree. Their items have no
-/// instance.
+/// The tree of a scene: of triangles and RTSL primitives, and of instances with transforms of
+/// meshes and of objects with several primitives, each of which has another tree. Their items have
+/// no instance.
 Bvh buildBvh(const Scene &scene);
 
 } // namespace rtsl::runtime

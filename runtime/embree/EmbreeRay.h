@@ -90,7 +90,7 @@ struct EmbreeScene::Implementation {
   std::uint64_t number = 0; // unique in the process; from 1
   RTCDevice device = nullptr;
   EmbreeSpace world;
-  std::map<std::uint32_t, std::unique_ptr<EmbreeSpace>> spaces; // by number of device::treeOf
+  std::map<std::uint32_t, std::unique_ptr<EmbreeSpace>> spaces; // by device::treeNumber
   const Program::Slots *slots = nullptr;
   RtslLaunch launch{};
   RTCError error = RTC_ERROR_NONE;

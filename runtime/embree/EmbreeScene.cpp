@@ -401,18 +401,16 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   self->world.scene = self.get();
   const RtslLaunch &launch = self->launch;
   const auto addPrimitives = [&](EmbreeSpace &space, std::uint32_t number) {
-    const RtslInstance &instance = launch.instances[number];
-    auto *intersect = scene.classOf(instance.primitive).intersect;
-    for (std::uint32_t i = 0; i < std::max(instance.boxCount, 1u); ++i)
+    auto *intersect = scene.classOf(launch.instances[number].primitive).intersect;
+    for (std::uint32_t i = 0; i < scene.primitiveCount(number); ++i)
       space.primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, number, i});
   };
   std::vector<MeshUse> inWorld;
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
     const bool isMesh = instance.primitive == 0;
-    if (instance.transform != 0 && (isMesh || instance.boxCount != 0)) {
-      std::unique_ptr<EmbreeSpace> &inside =
-          self->spaces[isMesh ? instance.mesh : launch.meshCount + instance.mesh];
+    if (device::hasOwnSpace(launch, instance)) {
+      std::unique_ptr<EmbreeSpace> &inside = self->spaces[device::treeNumber(launch, instance)];
       if (!inside) {
         inside = std::make_unique<EmbreeSpace>();
         inside->scene = self.get();

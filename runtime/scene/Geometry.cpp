@@ -31,20 +31,21 @@ std::vector<RtslBox> computeBounds(const Objects &objects, RtslRef primitive, st
   return given;
 }
 
-/// Throws DegenerateGeometry for NaN or inverted bounds of `what`. False if the box has no area: no
-/// ray can hit it.
-bool checkBounds(const RtslBox &given, const std::string &what, const Objects::Object &info) {
+/// Throws DegenerateGeometry for NaN or inverted bounds; `what` makes the words for them. False if
+/// the box has no area: no ray can hit it.
+template <typename What>
+bool checkBounds(const RtslBox &given, const Objects::Object &info, What what) {
   const char axes[] = "xyz";
   int flatSides = 0;
   for (int i = 0; i < 3; ++i) {
     if (std::isnan(given.lower[i]) || std::isnan(given.upper[i]))
       throw Error(ErrorCode::DegenerateGeometry,
-                  fmt::format("the bounds of {} are not numbers (in {})", what, axes[i]),
+                  fmt::format("the bounds of {} are not numbers (in {})", what(), axes[i]),
                   info.place);
     if (given.lower[i] > given.upper[i])
       throw Error(ErrorCode::DegenerateGeometry,
-                  fmt::format("the bounds of {} are inverted: {} runs from {} to {}", what, axes[i],
-                              given.lower[i], given.upper[i]),
+                  fmt::format("the bounds of {} are inverted: {} runs from {} to {}", what(),
+                              axes[i], given.lower[i], given.upper[i]),
                   info.place);
     flatSides += given.lower[i] == given.upper[i];
   }
@@ -57,7 +58,7 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
   const Objects::Object &info = objects.at(primitive);
   const RtslBox box = computeBounds(objects, primitive, 1, launch).front();
   const std::string what = fmt::format("primitive `{}`", info.name);
-  if (!checkBounds(box, what, info)) {
+  if (!checkBounds(box, info, [&] { return what; })) {
     const bool isPoint = std::equal(box.lower, box.lower + 3, box.upper);
     warnings.push_back({fmt::format("{} is {}: no ray can hit it", what,
                                     isPoint ? "a single point" : "a line without width"),
@@ -163,7 +164,8 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
                    {{inf, inf, inf}, {-inf, -inf, -inf}}};
   std::uint32_t flat = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
-    flat += !checkBounds(all[i], fmt::format("primitive {} of `{}`", i, info.name), info);
+    flat += !checkBounds(all[i], info,
+                         [&] { return fmt::format("primitive {} of `{}`", i, info.name); });
     for (int axis = 0; axis < 3; ++axis) {
       set.bounds.lower[axis] = std::min(set.bounds.lower[axis], all[i].lower[axis]);
       set.bounds.upper[axis] = std::max(set.bounds.upper[axis], all[i].upper[axis]);

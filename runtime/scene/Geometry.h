@@ -1,7 +1,7 @@
 //===- Geometry.h - the meshes and instances of a scene -------------------===//
 //
-// Rays hit instances. An instance is an object of the program, which is one primitive or several, or
-// a mesh, with a material and a transform.
+// Rays hit instances. An instance is an object of the program, which is one primitive or several,
+// or a mesh, with a material and a transform.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -57,8 +57,8 @@ public:
                              std::uint32_t count = 1);
 
   /// Adds a selector that lies in the space of `transform`, with as many children. Returns the
-  /// Placement::selection of what is below child 0; those of the others follow. `above`: that of the
-  /// selector itself.
+  /// Placement::selection of what is below child 0; those of the others follow. `above`: that of
+  /// the selector itself.
   std::uint32_t addSelector(RtslRef selector, std::uint32_t children,
                             const Transform &transform = {}, std::uint32_t above = 0);
 
@@ -110,7 +110,8 @@ public:
   /// World bounds of an instance of an RTSL primitive, or of a mesh with a transform, slightly
   /// enlarged.
   Bounds instanceBounds(std::uint32_t instance) const;
-  /// Number of primitives that the instance holds: those of its object, or the triangles of its mesh.
+  /// Number of primitives that the instance holds: those of its object, or the triangles of its
+  /// mesh.
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   /// The name of an instance for messages: that of its primitive or mesh.
   const std::string &instanceName(std::uint32_t instance) const;

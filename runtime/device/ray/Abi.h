@@ -100,7 +100,8 @@ typedef struct RtslMeshTree {
 /// An instance that shines, as a light: its material has `emission`, and points on it can be chosen.
 typedef struct RtslEmitter {
   uint32_t instance;
-  // for a mesh or an object with several primitives: of the first of them in RtslLaunch::partChances
+  // for a mesh or an object with several primitives: of the first of these parts in
+  // RtslLaunch::partChances
   uint32_t firstPart;
   // the probability that this one or one before it is chosen; of the last: 1
   float chances;
@@ -135,8 +136,8 @@ typedef struct RtslLaunch {
   // of objects that hold several primitives, likewise
   const RtslMeshTree *meshTrees;
   const RtslEmitter *emitters; // in the order of their instances
-  // of the triangles of an emitter's mesh, or of its primitives: the probability that this one or one
-  // before it is chosen
+  // of the triangles of an emitter's mesh, or of its primitives: the probability that this one or
+  // one before it is chosen
   const float *partChances;
   uint32_t emitterCount, partChanceCount;
   uint32_t rootIsLeaf,
@@ -382,7 +383,8 @@ uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float 
 
 /// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of its
 /// own choice times the area that the point stands for; for a mesh the radiance at a point of the
-/// triangle. `part` is the triangle, or one of the primitives of an object. The mean of the color's components; not finite: unknown. `sample` numbers the points.
+/// triangle. `part` is the triangle, or one of the primitives of an object. The mean of the color's
+/// components; not finite: unknown. `sample` numbers the points.
 float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
                          uint32_t sample);
 

@@ -47,10 +47,9 @@ inline bool hasOwnSpace(const RtslLaunch &launch, const RtslInstance &instance) 
          (instance.primitive == 0 || isCounted(launch, instance));
 }
 
-/// The tree of such an instance.
-inline RtslMeshTree treeOf(const RtslLaunch &launch, const RtslInstance &instance) {
-  return launch
-      .meshTrees[instance.primitive == 0 ? instance.mesh : launch.meshCount + instance.mesh];
+/// The number of the tree of such an instance in RtslLaunch::meshTrees.
+inline uint32_t treeNumber(const RtslLaunch &launch, const RtslInstance &instance) {
+  return instance.primitive == 0 ? instance.mesh : launch.meshCount + instance.mesh;
 }
 
 struct TriangleVertices {
@@ -237,8 +236,8 @@ struct LaunchTree {
       if (!enter(instance) ||
           !enterInstance(launch, ray, item.instance, state.Epsilon, limit(), entered))
         return false;
-      return traverseBvh(launch, treeOf(launch, instance), entered, tMin, limit,
-                         [&](const RtslLeafItem &inside) {
+      return traverseBvh(launch, launch.meshTrees[treeNumber(launch, instance)], entered, tMin,
+                         limit, [&](const RtslLeafItem &inside) {
                            return visit(RtslLeafItem{item.instance, inside.primitive}, entered);
                          });
     });
