@@ -132,30 +132,26 @@ private:
       values.constructor = std::move(arguments);
     }
     ErrorCollector ofMembers;
+    const auto set = [&](const MemberInfo *member, const LocatedName &key, const JsonValue &json,
+                         const std::string &what) {
+      const bool mayBeEmpty =
+          member && member->hasDefault && member->type.kind == ValueType::Kind::Reference;
+      values.members.push_back(
+          {key.text, convert(json, member ? &member->type : nullptr, what, mayBeEmpty), key.place});
+    };
     if (classInfo)
       for (const MemberInfo &member : classInfo->members)
-        if (const Variables::Definition *variable = variables.of(member, object))
+        if (const VariableDefinition *variable = variables.of(member, object))
           ofMembers.attempt([&] {
-            const std::string what =
-                fmt::format("the variable `{}`, which member `{}` of `{}` takes,", member.name,
-                            member.name, name);
-            const bool mayBeEmpty =
-                member.hasDefault && member.type.kind == ValueType::Kind::Reference;
             const Variables::Taking taking(variables, *variable);
-            values.members.push_back({member.name,
-                                      convert(*variable->second, &member.type, what, mayBeEmpty),
-                                      variable->first});
+            set(&member, {member.name, variable->first}, *variable->second,
+                fmt::format("the variable `{}`, which member `{}` of `{}` takes,", member.name,
+                            member.name, name));
           });
     for (const auto &[key, value] : object.members)
       ofMembers.attempt([&, &key = key, &value = value] {
-        const MemberInfo *member = classInfo ? find(classInfo->members, key.text) : nullptr;
-        const bool mayBeEmpty =
-            member && member->hasDefault && member->type.kind == ValueType::Kind::Reference;
-        values.members.push_back(
-            {key.text,
-             convert(*value, member ? &member->type : nullptr,
-                     fmt::format("member `{}` of `{}`", key.text, name), mayBeEmpty),
-             key.place});
+        set(classInfo ? find(classInfo->members, key.text) : nullptr, key, *value,
+            fmt::format("member `{}` of `{}`", key.text, name));
       });
     if (isLaunched && classInfo)
       for (const MemberInfo &member : classInfo->members)
@@ -342,8 +338,8 @@ private:
     return found != made.end() && found->first.first == name;
   }
 
-  /// The helper, texture or material of this name, created on first use, once for all uses for which
-  /// it takes the same variables.
+  /// The helper, texture or material of this name, created on first use, once for all uses for
+  /// which it takes the same variables.
   RtslRef named(const std::string &name, const Place &place) {
     const ObjectDescription *object = findObject(description, name);
     if (!object) {
@@ -397,7 +393,7 @@ private:
   }
 
   RtslRef referred(const ReferenceDescription &reference) {
-    return reference.object ? addOnce(*reference.object, reference.object->className.text)
+    return reference.object ? addOnce(*reference.object, reference.shownName().text)
                             : named(reference.name.text, reference.name.place);
   }
 
@@ -411,9 +407,7 @@ private:
 
   std::uint32_t addSelector(const SelectorDescription &selector) {
     const RtslRef object = referred(selector.object);
-    const LocatedName &name =
-        selector.object.object ? selector.object.object->className : selector.object.name;
-    requireRoot(object, "rt_Selector", "a selector", name);
+    requireRoot(object, "rt_Selector", "a selector", selector.object.shownName());
     return scene.addSelector(object, selector.children, selector.toWorld,
                              selectionOf(selector.above, selector.childOfAbove));
   }
@@ -474,9 +468,7 @@ private:
       if (isFirst || instance.scope != variables.scope()) {
         variables.enter(instance.scope);
         material = referred(geometry.material);
-        requireRoot(material, "rt_Material", "a material",
-                    geometry.material.object ? geometry.material.object->className
-                                             : geometry.material.name);
+        requireRoot(material, "rt_Material", "a material", geometry.material.shownName());
         if (geometry.primitive) {
           primitive = addOnce(*geometry.primitive, name);
           number = countOf(geometry, primitive);

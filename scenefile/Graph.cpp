@@ -45,7 +45,7 @@ struct Node {
   std::optional<GeometryDescription> geometry;
   std::optional<ReferenceDescription> selector; // among the children
   std::optional<std::int32_t> id;
-  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
+  VariableDefinitions variables;
   std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
   bool isReported = false;     // its transform
 };
@@ -323,11 +323,8 @@ private:
     way.transform = node.transform.then(way.transform);
     if (node.id)
       way.id = *node.id;
-    if (!node.variables.empty()) {
-      scene.scopes.push_back(
-          std::make_shared<VariableScope>(VariableScope{way.scope, node.variables}));
-      way.scope = scene.scopes.back().get();
-    }
+    if (!node.variables.empty())
+      way.scope = addScope(scene, way.scope, node.variables);
     if (node.selector) {
       SelectorDescription selector;
       selector.object = *node.selector;
@@ -422,12 +419,19 @@ void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescripti
     GraphReader(root, readers, scene, errors).read();
 }
 
-std::map<std::string, std::pair<Place, const JsonValue *>> readVariables(const JsonValue &value) {
+VariableDefinitions readVariables(const JsonValue &value) {
   expect(value, Kind::Object, "`variables`");
-  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
+  VariableDefinitions variables;
   for (const auto &[key, member] : value.members)
     variables[key.text] = {member.fromOverride ? member.place() : value.place(key), &member};
   return variables;
+}
+
+const VariableScope *addScope(SceneDescription &scene, const VariableScope *above,
+                              VariableDefinitions variables) {
+  scene.scopes.push_back(
+      std::make_shared<VariableScope>(VariableScope{above, std::move(variables)}));
+  return scene.scopes.back().get();
 }
 
 } // namespace rtsl::scene

@@ -1,9 +1,9 @@
 //===- Graph.h - the nodes of a scene file --------------------------------===//
 //
-// A node is a geometry (a mesh or a primitive, with a material), or has children, other nodes, among
-// which a selector may choose; each may have a transform, an id and variables, which apply to all
-// that is below. Nodes may be shared: a node is an
-// instance of its geometry for each way from a root down to it. docs/scene-format.md has the keys.
+// A node is a geometry (a mesh or a primitive, with a material), or has children, other nodes, and
+// perhaps a selector among them; each may have a transform, an id and variables, which apply to all
+// that is below. Nodes may be shared: a node is an instance of its geometry for each way from a root
+// down to it. docs/scene-format.md has the keys.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -31,6 +31,10 @@ void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescripti
                ErrorCollector &errors);
 
 /// `variables` of a node or the scene. Throws WrongType.
-std::map<std::string, std::pair<Place, const JsonValue *>> readVariables(const JsonValue &value);
+VariableDefinitions readVariables(const JsonValue &value);
+
+/// Adds a scope below `above`.
+const VariableScope *addScope(SceneDescription &scene, const VariableScope *above,
+                              VariableDefinitions variables);
 
 } // namespace rtsl::scene

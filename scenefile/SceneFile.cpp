@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <set>
 
@@ -326,11 +325,8 @@ private:
     placement.id = geometry.id.value_or(0);
     placement.scope = scene.scopes.front().get();
     errors.attempt([&] {
-      if (const JsonValue *variables = value.find("variables")) {
-        scene.scopes.push_back(std::make_shared<VariableScope>(
-            VariableScope{placement.scope, readVariables(*variables)}));
-        placement.scope = scene.scopes.back().get();
-      }
+      if (const JsonValue *variables = value.find("variables"))
+        placement.scope = addScope(scene, placement.scope, readVariables(*variables));
     });
     errors.attempt([&] {
       if (const JsonValue *transform = value.find("transform"))
@@ -502,83 +498,6 @@ private:
   ErrorCollector errors;
 };
 
-/// Calls visit(name, value) for the variables of all nodes and of the scene.
-template <typename Visit>
-void forEachVariable(const SceneDescription &description, Visit visit) {
-  std::set<const JsonValue *> visited; // a node may have several scopes
-  for (const auto &scope : description.scopes)
-    for (const auto &[name, value] : scope->variables)
-      if (visited.insert(value.second).second)
-        visit(name, *value.second);
-}
-
-/// Visits an object of the scene, in any position: its class, and its members.
-using ObjectVisitor = std::function<void(
-    const LocatedName &, const std::vector<std::pair<LocatedName, const JsonValue *>> &)>;
-
-/// Objects written in place of a reference are visited, too.
-void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
-  if (isImage(value))
-    return visit({imageClass(value), value.place()}, {});
-  if (value.kind == Kind::Object) {
-    if (const JsonValue *className = value.find("class");
-        className && className->kind == Kind::String) {
-      std::vector<std::pair<LocatedName, const JsonValue *>> members;
-      for (const auto &[key, member] : value.members)
-        members.push_back({{key.text, member.place()}, &member});
-      visit({className->string, className->place()}, members);
-    }
-  }
-  forEachValue(value, [&](const JsonValue &inner) { forEachObject(inner, visit); });
-}
-
-void forEachObject(const ObjectDescription &object, const ObjectVisitor &visit) {
-  visit(object.className, object.members);
-  if (object.constructor)
-    forEachValue(*object.constructor,
-                 [&](const JsonValue &argument) { forEachObject(argument, visit); });
-  for (const auto &member : object.members)
-    forEachObject(*member.second, visit);
-}
-
-/// In the order of the file's sections.
-void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
-  if (description.camera)
-    forEachObject(*description.camera, visit);
-  for (const PassDescription &pass : description.passes)
-    forEachObject(pass.rayGeneration, visit);
-  if (description.passes.empty() && description.rayGeneration &&
-      description.render.engine != runtime::Engine::Classic)
-    forEachObject(*description.rayGeneration, visit);
-  for (const auto *named :
-       {&description.images, &description.helpers, &description.textures, &description.materials})
-    for (const auto &object : *named)
-      forEachObject(object.second, visit);
-  for (const GeometryDescription &geometry : description.objects) {
-    if (geometry.primitive)
-      forEachObject(*geometry.primitive, visit);
-    if (geometry.material.object)
-      forEachObject(*geometry.material.object, visit);
-  }
-  for (const SelectorDescription &selector : description.selectors)
-    if (selector.object.object)
-      forEachObject(*selector.object.object, visit);
-  forEachVariable(description, [&](const std::string &, const JsonValue &value) {
-    forEachObject(value, visit);
-  });
-  for (const ObjectDescription &light : description.lights)
-    forEachObject(light, visit);
-  for (const auto &object : {description.background, description.exception})
-    if (object)
-      forEachObject(*object, visit);
-}
-
-bool isNothing(const JsonValue &value) {
-  return value.kind == Kind::Null ||
-         (value.kind == Kind::Array &&
-          std::all_of(value.elements.begin(), value.elements.end(), isNothing));
-}
-
 } // namespace
 
 SceneDescription parseScene(const std::string &text, const std::string &path,
@@ -595,112 +514,6 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
   return parseScene(readFile(path), path, overrides);
-}
-
-const ObjectDescription *findObject(const SceneDescription &description, const std::string &name) {
-  for (const auto *section :
-       {&description.images, &description.helpers, &description.textures, &description.materials})
-    if (const auto found = section->find(name); found != section->end())
-      return &found->second;
-  return nullptr;
-}
-
-bool isGiven(const ObjectDescription &object, const std::string &member) {
-  return std::any_of(object.members.begin(), object.members.end(),
-                     [&](const auto &one) { return one.first.text == member; });
-}
-
-ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) {
-  const JsonValue *className = json.find("class");
-  if (!className || className->kind != Kind::String)
-    throw Error(ErrorCode::MissingKey, fmt::format("{}: an object needs a `class`", what),
-                json.place());
-  ObjectDescription object;
-  object.className = {className->string, className->place()};
-  object.place = json.place();
-  for (const auto &[key, member] : json.members) {
-    if (key.text == "constructor")
-      object.constructor = &member;
-    else if (key.text != "class")
-      object.members.push_back({{key.text, json.place(key)}, &member});
-  }
-  if (object.constructor && object.constructor->kind != Kind::Array &&
-      object.constructor->kind != Kind::Object)
-    throw Error(ErrorCode::WrongType,
-                "`constructor` is a list of arguments or an object of arguments by name",
-                object.constructor->place());
-  return object;
-}
-
-std::size_t launchCount(const SceneDescription &description) {
-  return std::max<std::size_t>(description.passes.size(), 1);
-}
-
-SceneDescription launchOf(const SceneDescription &description, std::size_t pass) {
-  SceneDescription launch = description;
-  if (!description.passes.empty()) {
-    launch.rayGeneration = description.passes[pass].rayGeneration;
-    launch.render = description.passes[pass].render;
-    launch.passes.clear();
-  }
-  return launch;
-}
-
-std::vector<std::string> filesOf(const SceneDescription &description) {
-  std::vector<std::string> files;
-  const auto add = [&](const std::string &file) {
-    if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end())
-      files.push_back(file);
-  };
-  for (const GeometryDescription &geometry : description.objects)
-    add(geometry.meshPath);
-  for (const auto &image : description.imageValues)
-    for (const std::string &file : image.second.files)
-      add(file);
-  for (const auto &buffer : description.bufferValues)
-    add(buffer.second.file);
-  return files;
-}
-
-std::vector<LocatedName> classMentions(const SceneDescription &description) {
-  std::vector<LocatedName> mentions;
-  forEachObject(description,
-                [&](const LocatedName &name, const auto &) { mentions.push_back(name); });
-  return mentions;
-}
-
-std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description) {
-  std::map<std::string, std::set<std::string>> given;
-  forEachObject(description, [&](const LocatedName &name, const auto &members) {
-    std::set<std::string> &ofClass = given[name.text];
-    for (const auto &[member, value] : members)
-      if (!isNothing(*value))
-        ofClass.insert(member.text);
-  });
-  // Which objects take a variable shows when the classes are known.
-  forEachVariable(description, [&](const std::string &name, const JsonValue &value) {
-    if (!isNothing(value))
-      for (auto &[className, members] : given)
-        members.insert(name);
-  });
-  return given;
-}
-
-std::vector<std::string> classesUsed(const SceneDescription &description) {
-  std::set<std::string> names;
-  for (const LocatedName &mention : classMentions(description))
-    names.insert(mention.text);
-  return {names.begin(), names.end()};
-}
-
-runtime::RenderOptions renderOptions(const RenderSettings &settings) {
-  runtime::RenderOptions options;
-  options.width = settings.width;
-  options.height = settings.height;
-  options.samplesPerPixel = settings.samplesPerPixel;
-  options.maxDepth = settings.depth;
-  options.seed = settings.seed;
-  return options;
 }
 
 } // namespace rtsl::scene

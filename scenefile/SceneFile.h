@@ -51,16 +51,23 @@ struct ObjectDescription {
 struct ReferenceDescription {
   LocatedName name; // empty text: written in place
   std::shared_ptr<ObjectDescription> object;
+
+  /// The name for messages about it: of the object, or of its class.
+  const LocatedName &shownName() const { return object ? object->className : name; }
 };
+
+/// The value of a variable, and where it is defined.
+using VariableDefinition = std::pair<Place, const JsonValue *>;
+using VariableDefinitions = std::map<std::string, VariableDefinition>;
 
 /// The variables of a node, which the objects below it take for members that they do not set, and
 /// those of the nodes above it.
 struct VariableScope {
   const VariableScope *above = nullptr;
-  std::map<std::string, std::pair<Place, const JsonValue *>> variables;
+  VariableDefinitions variables;
 
   /// The nearest definition; null: there is none.
-  const std::pair<Place, const JsonValue *> *find(const std::string &name) const {
+  const VariableDefinition *find(const std::string &name) const {
     for (const VariableScope *scope = this; scope; scope = scope->above)
       if (const auto found = scope->variables.find(name); found != scope->variables.end())
         return &found->second;

@@ -68,26 +68,27 @@ private:
     Part &part = begin(Part::Role::Root, name, geometry.place);
     if (geometry.primitive)
       add(*geometry.primitive, part);
-    if (geometry.material.object)
-      add(*geometry.material.object, part);
-    else
-      refer(geometry.material.name.text, part);
+    add(geometry.material, part);
   }
 
   void selector(const SelectorDescription &selector, const std::string &name) {
     Part &part =
         begin(Part::Role::Root, name,
               selector.object.object ? selector.object.object->place : selector.object.name.place);
-    if (selector.object.object)
-      add(*selector.object.object, part);
-    else
-      refer(selector.object.name.text, part);
+    add(selector.object, part);
   }
 
   /// What variables refer to is used, whatever takes them.
   void variables(const VariableScope &scope) {
     for (const auto &[name, value] : scope.variables)
       add(*value.second, begin(Part::Role::Root, "variable " + name, value.first));
+  }
+
+  void add(const ReferenceDescription &reference, Part &part) {
+    if (reference.object)
+      add(*reference.object, part);
+    else
+      refer(reference.name.text, part);
   }
 
   void add(const ObjectDescription &object, Part &part) {

@@ -12,16 +12,16 @@ Variables::Variables(const SceneDescription &description, const runtime::Program
                          [](const auto &one) { return !one->variables.empty(); })),
       current(description.scopes.front().get()) {}
 
-const Variables::Definition *Variables::of(const runtime::MemberInfo &member,
-                                           const ObjectDescription &object) const {
+const VariableDefinition *Variables::of(const runtime::MemberInfo &member,
+                                        const ObjectDescription &object) const {
   if (!hasAny || !member.isPublic || object.constructor || isGiven(object, member.name))
     return nullptr;
-  const Definition *found = current->find(member.name);
+  const VariableDefinition *found = current->find(member.name);
   return found && std::find(open.begin(), open.end(), found->second) == open.end() ? found
                                                                                    : nullptr;
 }
 
-Variables::Taking::Taking(const Variables &variables, const Definition &definition)
+Variables::Taking::Taking(const Variables &variables, const VariableDefinition &definition)
     : variables(variables) {
   variables.open.push_back(definition.second);
   variables.everTaken.insert(definition.second);
@@ -40,7 +40,7 @@ void Variables::addTaken(const ObjectDescription &object, Taken &taken, Seen &se
   if (!classInfo)
     return;
   for (const runtime::MemberInfo &member : classInfo->members)
-    if (const Definition *definition = of(member, object);
+    if (const VariableDefinition *definition = of(member, object);
         definition && taken.insert(definition->second).second) {
       const Taking taking(*this, *definition);
       addTaken(*definition->second, taken, seen);

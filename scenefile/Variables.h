@@ -17,8 +17,6 @@ namespace rtsl::scene {
 
 class Variables {
 public:
-  using Definition = std::pair<Place, const JsonValue *>;
-
   /// Outside of all nodes.
   Variables(const SceneDescription &description, const runtime::Program &program);
 
@@ -32,17 +30,18 @@ public:
 
   /// What a member of the object takes; null: nothing. An object in a variable does not take that
   /// variable, and one that is made by its constructor takes none.
-  const Definition *of(const runtime::MemberInfo &member, const ObjectDescription &object) const;
+  const VariableDefinition *of(const runtime::MemberInfo &member,
+                               const ObjectDescription &object) const;
 
-  /// What an object and those that it refers to take. In another scope, an object that takes the same
-  /// is the same.
+  /// What an object and those that it refers to take. In another scope, an object that takes the
+  /// same is the same.
   using Taken = std::set<const JsonValue *>;
   Taken takenBy(const ObjectDescription &object) const;
 
   /// As long as it lives, objects in the definition are looked at.
   class Taking {
   public:
-    Taking(const Variables &variables, const Definition &definition);
+    Taking(const Variables &variables, const VariableDefinition &definition);
     Taking(const Taking &) = delete;
     ~Taking() { variables.open.pop_back(); }
 
