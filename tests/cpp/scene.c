@@ -66,7 +66,8 @@ static int mistakes(void) {
 
 int main(int count, char **arguments) {
   const double curve[] = {0.5, 0.25}, center[] = {0.0, 0.0, 0.0}, radius = 2.0;
-  const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, nearer[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
+  const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  const double nearer[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1};
   RtslRenderSettings settings = rtslRenderDefaults();
   RtslObject eye, code, sphere, endless;
   uint32_t child;
