@@ -6,9 +6,10 @@
 namespace rtsl {
 
 std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUnit *> &units,
-                                     const ImportResolver &resolver, Diagnostics &diagnostics) {
+                                     const ImportResolver &resolver, Diagnostics &diagnostics,
+                                     const ModuleFinder &finder) {
   auto module = std::make_unique<typed::Module>();
-  Program program(*module, diagnostics);
+  Program program(*module, diagnostics, finder);
   program.collect(units, resolver);
   program.resolveStructs();
   program.resolveConstants();

@@ -13,9 +13,10 @@ namespace rtsl {
 
 /// Checks all `units` and what they import, once each. Reports through `diagnostics`. Returns a
 /// module even if there were errors (broken parts are left out), so that tools can inspect the
-/// rest.
+/// rest. With `finder`, messages about unknown names say which module has them.
 std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUnit *> &units,
-                                     const ImportResolver &resolver, Diagnostics &diagnostics);
+                                     const ImportResolver &resolver, Diagnostics &diagnostics,
+                                     const ModuleFinder &finder = {});
 
 namespace typed {
 /// The module as indented text, one node per line with its type: `--emit=typed-ast`.

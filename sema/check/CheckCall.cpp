@@ -116,6 +116,8 @@ void FunctionChecker::reportUnknownFunction(const ast::Name &callee, SourceRange
     suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), callee.range, call);
     return;
   }
+  if (program.suggestImport(diagnostic, callee.text))
+    return;
   std::vector<std::string> candidates = whatMayStandHere(builtinNames());
   for (const auto &entry : program.functions)
     candidates.push_back(entry.first);

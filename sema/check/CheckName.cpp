@@ -143,6 +143,8 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
       diagnostic.fix(range.to(dot), "", true);
     return;
   }
+  if (program.suggestImport(diagnostic, name))
+    return;
   std::vector<std::string> candidates = locals.names();
   for (const ClassScope *at = scope; at; at = at->base)
     for (const auto &member : at->members)

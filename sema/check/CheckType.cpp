@@ -32,6 +32,8 @@ static const Type *typeOfName(const ast::Name &name, Program &program) {
     suggestSpelling(diagnostic, *foreign, "", name.range);
     return program.types.error;
   }
+  if (program.suggestImport(diagnostic, name.text))
+    return program.types.error;
   std::vector<std::string> candidates = {"bool",  "int",   "uint",  "float", "vec2",  "vec3",
                                          "vec4",  "ivec2", "ivec3", "ivec4", "uvec2", "uvec3",
                                          "uvec4", "bvec2", "bvec3", "bvec4", "mat2",  "mat3",

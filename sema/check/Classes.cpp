@@ -143,6 +143,8 @@ void Program::linkBase(ClassScope &scope) {
   for (const RootModel &root : rootModels())
     candidates.push_back(root.name);
   Diagnostic &diagnostic = diagnostics.report(Code::unknownBase, base.range, base.text);
+  if (suggestImport(diagnostic, base.text))
+    return;
   std::string closest = closestName(base.text, candidates);
   if (closest.empty() && rootModel("rt_" + base.text))
     closest = "rt_" + base.text;

@@ -15,6 +15,13 @@ const Symbol *Program::findSymbol(const std::string &name) const {
   return found == symbols.end() ? nullptr : &found->second;
 }
 
+bool Program::suggestImport(Diagnostic &diagnostic, const std::string &name) const {
+  const std::string module = finder ? finder(name) : std::string();
+  if (!module.empty())
+    diagnostic.note(fmt::format("it is in the standard library: add `import {};`", module));
+  return !module.empty();
+}
+
 void Program::collect(const std::vector<const ast::TranslationUnit *> &roots,
                       const ImportResolver &resolver) {
   std::unordered_set<const ast::TranslationUnit *> seen;

@@ -93,8 +93,9 @@ struct StructEntry {
 
 class Program {
 public:
-  Program(typed::Module &module, Diagnostics &diagnostics)
-      : module(module), types(module.types), diagnostics(diagnostics), builtins(module.types) {}
+  Program(typed::Module &module, Diagnostics &diagnostics, const ModuleFinder &finder)
+      : module(module), types(module.types), diagnostics(diagnostics), builtins(module.types),
+        finder(finder) {}
 
   typed::Module &module;
   TypeContext &types;
@@ -113,6 +114,8 @@ public:
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
 
   const Symbol *findSymbol(const std::string &name) const;
+  /// Adds to a message about an unknown name which module of the library defines it, if one does.
+  bool suggestImport(Diagnostic &diagnostic, const std::string &name) const;
   /// In the class or one of its bases.
   const typed::Member *findMember(const ClassScope *scope, const std::string &name) const;
   /// All functions of that name that an object of the class has: own ones, and inherited ones that
@@ -142,6 +145,8 @@ public:
   void checkPerformance();
 
 private:
+  const ModuleFinder &finder;
+
   struct PendingBody {
     const ast::FunctionDecl *declaration;
     typed::Function *function;

@@ -90,6 +90,24 @@ class Library(Case):
                       "objects": [{**SPHERE, "material": {"class": "TwoSided", "front": {"class": "Gold"}, "back": {"class": "Gold"}}}]})
         self.run_rtslc("render", "scene.json", "-o", "picture.png")
 
+    def test_messages_say_where_the_library_defines_a_name(self):
+        self.write("main.rtsl", """class Painted : rt_Material {
+              public Sphere ball;
+              void shade() { rt_SampleColor = color(gradientNoise(pointToWorld(rt_HitPoint)) + pi); }
+            };
+            class Egg : Torus { };
+            class Nowhere : Dodecahedron { };""")
+        messages = self.diagnose("check", "main.rtsl")
+        said = {(each["code"], tuple(each["notes"])) for each in messages}
+        for code, module in (("E0201", "std.primitives.Sphere"), ("E0202", "std.noise"), ("E0202", "std.spaces"),
+                             ("E0206", "std.primitives.Torus")):
+            self.assertIn((code, (f"it is in the standard library: add `import {module};`",)), said)
+        self.assertTrue(any("the base classes are" in note for each in messages for note in each["notes"]), messages)
+        # With what the messages say, they are gone.
+        imports = "".join(f"import {module};\n" for module in ("std.primitives.Sphere", "std.noise", "std.spaces", "std.primitives.Torus"))
+        self.write("main.rtsl", imports + (self.folder / "main.rtsl").read_text().replace(" + pi", "").replace("Dodecahedron", "Sphere"))
+        self.run_rtslc("check", "main.rtsl")
+
     def test_unknown_modules(self):
         for text, meant in (("std.cameas", "std.cameras"), ("std.cameras.Pinhole", "std.cameras.PinholeCamera"),
                             ("PinholeCamera", "std.cameras.PinholeCamera"), ("std.primitives.sphere", "std.primitives.Sphere")):

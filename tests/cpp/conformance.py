@@ -146,8 +146,7 @@ def main():
         tried = 0
         for compiler, flags, part in OPTIONS if is_all else OPTIONS[:4] + SAMPLES:
             if not shutil.which(compiler):
-                print(f"{compiler} is not installed: skipped")
-                continue
+                sys.exit(f"{compiler} is not installed: make dependencies installs it")
             chosen = programs[::part]
             whole, program = folder / "all.cpp", folder / "all"
             count = write_program(whole, chosen, folder)

@@ -71,7 +71,7 @@ public:
         [this](const ast::ImportDecl &import, FileId importer) {
           return loader.resolve(import, importer);
         },
-        messages.diagnostics);
+        messages.diagnostics, moduleThatDefines);
     if (!messages.diagnostics.hasErrors())
       checkLiveState(*module, options, messages.diagnostics);
     return module;

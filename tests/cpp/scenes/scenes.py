@@ -219,8 +219,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
     folder = pathlib.Path(name)
     for compiler, flags, options, scenes in CASES:
         if not shutil.which(compiler):
-            print(f"{compiler} is not installed: skipped")
-            continue
+            sys.exit(f"{compiler} is not installed: make dependencies installs it")
         imports = list(dict.fromkeys(file for scene in scenes for file in scene["import"]))
         run(rtslc, "compile", *imports, "--emit=cpp", *options, "-o", folder / "shaders.cpp")
         run(compiler, folder / "shaders.cpp", "-o", folder / "shaders.so", *flags, *FLAGS)
