@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 namespace rtsl {
@@ -169,30 +167,6 @@ void SourceLoader::loadImports(bool withModules) {
       if (import.isFile || withModules)
         pending.push_back(resolve(import, unit->file));
   }
-}
-
-template <typename Declarations>
-static bool hasName(const Declarations &declarations, const std::string &name) {
-  return std::any_of(declarations.begin(), declarations.end(),
-                     [&](const auto &one) { return one.name.text == name; });
-}
-
-std::string moduleThatDefines(const std::string &name) {
-  SourceManager sources;
-  Diagnostics diagnostics(sources);
-  SourceLoader loader(sources, diagnostics);
-  for (const std::string &module : findModule("std").parts) {
-    const std::string file = findModule(module).file;
-    std::ifstream text(file);
-    const std::string content{std::istreambuf_iterator<char>(text), {}};
-    if (content.find(name) == std::string::npos) // most files: they need not be parsed
-      continue;
-    const ast::TranslationUnit *unit = loader.load(file);
-    if (unit && (hasName(unit->classes, name) || hasName(unit->functions, name) ||
-                 hasName(unit->structs, name) || hasName(unit->constants, name)))
-      return module;
-  }
-  return {};
 }
 
 void SourceLoader::addFile(const std::string &path) {

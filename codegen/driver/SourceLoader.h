@@ -80,8 +80,4 @@ private:
   std::map<std::string, std::unique_ptr<ast::TranslationUnit>> units; // by canonical path
 };
 
-/// The module of the standard library that defines a class, struct, constant or function of this
-/// name at file level; empty if there is none.
-std::string moduleThatDefines(const std::string &name);
-
 } // namespace rtsl

@@ -12,8 +12,8 @@ namespace rtsl {
 using ImportResolver =
     std::function<const ast::TranslationUnit *(const ast::ImportDecl &import, FileId importer)>;
 
-/// The module of the standard library that defines a class, struct, constant or function of this
-/// name, "std.noise"; empty if there is none. It is asked only for messages.
+/// Returns the module of the standard library that defines a class, struct, constant or function of
+/// the given name, "std.noise", or an empty string. Called only after an unknown name was reported.
 using ModuleFinder = std::function<std::string(const std::string &name)>;
 
 } // namespace rtsl

@@ -145,8 +145,6 @@ public:
   void checkPerformance();
 
 private:
-  const ModuleFinder &finder;
-
   struct PendingBody {
     const ast::FunctionDecl *declaration;
     typed::Function *function;
@@ -180,6 +178,7 @@ private:
   void checkOverride(const ClassScope &scope, const typed::Function &function);
   void declareFreeFunction(const ast::FunctionDecl &declaration);
 
+  const ModuleFinder &finder;
   std::vector<const ast::TranslationUnit *> units;
   std::vector<ClassScope *> baseFirst;
   std::vector<PendingBody> bodies;

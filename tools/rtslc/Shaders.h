@@ -2,6 +2,7 @@
 #pragma once
 
 #include "Messages.h"
+#include "codegen/driver/LibraryNames.h"
 #include "codegen/driver/SourceLoader.h"
 #include "sema/Sema.h"
 
@@ -71,7 +72,8 @@ public:
         [this](const ast::ImportDecl &import, FileId importer) {
           return loader.resolve(import, importer);
         },
-        messages.diagnostics, moduleThatDefines);
+        messages.diagnostics,
+        [this](const std::string &name) { return library.moduleThatDefines(name); });
     if (!messages.diagnostics.hasErrors())
       checkLiveState(*module, options, messages.diagnostics);
     return module;
@@ -80,6 +82,7 @@ public:
 private:
   Messages &messages;
   SourceLoader loader;
+  LibraryNames library;
   std::vector<const ast::TranslationUnit *> parsed;
 };
 
