@@ -1,9 +1,9 @@
 //===- HandOver.cpp - commands that live in a program of their own --------===//
 #include "HandOver.h"
 
-#include "CommandLine.h"
-#include "SceneShaders.h"
 #include "support/ProgramFolder.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
 

@@ -5,8 +5,8 @@
 // if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
-#include "CommandLine.h"
 #include "HandOver.h"
+#include "tools/rtslc/common/CommandLine.h"
 
 #include <string_view>
 

@@ -3,9 +3,9 @@
 // Started by rtslc (HandOver.h); it can be called as well.
 //
 //===----------------------------------------------------------------------===//
-#include "CommandLine.h"
-#include "MeasureItems.h"
 #include "scenefile/SceneFile.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/explain/MeasureItems.h"
 
 using namespace rtsl;
 using namespace rtsl::tool;

@@ -6,6 +6,7 @@ import struct
 import unittest
 
 from harness import Case
+from numpy_files import npy
 
 SHADERS = """
 class Show : rt_RayGeneration {
@@ -37,16 +38,6 @@ class Show : rt_RayGeneration {
 };
 class Objects : rt_RayGeneration { public rt_Texture textures[]; void generate() { } };
 """
-
-
-def npy(form, shape, numbers, order="False", version=1, descr=None):
-    """A file of NumPy."""
-    kinds = {"f": "<f4", "d": "<f8", "e": "<f2", "i": "<i4", "q": "<i8", "I": "<u4", "Q": "<u8", "h": "<i2", "H": "<u2", "b": "|i1", "B": "|u1",
-             "?": "|b1"}
-    text = "{'descr': '%s', 'fortran_order': %s, 'shape': (%s), }" % (
-        descr or kinds[form], order, ", ".join(map(str, shape)) + ("," if len(shape) == 1 else ""))
-    length = struct.pack("<H" if version == 1 else "<I", len(text) + 1)
-    return b"\x93NUMPY" + bytes([version, 0]) + length + text.encode() + b"\n" + struct.pack(f"<{len(numbers)}{form}", *numbers)
 
 
 class Buffers(Case):

@@ -7,7 +7,7 @@ import struct
 import unittest
 
 from harness import DIAGNOSED, EXAMPLES, USAGE, Case
-from test_buffers import npy
+from numpy_files import npy, read_npy
 
 SHADERS = (EXAMPLES.parent / "tests/cpp/scenes/Outputs.rtsl").read_text()  # of C++ programs too
 
@@ -22,15 +22,6 @@ PATHS = {
     "with exceptions": ["--exceptions"],
 }
 MARKS = [0, 0xffffffff, 0, 0xffffffff, 0, 5, 0]
-
-
-def read_npy(path):
-    data = path.read_bytes()
-    length = struct.unpack("<H", data[8:10])[0]
-    header = eval(data[10:10 + length])  # a literal
-    form = {"<f4": "f", "<i4": "i", "<u4": "I", "|b1": "?"}[header["descr"]]
-    numbers = data[10 + length:]
-    return header["shape"], struct.unpack(f"<{len(numbers) // struct.calcsize(form)}{form}", numbers)
 
 
 class OutputBuffers(Case):

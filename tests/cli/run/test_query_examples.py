@@ -5,7 +5,8 @@ import shutil
 import unittest
 
 from harness import EXAMPLES, Case
-from test_output_buffers import PATHS, read_npy
+from numpy_files import read_npy
+from test_output_buffers import PATHS
 
 
 class QueryExamples(Case):

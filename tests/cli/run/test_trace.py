@@ -6,7 +6,7 @@ import unittest
 from fractions import Fraction
 
 from harness import USAGE, Case
-from test_buffers import npy
+from numpy_files import npy
 
 PATHS = ([], ["--traversal=device"], ["--trace=recurse"], ["--target=host-megakernel"], ["-O0"])
 

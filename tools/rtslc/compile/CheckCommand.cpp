@@ -1,11 +1,11 @@
 //===- CheckCommand.cpp - rtslc check -------------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
-#include "SceneShaders.h"
-#include "Shaders.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/Shaders.h"
 
 #include <fmt/format.h>
 

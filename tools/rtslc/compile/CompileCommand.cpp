@@ -1,13 +1,13 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
-#include "SceneShaders.h"
-#include "Shaders.h"
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/Shaders.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,13 +1,13 @@
 //===- PackCommand.cpp - rtslc pack ---------------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
-#include "ScenePackage.h"
-#include "SceneShaders.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/ScenePackage.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
 

@@ -1,16 +1,16 @@
 //===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
-#include "CommandLine.h"
 #include "Explanation.h"
 #include "MeasureItems.h"
-#include "Messages.h"
-#include "SceneShaders.h"
-#include "Shaders.h"
 #include "codegen/driver/SceneProgram.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/Shaders.h"
 
 #include <algorithm>
 #include <memory>

@@ -4,8 +4,6 @@
 // the name.
 //
 //===----------------------------------------------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
 #include "codegen/driver/StandardLibrary.h"
 #include "frontend/preprocessor/Preprocessor.h"
 #include "frontend/syntax/Parser.h"
@@ -13,6 +11,8 @@
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
 
 #include <fmt/format.h>
 

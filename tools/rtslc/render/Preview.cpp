@@ -1,10 +1,10 @@
 //===- Preview.cpp - a standard scene that shows one class ----------------===//
 #include "Preview.h"
 
-#include "Shaders.h"
 #include "codegen/driver/StandardLibrary.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
+#include "tools/rtslc/common/Shaders.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

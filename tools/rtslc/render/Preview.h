@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "Messages.h"
 #include "scenefile/SceneFile.h"
+#include "tools/rtslc/common/Messages.h"
 
 #include <optional>
 #include <string>

@@ -1,11 +1,8 @@
 //===- RenderCommand.cpp - rtslc render -----------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
 #include "NotFinite.h"
 #include "Preview.h"
 #include "RenderOnChange.h"
 #include "RenderTarget.h"
-#include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
 #include "runtime/render/Renderer.h"
@@ -18,6 +15,9 @@
 #include "tools/common/Output.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

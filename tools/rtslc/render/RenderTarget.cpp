@@ -1,13 +1,13 @@
 #include "RenderTarget.h"
 
-#include "GpuArchitectures.h"
-#include "ScenePackage.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/gpu/CudaDriver.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
 #include "tools/common/OptionValues.h"
+#include "tools/rtslc/common/GpuArchitectures.h"
+#include "tools/rtslc/common/ScenePackage.h"
 
 namespace rtsl::tool {
 

@@ -1,11 +1,11 @@
 //===- CompareCommand.cpp - rtslc compare ---------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
 #include "report/measures/ErrorMetrics.h"
 #include "report/measures/Flip.h"
 #include "runtime/image/Image.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

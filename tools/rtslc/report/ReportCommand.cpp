@@ -3,9 +3,6 @@
 // Error against run time of one scene, in every configuration that renders it.
 //
 //===----------------------------------------------------------------------===//
-#include "CommandLine.h"
-#include "Messages.h"
-#include "SceneShaders.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Versions.h"
 #include "report/Machine.h"
@@ -24,6 +21,9 @@
 #include "tools/common/Output.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -5,8 +5,6 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 
-#include "Messages.h"
-#include "SceneShaders.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/BufferOutput.h"
 #include "scenefile/SceneFile.h"
@@ -18,6 +16,8 @@
 #include "tools/common/Output.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
+#include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

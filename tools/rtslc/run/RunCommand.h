@@ -1,8 +1,8 @@
 //===- RunCommand.h - what commands that run launches share ---------------===//
 #pragma once
 
-#include "CommandLine.h"
-#include "RenderTarget.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/render/RenderTarget.h"
 
 #include <string>
 #include <vector>

@@ -3,11 +3,11 @@
 // Rays of the user's against a mesh: runs a scene of library/queries.
 //
 //===----------------------------------------------------------------------===//
-#include "Messages.h"
 #include "RunCommand.h"
 #include "codegen/driver/StandardLibrary.h"
 #include "scenefile/NumberFiles.h"
 #include "support/Error.h"
+#include "tools/rtslc/common/Messages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

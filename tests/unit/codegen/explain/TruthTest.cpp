@@ -3,7 +3,7 @@
 // PTX must stay.
 #include "codegen/driver/Stages.h"
 #include "scenefile/SceneFile.h"
-#include "tools/rtslc/SceneShaders.h"
+#include "tools/rtslc/common/SceneShaders.h"
 
 #include <gtest/gtest.h>
 
