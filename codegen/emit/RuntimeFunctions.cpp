@@ -4,7 +4,7 @@
 #include "codegen/emit/patterns/Patterns.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "llvm/ADT/TypeSwitch.h"
 

@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "language/formulas/Operations.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"

@@ -1,6 +1,7 @@
 //===- Library.cpp - functions for formulas, and operations on numbers ----===//
 #include "codegen/formulas/Library.h"
 
+#include "codegen/ir/NamedLocation.h"
 #include "codegen/ir/Rtsl.h"
 
 namespace rtsl::lowering {
@@ -23,7 +24,7 @@ mlir::func::FuncOp Library::define(const std::string &symbol, mlir::FunctionType
     return place->second;
   Emitter emitter(module.getContext());
   emitter.library = this;
-  emitter.setLoc(mlir::NameLoc::get(emitter.getStringAttr(symbol)));
+  emitter.setLoc(ir::builtinLocation(module.getContext(), symbol));
   emitter.setInsertionPointToEnd(module.getBody());
   auto function = emitter.make<mlir::func::FuncOp>(symbol, type);
   function.setPrivate();

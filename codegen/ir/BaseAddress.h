@@ -1,7 +1,7 @@
 //===- BaseAddress.h - from the address of an element to its variable -----===//
 #pragma once
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 namespace rtsl::ir {
 

@@ -1,7 +1,7 @@
 //===- ClassTable.h - the classes of a module by name ---------------------===//
 #pragma once
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "llvm/ADT/StringMap.h"
 

@@ -1,7 +1,7 @@
 //===- Layout.cpp - sizes and offsets in memory ---------------------------===//
 #include "codegen/ir/Layout.h"
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "runtime/device/ray/Abi.h"
 
 #include "llvm/ADT/TypeSwitch.h"

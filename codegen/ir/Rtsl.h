@@ -6,8 +6,8 @@
 #ifndef RTSL_CODEGEN_IR_RTSL_H // not `#pragma once`: see Precompiled.h
 #define RTSL_CODEGEN_IR_RTSL_H
 
-#include "codegen/ir/RtslDialect.h"
-#include "codegen/ir/RtslOps.h"
-#include "codegen/ir/RtslTypes.h"
+#include "codegen/ir/dialect/RtslDialect.h"
+#include "codegen/ir/dialect/RtslOps.h"
+#include "codegen/ir/dialect/RtslTypes.h"
 
 #endif

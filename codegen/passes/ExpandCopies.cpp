@@ -3,7 +3,7 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"

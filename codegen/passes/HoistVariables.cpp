@@ -1,7 +1,7 @@
 //===- HoistVariables.cpp - variables to the entry of their function ------===//
 #include "codegen/passes/HoistVariables.h"
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/Pass/Pass.h"

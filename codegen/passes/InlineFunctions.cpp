@@ -2,8 +2,8 @@
 #include "codegen/passes/InlineFunctions.h"
 
 #include "codegen/ir/Attributes.h"
-#include "codegen/ir/RtslOps.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Analysis/CallGraph.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"

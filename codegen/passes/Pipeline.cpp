@@ -1,7 +1,7 @@
 //===- Pipeline.cpp - from level 1 to level 2, in order -------------------===//
 #include "codegen/passes/Pipeline.h"
 
-#include "codegen/ir/RtslDialect.h"
+#include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/passes/BindMembers.h"
 #include "codegen/passes/ExpandCopies.h"
 #include "codegen/passes/HoistVariables.h"

@@ -2,7 +2,7 @@
 #include "codegen/passes/PromoteVariables.h"
 
 #include "codegen/ir/IncomingEdges.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/PatternMatch.h"

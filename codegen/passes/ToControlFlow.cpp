@@ -1,7 +1,7 @@
 //===- ToControlFlow.cpp - structured control flow to branches ------------===//
 #include "codegen/passes/ToControlFlow.h"
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"

@@ -5,7 +5,7 @@
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "runtime/device/ray/Abi.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"

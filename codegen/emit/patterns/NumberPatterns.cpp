@@ -2,7 +2,7 @@
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/emit/patterns/Patterns.h"
 #include "codegen/ir/Attributes.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
 

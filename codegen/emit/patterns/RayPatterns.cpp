@@ -1,7 +1,7 @@
 //===- RayPatterns.cpp - operations of rays to LLVM -----------------------===//
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/emit/patterns/Patterns.h"
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "runtime/device/ray/Abi.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"

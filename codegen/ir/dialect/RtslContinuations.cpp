@@ -1,5 +1,5 @@
 //===- RtslContinuations.cpp - the operations of split functions ----------===//
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "llvm/ADT/StringSet.h"
 

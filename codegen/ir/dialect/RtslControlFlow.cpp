@@ -1,5 +1,5 @@
 //===- RtslControlFlow.cpp - the structured operations of level 1 ---------===//
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Interfaces/FunctionInterfaces.h"
 

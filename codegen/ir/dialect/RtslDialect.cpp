@@ -1,9 +1,9 @@
 //===- RtslDialect.cpp - the `rtsl` dialect itself ------------------------===//
-#include "codegen/ir/RtslDialect.h"
+#include "codegen/ir/dialect/RtslDialect.h"
 
 #include "codegen/ir/Attributes.h"
-#include "codegen/ir/RtslOps.h"
-#include "codegen/ir/RtslTypes.h"
+#include "codegen/ir/dialect/RtslOps.h"
+#include "codegen/ir/dialect/RtslTypes.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlow.h"
@@ -16,11 +16,11 @@
 #include "llvm/ADT/StringSwitch.h"
 #include "llvm/ADT/TypeSwitch.h"
 
-#include "codegen/ir/RtslDialect.cpp.inc"
-#include "codegen/ir/RtslEnums.cpp.inc"
+#include "codegen/ir/dialect/RtslDialect.cpp.inc"
+#include "codegen/ir/dialect/RtslEnums.cpp.inc"
 
 #define GET_ATTRDEF_CLASSES
-#include "codegen/ir/RtslAttributes.cpp.inc"
+#include "codegen/ir/dialect/RtslAttributes.cpp.inc"
 
 namespace rtsl::ir {
 
@@ -43,11 +43,11 @@ void RtslDialect::initialize() {
   registerTypes();
   addAttributes<
 #define GET_ATTRDEF_LIST
-#include "codegen/ir/RtslAttributes.cpp.inc"
+#include "codegen/ir/dialect/RtslAttributes.cpp.inc"
       >();
   addOperations<
 #define GET_OP_LIST
-#include "codegen/ir/RtslOps.cpp.inc"
+#include "codegen/ir/dialect/RtslOps.cpp.inc"
       >();
   addInterfaces<RtslInliner>();
 }

@@ -4,6 +4,6 @@
 
 #include "mlir/IR/Dialect.h"
 
-#include "codegen/ir/RtslDialect.h.inc"
+#include "codegen/ir/dialect/RtslDialect.h.inc"
 
 #endif

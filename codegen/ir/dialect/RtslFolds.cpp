@@ -4,7 +4,7 @@
 // depend on whether it was folded, or on which host.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "math/Elementary.h"
 #include "math/Refraction.h"
 
@@ -24,55 +24,17 @@ using mlir::OpFoldResult;
 // Elementary functions
 //===----------------------------------------------------------------------===//
 
-static float evaluate(Elementary function, float x) {
+static float evaluate(Elementary function, llvm::ArrayRef<float> x) {
   switch (function) {
-  case Elementary::Sin:
-    return device::sin(x);
-  case Elementary::Cos:
-    return device::cos(x);
-  case Elementary::Tan:
-    return device::tan(x);
-  case Elementary::SinPi:
-    return device::sinpi(x);
-  case Elementary::CosPi:
-    return device::cospi(x);
-  case Elementary::Asin:
-    return device::asin(x);
-  case Elementary::Acos:
-    return device::acos(x);
-  case Elementary::Atan:
-    return device::atan(x);
-  case Elementary::Sinh:
-    return device::sinh(x);
-  case Elementary::Cosh:
-    return device::cosh(x);
-  case Elementary::Tanh:
-    return device::tanh(x);
-  case Elementary::Asinh:
-    return device::asinh(x);
-  case Elementary::Acosh:
-    return device::acosh(x);
-  case Elementary::Atanh:
-    return device::atanh(x);
-  case Elementary::Exp:
-    return device::exp(x);
-  case Elementary::Exp2:
-    return device::exp2(x);
-  case Elementary::Expm1:
-    return device::expm1(x);
-  case Elementary::Log:
-    return device::log(x);
-  case Elementary::Log2:
-    return device::log2(x);
-  case Elementary::Log1p:
-    return device::log1p(x);
-  case Elementary::InverseSqrt:
-    return device::inversesqrt(x);
-  case Elementary::Pow:
-  case Elementary::Atan2:
-    break;
+#define RTSL_ELEMENTARY_UNARY(Id, name)                                                            \
+  case Elementary::Id:                                                                             \
+    return device::name(x[0]);
+#define RTSL_ELEMENTARY_BINARY(Id, name)                                                           \
+  case Elementary::Id:                                                                             \
+    return device::name(x[0], x[1]);
+#include "math/ElementaryFunctions.def"
   }
-  llvm_unreachable("not a function of one operand");
+  llvm_unreachable("not an elementary function");
 }
 
 OpFoldResult ElementaryOp::fold(FoldAdaptor adaptor) {
@@ -80,11 +42,10 @@ OpFoldResult ElementaryOp::fold(FoldAdaptor adaptor) {
   if (getOperands().size() == 1)
     return mlir::constFoldUnaryOp<FloatAttr, APFloat, void>(
         adaptor.getOperands(),
-        [&](const APFloat &x) { return APFloat(evaluate(function, x.convertToFloat())); });
+        [&](const APFloat &x) { return APFloat(evaluate(function, {x.convertToFloat()})); });
   return mlir::constFoldBinaryOp<FloatAttr, APFloat, void>(
       adaptor.getOperands(), [&](const APFloat &x, const APFloat &y) {
-        float a = x.convertToFloat(), b = y.convertToFloat();
-        return APFloat(function == Elementary::Pow ? device::pow(a, b) : device::atan2(a, b));
+        return APFloat(evaluate(function, {x.convertToFloat(), y.convertToFloat()}));
       });
 }
 

@@ -5,7 +5,8 @@
 // ordered by address, and output must be the same on every run.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/NamedLocation.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 
@@ -67,15 +68,10 @@ Value VarOp::getDefaultValue(const MemorySlot &slot, OpBuilder &builder) {
   return createZero(builder, getLoc(), slot.elemType);
 }
 
-/// Values are shown to the author under the name of the variable that they were promoted from.
-static mlir::Location withName(mlir::Location location, VarOp variable) {
-  if (!variable || llvm::isa<mlir::NameLoc>(location))
-    return location;
-  return mlir::NameLoc::get(variable.getNameAttr(), location);
-}
+// Values are shown to the author under the name of the variable that they were promoted from.
 
 void VarOp::handleBlockArgument(const MemorySlot &, mlir::BlockArgument argument, OpBuilder &) {
-  argument.setLoc(withName(argument.getLoc(), *this));
+  argument.setLoc(withNameOf(*this, argument.getLoc()));
 }
 
 std::optional<mlir::PromotableAllocationOpInterface>
@@ -181,7 +177,7 @@ DeletionKind StoreOp::removeBlockingUses(const MemorySlot &slot, Blocking, OpBui
   // A constant has many uses, so it does not get the variable's name.
   mlir::Operation *op = getValue().getDefiningOp();
   if (op && !op->hasTrait<mlir::OpTrait::ConstantLike>())
-    op->setLoc(withName(op->getLoc(), slot.ptr.getDefiningOp<VarOp>()));
+    op->setLoc(withNameOf(slot.ptr.getDefiningOp<VarOp>(), op->getLoc()));
   return DeletionKind::Delete;
 }
 LogicalResult StoreOp::ensureOnlySafeAccesses(const MemorySlot &slot, SafeSlots,

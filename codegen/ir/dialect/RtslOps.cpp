@@ -1,9 +1,9 @@
 //===- RtslOps.cpp - building and verifying the operations ----------------===//
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
-#include "codegen/ir/RtslDialect.h"
+#include "codegen/ir/dialect/RtslDialect.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/IR/Matchers.h"
@@ -77,7 +77,7 @@ static void printSwitchArms(mlir::OpAsmPrinter &printer, SwitchOp op, mlir::Arra
 } // namespace rtsl::ir
 
 #define GET_OP_CLASSES
-#include "codegen/ir/RtslOps.cpp.inc"
+#include "codegen/ir/dialect/RtslOps.cpp.inc"
 
 namespace rtsl::ir {
 
@@ -345,12 +345,21 @@ LogicalResult IlluminateOp::verify() {
   return mlir::success();
 }
 
+static unsigned operandCount(Elementary function) {
+  switch (function) {
+#define RTSL_ELEMENTARY_BINARY(Id, name) case Elementary::Id:
+#include "math/ElementaryFunctions.def"
+    return 2;
+  default:
+    return 1;
+  }
+}
+
 LogicalResult ElementaryOp::verify() {
-  bool isBinary = getFunction() == Elementary::Pow || getFunction() == Elementary::Atan2;
-  unsigned expected = isBinary ? 2 : 1;
+  const unsigned expected = operandCount(getFunction());
   if (getOperands().size() != expected)
     return emitOpError() << "<" << stringifyElementary(getFunction()) << "> takes " << expected
-                         << (isBinary ? " operands" : " operand") << ", not "
+                         << (expected == 1 ? " operand" : " operands") << ", not "
                          << getOperands().size();
   return mlir::success();
 }

@@ -2,7 +2,7 @@
 #ifndef RTSL_CODEGEN_IR_RTSL_OPS_H // not `#pragma once`: see Precompiled.h
 #define RTSL_CODEGEN_IR_RTSL_OPS_H
 
-#include "codegen/ir/RtslTypes.h"
+#include "codegen/ir/dialect/RtslTypes.h"
 
 #include "mlir/IR/Builders.h"
 #include "mlir/IR/BuiltinOps.h"
@@ -14,10 +14,10 @@
 #include "mlir/Interfaces/MemorySlotInterfaces.h"
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 
-#include "codegen/ir/RtslEnums.h.inc"
+#include "codegen/ir/dialect/RtslEnums.h.inc"
 
 #define GET_ATTRDEF_CLASSES
-#include "codegen/ir/RtslAttributes.h.inc"
+#include "codegen/ir/dialect/RtslAttributes.h.inc"
 
 namespace rtsl::ir {
 class MemberDeclOp;
@@ -29,7 +29,7 @@ struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
 } // namespace rtsl::ir
 
 #define GET_OP_CLASSES
-#include "codegen/ir/RtslOps.h.inc"
+#include "codegen/ir/dialect/RtslOps.h.inc"
 
 namespace rtsl::ir {
 

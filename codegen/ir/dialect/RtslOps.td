@@ -14,8 +14,8 @@ include "mlir/IR/SymbolInterfaces.td"
 include "mlir/Interfaces/MemorySlotInterfaces.td"
 include "mlir/Interfaces/InferTypeOpInterface.td"
 include "mlir/Interfaces/SideEffectInterfaces.td"
-include "codegen/ir/RtslDialect.td"
-include "codegen/ir/RtslTypes.td"
+include "codegen/ir/dialect/RtslDialect.td"
+include "codegen/ir/dialect/RtslTypes.td"
 
 class Rtsl_Op<string opMnemonic, list<Trait> traits = []> : Op<Rtsl_Dialect, opMnemonic, traits>;
 
@@ -341,18 +341,10 @@ def Rtsl_CallMethodOp : Rtsl_Op<"call_method"> {
 // Numbers
 //===----------------------------------------------------------------------===//
 
-class Rtsl_Function<string symbol, int number, string spelling> : I32EnumCase<symbol, number, spelling>;
+// Those of math/ElementaryFunctions.def (CMakeLists.txt).
+include "codegen/ir/dialect/ElementaryFunctions.td"
 
-def Rtsl_Elementary : I32Enum<"Elementary", "elementary function", [
-    Rtsl_Function<"Sin", 0, "sin">, Rtsl_Function<"Cos", 1, "cos">, Rtsl_Function<"Tan", 2, "tan">,
-    Rtsl_Function<"Asin", 3, "asin">, Rtsl_Function<"Acos", 4, "acos">, Rtsl_Function<"Atan", 5, "atan">,
-    Rtsl_Function<"Sinh", 6, "sinh">, Rtsl_Function<"Cosh", 7, "cosh">, Rtsl_Function<"Tanh", 8, "tanh">,
-    Rtsl_Function<"Asinh", 9, "asinh">, Rtsl_Function<"Acosh", 10, "acosh">, Rtsl_Function<"Atanh", 11, "atanh">,
-    Rtsl_Function<"Exp", 12, "exp">, Rtsl_Function<"Exp2", 13, "exp2">, Rtsl_Function<"Log", 14, "log">,
-    Rtsl_Function<"Log2", 15, "log2">, Rtsl_Function<"InverseSqrt", 16, "inversesqrt">,
-    Rtsl_Function<"Pow", 17, "pow">, Rtsl_Function<"Atan2", 18, "atan2">,
-    Rtsl_Function<"Expm1", 19, "expm1">, Rtsl_Function<"Log1p", 20, "log1p">,
-    Rtsl_Function<"SinPi", 21, "sinpi">, Rtsl_Function<"CosPi", 22, "cospi">]> {
+def Rtsl_Elementary : I32Enum<"Elementary", "elementary function", Rtsl_ElementaryCases> {
   let cppNamespace = "::rtsl::ir";
 }
 
@@ -566,8 +558,8 @@ def Rtsl_ReturnOp : Rtsl_Op<"return", [Terminator]> {
   let builders = [OpBuilder<(ins), [{}]>];
 }
 
-include "codegen/ir/RtslRayOps.td"
-include "codegen/ir/RtslContinuationOps.td"
-include "codegen/ir/RtslSourceOps.td"
+include "codegen/ir/dialect/RtslRayOps.td"
+include "codegen/ir/dialect/RtslContinuationOps.td"
+include "codegen/ir/dialect/RtslSourceOps.td"
 
 #endif

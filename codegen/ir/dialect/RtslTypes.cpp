@@ -1,7 +1,7 @@
 //===- RtslTypes.cpp - types of the `rtsl` dialect ------------------------===//
-#include "codegen/ir/RtslTypes.h"
+#include "codegen/ir/dialect/RtslTypes.h"
 
-#include "codegen/ir/RtslDialect.h"
+#include "codegen/ir/dialect/RtslDialect.h"
 
 #include "mlir/IR/Builders.h"
 #include "mlir/IR/DialectImplementation.h"
@@ -19,7 +19,7 @@ static void printOutput(mlir::AsmPrinter &printer, bool output) {
 }
 
 #define GET_TYPEDEF_CLASSES
-#include "codegen/ir/RtslTypes.cpp.inc"
+#include "codegen/ir/dialect/RtslTypes.cpp.inc"
 
 namespace rtsl::ir {
 
@@ -30,7 +30,7 @@ using mlir::LogicalResult;
 void RtslDialect::registerTypes() {
   addTypes<
 #define GET_TYPEDEF_LIST
-#include "codegen/ir/RtslTypes.cpp.inc"
+#include "codegen/ir/dialect/RtslTypes.cpp.inc"
       >();
 }
 

@@ -13,7 +13,7 @@
 #include <optional>
 
 #define GET_TYPEDEF_CLASSES
-#include "codegen/ir/RtslTypes.h.inc"
+#include "codegen/ir/dialect/RtslTypes.h.inc"
 
 namespace rtsl::ir {
 

@@ -5,7 +5,7 @@
 include "mlir/IR/AttrTypeBase.td"
 include "mlir/IR/BuiltinTypeInterfaces.td"
 include "mlir/Interfaces/MemorySlotInterfaces.td"
-include "codegen/ir/RtslDialect.td"
+include "codegen/ir/dialect/RtslDialect.td"
 
 class Rtsl_Type<string name, string typeMnemonic, list<Trait> traits = []> : TypeDef<Rtsl_Dialect, name, traits> {
   let mnemonic = typeMnemonic;

@@ -13,7 +13,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/ir/RtslOps.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "codegen/passes/errors/ElementaryErrors.h"
 #include "codegen/passes/errors/Wide.h"
 
