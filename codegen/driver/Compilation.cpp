@@ -7,6 +7,7 @@
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
 #include "codegen/link/UnrollRecursion.h"
+#include "codegen/passes/continuation/calls/Steps.h"
 #include "support/WorkerThreads.h"
 
 namespace rtsl::driver {
@@ -52,12 +53,17 @@ bool reachIr(Compilation &compilation) {
   if (compilation.ir)
     return true;
   const LinkRequest *scene = compilation.input.scene;
-  compilation.context = makeContext();
+  LinkRequest noScene;
+  noScene.features = compilation.input.cpp.features;
+  if (!compilation.context)
+    compilation.context = makeContext();
   compilation.ir =
-      lowerModule(*compilation.input.module, compilation.options, scene ? *scene : LinkRequest(),
-                  compilation.diagnostics, *compilation.context);
+      lowerModule(*compilation.input.module, compilation.options, scene ? *scene : noScene,
+                  compilation.source, compilation.diagnostics, *compilation.context);
   if (!compilation.ir)
     return false;
+  if (compilation.source) // whose states of called methods have frames of their own
+    continuation::callThroughFrames(*compilation.ir);
   if (scene && !linkForScene(compilation)) {
     compilation.ir = nullptr;
     return false;
@@ -69,7 +75,8 @@ bool reachIr(Compilation &compilation) {
   return true;
 }
 
-bool requireNoRecursion(Compilation &compilation) {
+/// Recursion that is too deep for copies is an error on a GPU.
+static bool requireNoRecursion(Compilation &compilation) {
   mlir::func::FuncOp function =
       compilation.isBound() ? recursiveFunction(*compilation.ir) : mlir::func::FuncOp();
   if (!function)
@@ -80,6 +87,10 @@ bool requireNoRecursion(Compilation &compilation) {
   compilation.diagnostics.report(Code::recursionTooDeep, range, method, mostRecursionLevels)
       .note("on the CPU, `--target=host` renders it");
   return false;
+}
+
+bool reachGpuMachine(Compilation &compilation) {
+  return reachIr(compilation) && requireNoRecursion(compilation) && reachMachine(compilation);
 }
 
 } // namespace rtsl::driver

@@ -3,6 +3,8 @@
 
 #include "codegen/driver/Stages.h"
 #include "codegen/driver/Steps.h"
+#include "codegen/link/ModuleFacts.h"
+#include "codegen/lower/SourceTable.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/IR/MLIRContext.h"
@@ -30,9 +32,13 @@ struct Compilation {
   bool usesThreads = false;     // as many as CompileOptions::threads allows, if the scene is large
   bool explains = false;        // splitting reports the savings of each step
 
-  std::unique_ptr<mlir::MLIRContext> context;
+  /// Expressions stay the author's, for C++; receives them.
+  SourceTable *source = nullptr;
+
+  std::shared_ptr<mlir::MLIRContext> context;
   mlir::OwningOpRef<mlir::ModuleOp> ir;
   std::shared_ptr<runtime::Program> program = std::make_shared<runtime::Program>(); // of a scene
+  std::optional<ModuleFacts> moduleFacts; // of a module without a scene
   SplitReport report;
   std::optional<LlvmCode> llvm;
   std::string text;
@@ -40,22 +46,28 @@ struct Compilation {
   bool isBound() const { return input.makeObjects || facts; }
 };
 
-// Each of these takes a compilation to its stage, through the previous ones. They return false if
-// an error was reported; internal errors throw std::logic_error.
+// The pipeline in order, from a checked module. Each of these takes a compilation to its stage,
+// through the previous ones (Stages.cpp). They return false if an error was reported; internal
+// errors throw std::logic_error.
 
 /// `ir`: level 1; for a scene it is linked, and bound if requested. May be called again.
 bool reachIr(Compilation &compilation);
+/// Level 1, linked without a scene, with `moduleFacts`.
+bool reachModuleFacts(Compilation &compilation);
 /// `ssa`: level 2. `trace` is a call.
 bool reachSsa(Compilation &compilation);
 /// `split`: level 2, with `report`. The states of functions that trace have names.
 bool reachStates(Compilation &compilation);
-/// The same with numbers in place of names, and the functions that the machine calls.
+/// `structured`: the same on level 1; for C++, only the states.
+bool reachStructured(Compilation &compilation);
+/// Level 2, like `split`, with numbers in place of names, and the functions that the machine calls.
 bool reachMachine(Compilation &compilation);
+/// The same for a GPU, which has no stack for recursion. In a bound program recursion remains only
+/// if it is deep: that is an error.
+bool reachGpuMachine(Compilation &compilation);
 /// `llvm`: optimised; for a scene, for Target::HostMegakernel.
 bool reachLlvm(Compilation &compilation);
-
-/// Level 1 of a bound program. A GPU has no stack for recursion, which remains in such a program
-/// only if it is deep: then returns false, with a message.
-bool requireNoRecursion(Compilation &compilation);
+/// Machine code of a scene's program in this process: the entry points of `program` are set.
+bool reachProgram(Compilation &compilation);
 
 } // namespace rtsl::driver

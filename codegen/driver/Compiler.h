@@ -65,7 +65,7 @@ using MakeObjects = std::function<runtime::SceneFacts(std::shared_ptr<const runt
 /// but end no sample.
 void keep(ItemSet items, LinkRequest &request, CompileOptions &options);
 
-/// How C++ is printed.
+/// How a module is printed as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md).
 struct CppRequest {
   std::string name; // becomes its namespace, and `<name>_shaders` what it exports
   bool lineDirectives = false;
@@ -74,17 +74,6 @@ struct CppRequest {
   std::optional<TraceMode> trace = std::nullopt;
   std::uint32_t features = 0; // RTSL_FEATURE_* of the program
 };
-
-/// The module as one file of C++17 on GLM and rtsl/shader.h (docs/cpp-output.md). `name` becomes
-/// its namespace, and `<name>_shaders` what it exports. Nothing if there were errors.
-///
-/// `trace`: how methods that trace are printed: as states, or with calls where they trace. If not
-/// given: as states, or with calls if such a method cannot be printed as states. `features`:
-/// RTSL_FEATURE_* of the program.
-std::optional<std::string> emitCpp(const typed::Module &module, const std::string &name,
-                                   bool lineDirectives, std::optional<TraceMode> trace,
-                                   std::uint32_t features, const CompileOptions &options,
-                                   Diagnostics &diagnostics);
 
 /// The format of a report: for users, for other programs, for Graphviz, or drawn.
 enum class ReportFormat : std::uint8_t { Text, Json, Dot, Svg };

@@ -1,18 +1,15 @@
 //===- HostCode.cpp - linked IR as a program in this process --------------===//
 #include "codegen/driver/HostCode.h"
 
-#include "codegen/driver/Compilation.h"
-#include "codegen/emit/DoublePrecision.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/Parts.h"
+#include "codegen/emit/rewrites/DoublePrecision.h"
 #include "codegen/link/Link.h"
 #include "codegen/passes/Pipeline.h"
-#include "codegen/passes/restructure/Restructure.h"
 #include "runtime/program/DeviceBitcode.h"
 #include "runtime/program/NumberCheck.h"
 
 #include "mlir/IR/Threading.h"
-#include "mlir/IR/Verifier.h"
 #include "mlir/Transforms/Passes.h"
 
 #include <algorithm>
@@ -241,15 +238,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
   load(std::move(objects), {}, options, program);
 }
 
-/// Level 2 to level 1 and down again.
-static void restructureAndBack(mlir::ModuleOp ir) {
-  expectSuccess(
-      ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
-  run(ir, codegen::buildSsaPipeline);
-}
-
-/// Compiles the linked IR of a scene to machine code and sets the entry points of its program.
-static void compileLinked(Compilation &compilation) {
+void compileHostCode(Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   runtime::Program &program = *compilation.program;
   const bool isMegakernel = options.target == Target::HostMegakernel;
@@ -281,14 +270,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   input.makeObjects = makeObjects;
   driver::Compilation compilation(input, options, diagnostics);
   compilation.usesThreads = true;
-  const bool isSplit =
-      options.target == Target::HostMegakernel || options.trace == TraceMode::Split;
-  if (!(isSplit ? driver::reachMachine(compilation) : driver::reachSsa(compilation)))
-    return nullptr;
-  if (options.restructure)
-    driver::restructureAndBack(*compilation.ir);
-  driver::compileLinked(compilation);
-  return compilation.program;
+  return driver::reachProgram(compilation) ? compilation.program : nullptr;
 }
 
 } // namespace rtsl

@@ -1,9 +1,7 @@
 //===- HostCode.h - linked IR as a program in this process ----------------===//
 #pragma once
 
-#include "codegen/driver/Compiler.h"
-
-#include "mlir/IR/BuiltinOps.h"
+#include "codegen/driver/Compilation.h"
 
 namespace rtsl::driver {
 
@@ -11,5 +9,8 @@ namespace rtsl::driver {
 /// entry points of `program`. They run once, so they are hardly optimised. `ir` is consumed.
 void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
                          runtime::Program &program);
+
+/// Compiles level 2 of a scene's program to machine code and sets its entry points.
+void compileHostCode(Compilation &compilation);
 
 } // namespace rtsl::driver

@@ -33,7 +33,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   input.scene = &request;
   input.makeObjects = makeObjects;
   Compilation compilation(input, options, diagnostics);
-  if (!reachIr(compilation) || !requireNoRecursion(compilation) || !reachMachine(compilation))
+  if (!reachGpuMachine(compilation))
     return false;
   package.frameBytes = compilation.report.frameSize();
   package.stateCount = compilation.report.stateCount();

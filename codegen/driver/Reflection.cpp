@@ -1,15 +1,13 @@
 //===- Reflection.cpp - the description of a module as JSON ---------------===//
 #include "codegen/driver/Reflection.h"
 
-#include "codegen/cpp/Effects.h"
 #include "codegen/cpp/Names.h"
-#include "codegen/driver/Compilation.h"
 #include "codegen/explain/ReportJson.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/link/Members.h"
-#include "codegen/lower/Lower.h"
 #include "codegen/lower/Lowering.h"
 #include "sema/fold/ConstantFold.h"
+#include "sema/typed/Effects.h"
 
 #include "mlir/IR/MLIRContext.h"
 
@@ -18,15 +16,15 @@
 #include <algorithm>
 #include <cstring>
 
-namespace rtsl {
+namespace rtsl::driver {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Reflection {
+class Describer {
 public:
-  Reflection(const typed::Module &module, const LowerOptions &options, mlir::ModuleOp ir)
+  Describer(const typed::Module &module, const LowerOptions &options, mlir::ModuleOp ir)
       : module(module), ir(ir), types(module, options, ir), effects(module), names(module) {}
 
   Json describe() {
@@ -160,10 +158,10 @@ private:
     Json json = {{"name", function.name}, {"returns", toString(function.returnType)}};
     json["parameters"] = parameters(function);
     addComment(json, function.comment);
-    const cpp::Effects &facts = effects.function(function);
+    const typed::Effects &facts = effects.function(function);
     Json reads = Json::array(), writes = Json::array();
     auto note = [&](typed::StateVariable variable) {
-      const void *place = cpp::EffectsOf::place(variable);
+      const void *place = typed::EffectsOf::place(variable);
       const std::string name = std::string("rt_") + typed::name(variable);
       if (facts.reads.count(place))
         reads.push_back(name);
@@ -205,34 +203,29 @@ private:
   const typed::Module &module;
   mlir::ModuleOp ir;
   lowering::ModuleLowering types;
-  cpp::EffectsOf effects;
+  typed::EffectsOf effects;
   cpp::Names names;
 };
 
 } // namespace
 
-std::optional<std::string> emitReflection(const typed::Module &module,
-                                          const CompileOptions &options, Diagnostics &diagnostics) {
-  // The states and frames of functions that trace.
-  CompileInput input;
-  input.module = &module;
-  driver::Compilation split(input, options, diagnostics);
-  split.explains = true;
-  if (!driver::reachStates(split))
-    return std::nullopt;
-
-  mlir::MLIRContext context(mlir::MLIRContext::Threading::DISABLED);
+Reflection::Reflection(const Compilation &compilation) {
   LowerOptions lowering;
-  lowering.diagnostics = &diagnostics;
-  lowering.colorComponents = options.colorComponents;
-  context.loadDialect<ir::RtslDialect>();
-  const mlir::OwningOpRef<mlir::ModuleOp> ir = lower(module, lowering, context);
-  if (!ir)
-    return std::nullopt;
-  Json json = Reflection(module, lowering, *ir).describe();
-  json["colorComponents"] = options.colorComponents;
-  json["tracing"] = rtsl::describe(split.report);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  lowering.diagnostics = &compilation.diagnostics;
+  lowering.colorComponents = compilation.options.colorComponents;
+  Describer describer(*compilation.input.module, lowering, *compilation.ir);
+  json = std::make_unique<Json>(describer.describe());
+  (*json)["colorComponents"] = lowering.colorComponents;
 }
 
-} // namespace rtsl
+Reflection::~Reflection() = default;
+
+void Reflection::addStates(const SplitReport &report) {
+  (*json)["tracing"] = rtsl::describe(report);
+}
+
+std::string Reflection::text() const {
+  return json->dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace rtsl::driver

@@ -1,18 +1,30 @@
 //===- Reflection.h - the description of a module as JSON -----------------===//
 #pragma once
 
-#include "codegen/driver/Compiler.h"
+#include "codegen/driver/Compilation.h"
 
-#include <optional>
+#include <nlohmann/json_fwd.hpp>
+
+#include <memory>
 #include <string>
 
-namespace rtsl {
+namespace rtsl::driver {
 
 /// The classes, structs and functions of a module as JSON: types, defaults, comments, the state
 /// that methods read and write, the layouts of records, payloads and frames, and the names in
-/// printed C++ that differ. docs/reflection-schema.json is its schema. Nothing if there were
-/// errors.
-std::optional<std::string> emitReflection(const typed::Module &module,
-                                          const CompileOptions &options, Diagnostics &diagnostics);
+/// printed C++ that differ. docs/reflection-schema.json is its schema.
+class Reflection {
+public:
+  /// Describes the module of a compilation that has reached level 1.
+  explicit Reflection(const Compilation &compilation);
+  ~Reflection();
 
-} // namespace rtsl
+  /// The states and frames of functions that trace.
+  void addStates(const SplitReport &report);
+  std::string text() const;
+
+private:
+  std::unique_ptr<nlohmann::ordered_json> json;
+};
+
+} // namespace rtsl::driver

@@ -2,16 +2,21 @@
 #include "codegen/driver/Stages.h"
 
 #include "codegen/driver/Compilation.h"
+#include "codegen/driver/CppOutput.h"
+#include "codegen/driver/HostCode.h"
 #include "codegen/driver/Reflection.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
+#include "codegen/link/LinkModule.h"
+#include "codegen/lower/KnownConditions.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/restructure/Restructure.h"
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
+#include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
 
 #include <stdexcept>
@@ -57,6 +62,14 @@ static bool reachTypedAst(Compilation &compilation) {
 // MLIR. reachIr() is in Compilation.cpp
 //===----------------------------------------------------------------------===//
 
+bool reachModuleFacts(Compilation &compilation) {
+  if (!reachIr(compilation))
+    return false;
+  compilation.moduleFacts = linkModule(*compilation.ir, *compilation.input.module,
+                                       compilation.diagnostics, compilation.options.floatingPoint);
+  return compilation.moduleFacts.has_value();
+}
+
 bool reachSsa(Compilation &compilation) {
   if (!reachIr(compilation))
     return false;
@@ -69,6 +82,8 @@ static bool split(Compilation &compilation, bool dispatch) {
     return false;
   SplitOptions how = splitOptions(compilation.options);
   how.dispatch = dispatch;
+  if (const SourceTable *source = compilation.source)
+    how.isKnown = [source](mlir::Value condition) { return knownCondition(condition, *source); };
   how.explain = compilation.explains;
   compilation.report = runToStates(*compilation.ir, how);
   return true;
@@ -78,10 +93,12 @@ bool reachStates(Compilation &compilation) {
   return split(compilation, /*dispatch=*/false);
 }
 
-static bool reachStructured(Compilation &compilation) {
+bool reachStructured(Compilation &compilation) {
   if (!reachStates(compilation))
     return false;
-  expectSuccess(*compilation.ir, [&] { return mlir::succeeded(restructure(*compilation.ir)); });
+  for (auto function : compilation.ir->getOps<mlir::func::FuncOp>())
+    if (!compilation.source || ir::attr::state.isOn(function))
+      expectSuccess(*compilation.ir, [&] { return mlir::succeeded(restructure(function)); });
   return true;
 }
 
@@ -90,7 +107,7 @@ bool reachMachine(Compilation &compilation) {
 }
 
 //===----------------------------------------------------------------------===//
-// LLVM IR and PTX
+// LLVM IR, PTX and machine code
 //===----------------------------------------------------------------------===//
 
 bool reachLlvm(Compilation &compilation) {
@@ -111,6 +128,13 @@ bool reachLlvm(Compilation &compilation) {
   return true;
 }
 
+/// Level 2 to level 1 and down again.
+static void restructureAndBack(mlir::ModuleOp ir) {
+  expectSuccess(
+      ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
+  run(ir, codegen::buildSsaPipeline);
+}
+
 /// The PTX of a module without a scene: one function for each method, or for each state if it
 /// traces. Slots and functions of runtime/device are only declared.
 static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
@@ -128,7 +152,7 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
 
 /// For a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
 static bool reachPtx(Compilation &compilation) {
-  if (!reachIr(compilation) || !requireNoRecursion(compilation) || !reachMachine(compilation))
+  if (!reachGpuMachine(compilation))
     return false;
   const CompileOptions &options = compilation.options;
   compilation.text =
@@ -138,28 +162,36 @@ static bool reachPtx(Compilation &compilation) {
   return true;
 }
 
-//===----------------------------------------------------------------------===//
-// Other outputs for a checked module
-//===----------------------------------------------------------------------===//
-
-static bool give(std::optional<std::string> text, Compilation &compilation) {
-  if (text)
-    compilation.text = std::move(*text);
-  return text.has_value();
+bool reachProgram(Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  const bool isSplit =
+      options.target == Target::HostMegakernel || options.trace == TraceMode::Split;
+  if (!(isSplit ? reachMachine(compilation) : reachSsa(compilation)))
+    return false;
+  if (options.restructure)
+    restructureAndBack(*compilation.ir);
+  compileHostCode(compilation);
+  return true;
 }
 
+//===----------------------------------------------------------------------===//
+// Descriptions of a module
+//===----------------------------------------------------------------------===//
+
 static bool reachCpp(Compilation &compilation) {
-  const CppRequest &request = compilation.input.cpp;
-  return give(emitCpp(*compilation.input.module, request.name, request.lineDirectives,
-                      request.trace, request.features, compilation.options,
-                      compilation.diagnostics),
-              compilation);
+  return reachModuleFacts(compilation) && printCpp(compilation);
 }
 
 static bool reachReflection(Compilation &compilation) {
-  return give(
-      emitReflection(*compilation.input.module, compilation.options, compilation.diagnostics),
-      compilation);
+  if (!reachIr(compilation))
+    return false;
+  Reflection reflection(compilation);
+  compilation.explains = true;
+  if (!reachStates(compilation))
+    return false;
+  reflection.addStates(compilation.report);
+  compilation.text = reflection.text();
+  return true;
 }
 
 } // namespace driver

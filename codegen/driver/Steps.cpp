@@ -1,11 +1,11 @@
 //===- Steps.cpp - the steps that stages consist of -----------------------===//
 #include "codegen/driver/Steps.h"
 
-#include "codegen/emit/CheckNumbers.h"
-#include "codegen/emit/DoublePrecision.h"
-#include "codegen/emit/FastMath.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
+#include "codegen/emit/rewrites/CheckNumbers.h"
+#include "codegen/emit/rewrites/DoublePrecision.h"
+#include "codegen/emit/rewrites/FastMath.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
@@ -58,16 +58,16 @@ void allowThreads(mlir::ModuleOp ir, const CompileOptions &options) {
   context.enableMultithreading();
 }
 
-mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
-                                              const CompileOptions &options,
-                                              const LinkRequest &request, Diagnostics &diagnostics,
-                                              mlir::MLIRContext &context) {
+mlir::OwningOpRef<mlir::ModuleOp>
+lowerModule(const typed::Module &module, const CompileOptions &options, const LinkRequest &request,
+            SourceTable *source, Diagnostics &diagnostics, mlir::MLIRContext &context) {
   LowerOptions lowering;
   lowering.diagnostics = &diagnostics;
   lowering.colorComponents = options.colorComponents;
   lowering.checkIndices = options.checkIndices;
   lowering.raisesExceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
   lowering.prints = request.features & RTSL_FEATURE_PRINT;
+  lowering.source = source;
   lowering.isWidenedLater = options.floatingPoint == FloatingPoint::Double;
   if (!request.keep.has(Item::Classes))
     lowering.classes = {request.classes.begin(), request.classes.end()};

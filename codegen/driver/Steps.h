@@ -9,6 +9,7 @@
 
 #include "codegen/driver/Compiler.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/lower/SourceTable.h"
 #include "codegen/passes/continuation/Split.h"
 
 #include "mlir/IR/BuiltinOps.h"
@@ -43,11 +44,11 @@ std::unique_ptr<mlir::MLIRContext> makeContext();
 /// From now on, passes and other work on functions may use several threads, if the module is large.
 void allowThreads(mlir::ModuleOp ir, const CompileOptions &options);
 
-/// Null if something is not supported, which is reported.
+/// Null if something is not supported, which is reported. `source`: LowerOptions::source.
 mlir::OwningOpRef<mlir::ModuleOp> lowerModule(const typed::Module &module,
                                               const CompileOptions &options,
-                                              const LinkRequest &request, Diagnostics &diagnostics,
-                                              mlir::MLIRContext &context);
+                                              const LinkRequest &request, SourceTable *source,
+                                              Diagnostics &diagnostics, mlir::MLIRContext &context);
 
 /// Runs `work` on the module.
 void expectSuccess(mlir::ModuleOp ir, llvm::function_ref<bool()> work);

@@ -1,6 +1,8 @@
 //===- PrintedCpp.cpp - a module as C++ that a compiler made a program of -===//
 #include "PrintedCpp.h"
 
+#include "codegen/driver/Stages.h"
+
 #include "rtsl/program.h"
 
 #include <fmt/format.h>
@@ -95,8 +97,10 @@ std::shared_ptr<const runtime::Program> compilePrinted(const typed::Module &modu
   options.colorComponents = colorComponents;
   options.checkIndices = checkIndices;
   options.undefined = features & (RTSL_FEATURE_UNDEFINED_BYTES | RTSL_FEATURE_UNDEFINED_NAN);
-  const std::optional<std::string> text =
-      emitCpp(module, "programs", /*lineDirectives=*/false, trace, features, options, diagnostics);
+  CompileInput input;
+  input.module = &module;
+  input.cpp = {"programs", /*lineDirectives=*/false, trace, features};
+  const std::optional<std::string> text = emit(stage("cpp"), input, options, diagnostics);
   if (!text)
     return nullptr;
   if (cpp.compiler.empty())
