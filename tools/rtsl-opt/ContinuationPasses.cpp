@@ -1,6 +1,6 @@
 //===- ContinuationPasses.cpp - the steps of splitting as passes ----------===//
 //
-// For rtsl-opt: thin covers over the Steps.h of each room of codegen/passes/continuation.
+// For rtsl-opt: those of codegen/passes/continuation/common/Steps.def, and the ones with options.
 //
 //===----------------------------------------------------------------------===//
 #include "tools/rtsl-opt/ContinuationPasses.h"
@@ -15,6 +15,8 @@
 
 #include "mlir/Pass/Pass.h"
 #include "mlir/Pass/PassRegistry.h"
+
+#include <type_traits>
 
 namespace rtsl {
 
@@ -38,23 +40,27 @@ struct FunctionStep : mlir::PassWrapper<Derived, mlir::OperationPass<FuncOp>> {
   }
 };
 
-#define RTSL_FUNCTION_STEP(Name, text, what, body)                                                 \
-  struct Name : FunctionStep<Name> {                                                               \
-    MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(Name)                                             \
-    static constexpr llvm::StringLiteral argument = text;                                          \
-    static constexpr llvm::StringLiteral description = what;                                       \
-    mlir::LogicalResult step(FuncOp function) body                                                 \
-  };
+template <typename Step>
+mlir::LogicalResult resultOf(Step step) {
+  if constexpr (std::is_same_v<decltype(step()), mlir::LogicalResult>) {
+    return step();
+  } else {
+    step();
+    return mlir::success();
+  }
+}
 
-RTSL_FUNCTION_STEP(InsertSuspendsPass, "rtsl-insert-suspends", "ends blocks at their traces", {
-  insertSuspends(function);
-  return mlir::success();
-})
-RTSL_FUNCTION_STEP(LastTracesPass, "rtsl-last-traces",
-                   "replaces rays by the tail traces that they send", {
-                     endAtTailTraces(function);
-                     return mlir::success();
-                   })
+#define RTSL_STEP(function, pass, Meaning)                                                         \
+  struct function##Pass : FunctionStep<function##Pass> {                                           \
+    MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(function##Pass)                                   \
+    static constexpr llvm::StringLiteral argument = pass;                                          \
+    static constexpr llvm::StringLiteral description = Meaning;                                    \
+    mlir::LogicalResult step(FuncOp op) {                                                          \
+      return resultOf([&] { return function(op); });                                               \
+    }                                                                                              \
+  };
+#include "codegen/passes/continuation/common/Steps.def"
+
 struct CutJoinsPass : FunctionStep<CutJoinsPass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(CutJoinsPass)
   static constexpr llvm::StringLiteral argument = "rtsl-cut-joins";
@@ -80,34 +86,6 @@ struct CutJoinsPass : FunctionStep<CutJoinsPass> {
     return mlir::success();
   }
 };
-
-RTSL_FUNCTION_STEP(FrameObjectsPass, "rtsl-frame-objects",
-                   "moves variables that are live across a trace to the frame", {
-                     moveVariablesToFrame(function);
-                     return mlir::success();
-                   })
-RTSL_FUNCTION_STEP(TrimVectorsPass, "rtsl-trim-vectors",
-                   "extracts components of vectors before a trace", {
-                     trimVectors(function);
-                     return mlir::success();
-                   })
-RTSL_FUNCTION_STEP(SaveLivePass, "rtsl-save-live",
-                   "passes values that are live across a trace to its resume block",
-                   { return saveLive(function); })
-RTSL_FUNCTION_STEP(LayoutFramePass, "rtsl-layout-frame",
-                   "assigns slots in the frame to saved values", {
-                     layoutFrame(function);
-                     return mlir::success();
-                   })
-RTSL_FUNCTION_STEP(CleanStoresPass, "rtsl-clean-stores",
-                   "removes stores of values that a slot already holds", {
-                     cleanStores(function);
-                     return mlir::success();
-                   })
-RTSL_FUNCTION_STEP(SinkLoadsPass, "rtsl-sink-loads", "moves loads of the frame to their uses", {
-  sinkLoads(function);
-  return mlir::success();
-})
 
 struct RematerialisePass : FunctionStep<RematerialisePass> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(RematerialisePass)
@@ -216,19 +194,13 @@ struct SplitPass : ModuleStep<SplitPass> {
 } // namespace
 
 void registerContinuationPasses() {
+#define RTSL_STEP(function, pass, Meaning) mlir::PassRegistration<function##Pass>();
+#include "codegen/passes/continuation/common/Steps.def"
   mlir::PassRegistration<InlineTracingPass>();
-  mlir::PassRegistration<InsertSuspendsPass>();
-  mlir::PassRegistration<LastTracesPass>();
   mlir::PassRegistration<CutJoinsPass>();
-  mlir::PassRegistration<FrameObjectsPass>();
-  mlir::PassRegistration<TrimVectorsPass>();
   mlir::PassRegistration<RematerialisePass>();
-  mlir::PassRegistration<SaveLivePass>();
-  mlir::PassRegistration<LayoutFramePass>();
   mlir::PassRegistration<TrimPayloadsPass>();
   mlir::PassRegistration<SplitStatesPass>();
-  mlir::PassRegistration<CleanStoresPass>();
-  mlir::PassRegistration<SinkLoadsPass>();
   mlir::PassRegistration<DispatchPass>();
   mlir::PassRegistration<SplitPass>();
 }

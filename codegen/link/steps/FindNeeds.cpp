@@ -20,16 +20,8 @@ namespace {
 
 std::uint32_t needsOf(llvm::StringRef state) {
   return llvm::StringSwitch<std::uint32_t>(state)
-      .Cases({"TextureUV", "TextureUVW"}, RTSL_NEEDS_TEXTURE_COORDINATES)
-      .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, RTSL_NEEDS_DERIVATIVES)
-      .Cases({"ObjectToWorld", "WorldToObject"}, RTSL_NEEDS_TRANSFORMS)
-      .Case("InverseRayDirection", RTSL_NEEDS_INVERSE_DIRECTION)
-      .Cases({"EmissionColor", "BSDFValue", "BSDFSeed", "PDF", "du", "dv"}, RTSL_NEEDS_SAMPLING)
-      .Cases({"Time", "TimeSeed"}, RTSL_NEEDS_TIME)
-      .Cases({"LaunchIndex", "LaunchSize"}, RTSL_NEEDS_LAUNCH)
-      .Case("LensCoord", RTSL_NEEDS_LENS)
-      .Case("InstanceId", RTSL_NEEDS_INSTANCE_ID)
-      .Cases({"GeometricNormal", "ShadingNormal"}, RTSL_NEEDS_NORMALS)
+#define RTSL_STATE_OUTPUT(name, OUTPUT) .Case(#name, RTSL_NEEDS_##OUTPUT)
+#include "language/StateUses.def"
       .Default(0);
 }
 
@@ -94,9 +86,9 @@ std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const Li
         *isLit |= llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op);
       });
     function.walk([&](mlir::func::CallOp call) {
-      if (onItself && call.getCallee().starts_with(dispatchPrefix))
-        return;
       mlir::func::FuncOp callee = context.function(call.getCallee());
+      if (callee && onItself && ir::attr::dispatch.isOn(callee))
+        return;
       if (callee && seen.insert(callee).second)
         pending.push_back(callee);
     });

@@ -1,24 +1,18 @@
 //===- Steps.h - the layout of the frame ----------------------------------===//
 //
-// Each step with its file; Split.cpp calls them.
+// Steps with options or results, and their files; common/Steps.def has the others. Split.cpp calls
+// them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/passes/continuation/common/TracedFunctions.h"
+#include "codegen/passes/continuation/common/Steps.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace rtsl::continuation {
-
-/// FrameObjects.cpp: moves variables that are still in memory and live across a trace to the frame.
-void moveVariablesToFrame(FuncOp function);
-
-/// IdleClears.cpp: for C++ output, removes clears of variables that are overwritten before they are
-/// read.
-void removeIdleClears(FuncOp function);
 
 /// A slot of the frame.
 struct FrameSlot {

@@ -1,11 +1,13 @@
 //===- Steps.h - the values saved at a trace ------------------------------===//
 //
-// Each step with its file; Split.cpp calls them.
+// Steps with options or results, and their files; common/Steps.def has the others. Split.cpp calls
+// them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/passes/continuation/common/Recompute.h"
+#include "codegen/passes/continuation/common/Steps.h"
 
 #include <cstdint>
 #include <string>
@@ -23,10 +25,6 @@ struct TrimmedPayload {
 /// TrimPayloads.cpp: removes fields of payloads that are never read, and those that only the
 /// senders of rays use. Does nothing to a module that is not linked: other classes may read them.
 std::vector<TrimmedPayload> trimPayloads(mlir::ModuleOp module);
-
-/// TrimVectors.cpp: components that are extracted from a vector after a trace are extracted before
-/// it.
-void trimVectors(FuncOp function);
 
 /// The treatment of the values that are needed after one trace.
 struct SuspendPlan {

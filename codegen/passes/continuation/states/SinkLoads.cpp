@@ -31,10 +31,9 @@ static bool mayMove(mlir::Operation &op) {
   return !op.hasTrait<mlir::OpTrait::IsTerminator>() && mlir::isMemoryEffectFree(&op);
 }
 
-bool sinkLoads(FuncOp state) {
+void sinkLoads(FuncOp state) {
   if (state.isExternal() || state.getBody().hasOneBlock())
-    return false;
-  bool changed = false;
+    return;
   mlir::DominanceInfo dominance(state);
   mlir::CFGLoopInfo loops(dominance.getDomTree(&state.getBody()));
   mlir::Block &entry = state.getBody().front();
@@ -48,12 +47,9 @@ bool sinkLoads(FuncOp state) {
                       : user->getBlock();
     while (target != &entry && loops.getLoopDepth(target) != 0)
       target = dominance.getNode(target)->getIDom()->getBlock();
-    if (target == &entry)
-      continue;
-    op.moveBefore(&target->front());
-    changed = true;
+    if (target != &entry)
+      op.moveBefore(&target->front());
   }
-  return changed;
 }
 
 } // namespace rtsl::continuation

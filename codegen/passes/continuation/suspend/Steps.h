@@ -1,6 +1,7 @@
 //===- Steps.h - blocks end at their traces -------------------------------===//
 //
-// Each step with its file; Split.cpp calls them.
+// Steps with options or results, and their files; common/Steps.def has the others. Split.cpp calls
+// them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

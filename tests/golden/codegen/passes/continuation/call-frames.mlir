@@ -14,7 +14,7 @@
 // SPLIT-NEXT:    %[[S:.*]] = rtsl.state "SampleColor"
 // SPLIT-NEXT:    rtsl.store %[[C]], %[[S]]
 // SPLIT:         rtsl.next done
-func.func @rtsl_rt_Material_shade(%self: !rtsl.ref<"Mirror">) attributes {rtsl.export} {
+func.func @rtsl_rt_Material_shade(%self: !rtsl.ref<"Mirror">) attributes {rtsl.export, rtsl.slot = "rt_Material.shade"} {
   %fp = rtsl.member %self["filter"] : !rtsl.ref<"Mirror"> -> !rtsl.ptr<!rtsl.ref<"Tint">>
   %f = rtsl.load %fp : !rtsl.ptr<!rtsl.ref<"Tint">>
   %dp = rtsl.state "RayDirection" : !rtsl.ptr<vector<3xf32>>
@@ -75,3 +75,14 @@ rtsl.class @Tint root "rt_Texture" {
 // MACHINE-DAG:     0: ^bb1(%c0_i32
 // MACHINE-DAG:     1: ^bb1(%c52_i32
 // MACHINE-DAG:     2: ^bb1(%c108_i32
+
+// MUTATION call-frames of calls/CallFrames.cpp: results lie where arguments do
+// -   for (mlir::Type type : results)
+// -     place(type, layout.results);
+// +   end = RTSL_CALL_HEADER;
+// +   for (mlir::Type type : results)
+// +     place(type, layout.results);
+
+// MUTATION frame-areas of calls/CallFrames.cpp: one call round a circle is all there is
+// -       most = std::max(most, bytes(call.callee, chain - 1));
+// +       most = std::max(most, bytes(call.callee, 0));

@@ -86,3 +86,11 @@ func.func @renamed() -> i32 {
   %n = rtsl.next trace @s
   rtsl.end %n
 }
+
+// MUTATION clean-stores of states/CleanStores.cpp: a slot holds what was loaded from another one
+// -         return isSame(load);
+// +         return true;
+
+// MUTATION shared-stores of states/CleanStores.cpp: what lies over an object is kept by its slot all the same
+// - !ir::attr::shared.isOn(store) &&
+// + true &&

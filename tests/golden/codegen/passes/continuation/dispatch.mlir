@@ -58,3 +58,7 @@ func.func @uncalled(%d: vector<3xf32>) -> vector<3xf32> {
   %c = rtsl.trace %d, %d : vector<3xf32>
   return %c : vector<3xf32>
 }
+
+// MUTATION dispatch of states/Dispatch.cpp: a jump is taken for a trace
+// -       value = -value;
+// +       value = +value;

@@ -41,3 +41,6 @@ func.func @local(%o: vector<3xf32>, %i: i32) -> f32 {
   %v = rtsl.load %e : !rtsl.ptr<f32>
   return %v : f32
 }
+
+// MUTATION frame-objects of frame/FrameObjects.cpp: a variable in the frame begins with what lay there
+// -     ir::ClearOp::create(builder, variable.getLoc(), object);

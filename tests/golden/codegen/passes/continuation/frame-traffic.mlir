@@ -47,3 +47,7 @@ func.func @f(%o: !rtsl.ref<"object">) {
 // STEPS:      "after": "sink-loads",
 // STEPS:      "restoredBytes": 8,
 // STEPS-NEXT: "restoredBytesLeast": 4
+
+// MUTATION frame-traffic of FrameTraffic.cpp: the way that loads least loads most
+// - std::min(range.least, before->second.least)
+// + std::max(range.least, before->second.least)

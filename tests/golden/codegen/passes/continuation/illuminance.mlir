@@ -6,7 +6,7 @@
 
 rtsl.class @Lit root "rt_Material" {}
 
-func.func @rtsl_rt_Light_illumination(%light: !rtsl.ref<"object">) attributes {rtsl.export} {
+func.func @rtsl_rt_Light_illumination(%light: !rtsl.ref<"object">) attributes {rtsl.export, rtsl.slot = "rt_Light.illumination"} {
   rtsl.return
 }
 func.func @Lit.shade(%self: !rtsl.ref<"Lit">) attributes {rtsl.class = "Lit", rtsl.method = "shade", rtsl.export} {

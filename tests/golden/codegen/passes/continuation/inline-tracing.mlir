@@ -75,3 +75,7 @@ func.func private @about(%d: vector<3xf32>) {
   call @round(%d) : (vector<3xf32>) -> ()
   return
 }
+
+// MUTATION inline-tracing of calls/InlineTracing.cpp: a call on another object counts as the caller's own
+// -   if (passed != object)
+// -     return false;

@@ -27,3 +27,7 @@ func.func @unreachable(%o: vector<3xf32>) {
   %c = rtsl.trace %o, %o : vector<3xf32>
   return
 }
+
+// MUTATION insert-suspends of suspend/InsertSuspends.cpp: how a ray is searched for gets lost
+// - trace.getRayTypeAttr(), trace.getHowAttr(),
+// + trace.getRayTypeAttr(), nullptr,

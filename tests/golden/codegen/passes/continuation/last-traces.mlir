@@ -107,3 +107,7 @@ func.func @keeps(%self: !rtsl.ref<"M">) {
   rtsl.store %a, %ox : !rtsl.ptr<f32>
   return
 }
+
+// MUTATION last-traces of suspend/TailTraces.cpp: what is left in SampleColor is not looked at
+// - return hasOnePath && color == result.getResult();
+// + return hasOnePath && color;

@@ -43,3 +43,7 @@ func.func @object(%o: vector<3xf32>, %i: i32 loc("i"), %w: f32 loc("w")) -> (f32
   %v = rtsl.load %e : !rtsl.ptr<f32>
   return %v, %w : f32, f32
 }
+
+// MUTATION layout-frame of frame/FrameLayout.cpp: bools that live at the same time share a bit
+// -     while (taken.test(bit))
+// -       ++bit;

@@ -54,3 +54,6 @@ func.func @valueAndObject(%d: vector<3xf32>) {
   rtsl.trace_payload %c, %c from %w to %w carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>
   return
 }
+
+// MUTATION object-lifetimes of frame/ObjectLifetimes.cpp: an object overlaps no object that is live with it
+// -       lifetimes[number].objects |= live;

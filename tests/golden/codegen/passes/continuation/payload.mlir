@@ -47,3 +47,7 @@ func.func @f(%self: !rtsl.ref<"M">) {
   rtsl.store %w, %l : !rtsl.ptr<f32>
   return
 }
+
+// MUTATION ray-graph of states/RayGraph.cpp: a last trace counts as one that is waited for
+// - (isLast ? sentLast : sent) |= 1u << kind;
+// + sent |= 1u << kind;

@@ -206,3 +206,19 @@ func.func @lights(%i: i32) -> (vector<3xf32>, vector<3xf32>) {
   %c = rtsl.trace %p, %n : vector<3xf32>
   return %p, %n : vector<3xf32>, vector<3xf32>
 }
+
+// MUTATION recompute of common/Recompute.cpp: a state variable that was written since is loaded again
+// -       if (writes(op))
+// -         return false;
+
+// MUTATION minimum-cut of save/MinimumCut.cpp: an operand need not be there
+// -         network.connect(recomputed, nodeOf[operand], impossible);
+// +         network.connect(recomputed, nodeOf[operand], 0);
+
+// MUTATION rematerialise of save/Rematerialise.cpp: what is computed again is not used
+// -       redefinitions[value][resume] = again;
+// +       (void)again;
+
+// MUTATION plans-together of save/Rematerialise.cpp: each trace saves what is cheapest for it alone
+// - const std::int64_t cost = costOf(without); cost < best
+// + const std::int64_t cost = costOf(without); cost < 0

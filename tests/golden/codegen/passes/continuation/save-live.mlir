@@ -40,3 +40,19 @@ func.func @names(%self: !rtsl.ref<"M">, %o: vector<3xf32>, %a: f32 loc("w"), %b:
   %d = rtsl.trace %v, %v : vector<3xf32>
   return %b : f32
 }
+
+// MUTATION liveness of common/Liveness.cpp: what is defined in a block is live in front of it
+// -       live.reset(sets.defined);
+
+// MUTATION ssa-repair of common/SsaRepair.cpp: definitions that meet are not told apart
+// -         several |= unique && unique != incoming;
+// -         unique = incoming;
+// -       }
+// -       if (several) {
+// +         unique = incoming;
+// +       }
+// +       if (several) {
+
+// MUTATION save-live of save/SaveLive.cpp: a value goes by its plain name, although another has it
+// - const std::string &name = names.of(value);
+// + const std::string name = sourceName(value);

@@ -31,3 +31,7 @@ func.func @f(%self: !rtsl.ref<"M">) {
   rtsl.store %v, %b : !rtsl.ptr<f32>
   return
 }
+
+// MUTATION split-states of states/SplitStates.cpp: a ray returns to the state that sent it
+// - ir::Transition::Trace, stateName(index + 1));
+// + ir::Transition::Trace, stateName(index));

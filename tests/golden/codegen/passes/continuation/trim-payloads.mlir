@@ -59,3 +59,7 @@ func.func @alone(%self: !rtsl.ref<"M">, %o: vector<3xf32>, %x: f32) -> f32 {
   %a = rtsl.load %l : !rtsl.ptr<f32>
   return %a : f32
 }
+
+// MUTATION trim-payloads of save/TrimPayloads.cpp: nothing counts as read
+// - uses[field].isRead |= !isHandedOn;
+// + uses[field].isRead |= false;

@@ -60,3 +60,7 @@ func.func @swizzle(%o: vector<3xf32>, %v: vector<3xf32>) -> vector<2xf32> {
   %xz = vector.shuffle %v, %v [0, 2] : vector<3xf32>, vector<3xf32>
   return %xz : vector<2xf32>
 }
+
+// MUTATION trim-vectors of save/TrimVectors.cpp: the first component for whichever is read
+// -         components[componentOf(llvm::cast<vector::ExtractOp>(user))]);
+// +         components.begin()->second);
