@@ -1,7 +1,6 @@
 //===- Context.h - what all parts of the C++ printer share ----------------===//
 #pragma once
 
-#include "codegen/cpp/Effects.h"
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/Requirements.h"
@@ -11,6 +10,7 @@
 #include "codegen/cpp/Types.h"
 #include "codegen/cpp/states/SplitMethods.h"
 #include "codegen/link/ModuleFacts.h"
+#include "sema/typed/Effects.h"
 
 namespace rtsl::cpp {
 
@@ -40,7 +40,7 @@ public:
   const Options &options;
   const Names names;
   const SourceNotes notes;
-  EffectsOf effects;
+  typed::EffectsOf effects;
   Requirements required;
   Types types;
   ScratchMembers scratch;

@@ -9,7 +9,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "codegen/cpp/Effects.h"
+#include "sema/typed/Effects.h"
 
 #include <optional>
 #include <vector>
@@ -21,7 +21,7 @@ const typed::Class &rootOf(const typed::Class &definition);
 
 class ScratchMembers {
 public:
-  ScratchMembers(const typed::Module &module, EffectsOf &effects)
+  ScratchMembers(const typed::Module &module, typed::EffectsOf &effects)
       : module(module), effects(effects) {}
 
   /// Classes that share a `Scratch`: all with the same root.
@@ -30,7 +30,7 @@ public:
 
 private:
   const typed::Module &module;
-  EffectsOf &effects;
+  typed::EffectsOf &effects;
   std::map<const typed::Class *, std::optional<bool>> known; // by root
 };
 

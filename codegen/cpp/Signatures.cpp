@@ -13,7 +13,7 @@ bool Signatures::takesState(const typed::Function &function) {
 }
 
 bool Signatures::takesScratch(const typed::Function &function) {
-  const Effects &inside = effects.function(function);
+  const typed::Effects &inside = effects.function(function);
   if (!function.owner)
     return inside.reportsHit;
   if (!scratch.has(*function.owner))
@@ -93,7 +93,7 @@ Signatures::Mentions Signatures::mentionsOf(const typed::Function &function) {
   Mentions found;
   if (!function.body)
     return found;
-  const Effects own = effects.statement(*function.body);
+  const typed::Effects own = effects.statement(*function.body);
   found.ray = own.usesRay;
   found.scratch = own.usesScratch || own.reportsHit;
   std::set<const typed::Expr *> onlyWritten;
@@ -141,7 +141,7 @@ Function Signatures::of(const typed::Function &function, bool isMethod) {
   if (takesState(function))
     made.parameters.push_back(byReference("State", mentions.ray ? "rt" : ""));
   if (takesScratch(function)) {
-    const Effects &inside = effects.function(function);
+    const typed::Effects &inside = effects.function(function);
     const bool writes = inside.writesScratch || inside.reportsHit || function.name == "intersect";
     Parameter taken = byReference(function.owner ? "Scratch" : "rtsl::Scratch",
                                   mentions.scratch ? "scratch" : "");

@@ -1,20 +1,20 @@
 //===- Signatures.h - how the author's functions are declared in C++ ------===//
 #pragma once
 
-#include "codegen/cpp/Effects.h"
 #include "codegen/cpp/Names.h"
 #include "codegen/cpp/ScratchMembers.h"
 #include "codegen/cpp/Types.h"
 #include "codegen/cpp/states/SplitMethods.h"
 #include "codegen/cpp/tree/Declaration.h"
 #include "sema/typed/Analysis.h"
+#include "sema/typed/Effects.h"
 
 namespace rtsl::cpp {
 
 class Signatures {
 public:
-  Signatures(const typed::Module &module, const Names &names, EffectsOf &effects, Types &types,
-             ScratchMembers &scratch, const SplitMethods &split)
+  Signatures(const typed::Module &module, const Names &names, typed::EffectsOf &effects,
+             Types &types, ScratchMembers &scratch, const SplitMethods &split)
       : module(module), names(names), effects(effects), types(types), scratch(scratch),
         split(split), hitAnswers(module) {}
 
@@ -43,7 +43,7 @@ private:
 
   const typed::Module &module;
   const Names &names;
-  EffectsOf &effects;
+  typed::EffectsOf &effects;
   Types &types;
   ScratchMembers &scratch;
   const SplitMethods &split;

@@ -1,7 +1,8 @@
 //===- LowerDecls.cpp - classes, functions and their names ----------------===//
 //
 // Symbols: a free function keeps its name, `f`; an overloaded one is followed by its parameters'
-// types, `f.vec3.float`. A method is `Class.method`, of the class whose objects run it;
+// types, `f.vec3.float`, and one that is called like a function of the runtime is
+// `function.rtsl_hit`. A method is `Class.method`, of the class whose objects run it;
 // `Class.Base.method` is the definition of a base class that `Base::method()` calls. The second
 // version of a function that `intersect` may need is `Class.helper.intersect` (LowerFunction.cpp
 // explains why).
@@ -54,6 +55,8 @@ std::string ModuleLowering::symbolOf(const FunctionKey &key) {
     auto overloads = std::count_if(source.functions.begin(), source.functions.end(),
                                    [&](const auto &other) { return other->name == function.name; });
     name = overloads > 1 ? function.name + parameterWords(function) : function.name;
+    if (name.compare(0, 5, "rtsl_") == 0) // as the runtime's functions begin
+      name = "function." + name;
   }
   if (key.isForIntersect())
     name += ".intersect";

@@ -83,58 +83,75 @@ static const typed::Expr *outerPlace(const typed::Expr &part) {
   return swizzle ? swizzle->base.get() : nullptr;
 }
 
-/// Collects the variables that the expression itself, not a subexpression, writes.
-bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evaluation) {
-  std::vector<const typed::Expr *> parts, written;
-  bool readsOld = true;
+namespace {
+
+/// What an expression itself, not a subexpression, writes.
+struct Writes {
+  std::vector<const typed::Expr *> parts; // subexpressions
+  std::vector<const typed::Expr *> lvalues;
+  bool readsOld = true; // the values before
+};
+
+} // namespace
+
+static Writes writesOf(const typed::Expr &expr) {
+  Writes writes;
   auto outputs = [&](const typed::Function *callee, const std::vector<typed::ExprPtr> &args) {
     for (std::size_t i = 0; i < args.size(); ++i) {
-      parts.push_back(args[i].get());
+      writes.parts.push_back(args[i].get());
       if (callee && callee->parameters[i]->direction != ast::Direction::In)
-        written.push_back(args[i].get());
+        writes.lvalues.push_back(args[i].get());
     }
   };
   if (auto *assign = dynCast<typed::AssignExpr>(&expr)) {
-    parts = {assign->target.get(), assign->value.get()};
-    written = {assign->target.get()};
+    writes.parts = {assign->target.get(), assign->value.get()};
+    writes.lvalues = {assign->target.get()};
   } else if (auto *step = dynCast<typed::IncDecExpr>(&expr)) {
-    parts = written = {step->target.get()};
+    writes.parts = writes.lvalues = {step->target.get()};
   } else if (auto *call = dynCast<typed::CallExpr>(&expr)) {
     outputs(call->function, call->args);
   } else if (auto *method = dynCast<typed::MethodCallExpr>(&expr)) {
-    parts = {method->receiver.get()};
+    writes.parts = {method->receiver.get()};
     outputs(method->function, method->args);
   } else if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr)) {
     outputs(nullptr, builtin->args);
     const auto [first, count] = outputsOf(builtin->builtin);
     for (std::size_t i = first; i < first + count; ++i)
-      written.push_back(builtin->args[i].get());
-    readsOld = false;
+      writes.lvalues.push_back(builtin->args[i].get());
+    writes.readsOld = false;
   } else {
-    parts = {&expr};
+    writes.parts = {&expr};
   }
+  return writes;
+}
 
-  // Subexpressions with effects run before: they must not change variables that this one uses in
-  // place.
-  std::set<const typed::Variable *> changedBefore;
-  for (const typed::Expr *part : parts)
+/// Subexpressions with effects run before the expression: do they change a variable that it uses in
+/// place?
+static bool partsChangeUsed(const typed::Expr &expr, const Writes &writes) {
+  std::set<const typed::Variable *> changed;
+  for (const typed::Expr *part : writes.parts)
     for (const typed::Variable *variable : assignedVariables(*part))
-      changedBefore.insert(variable);
-  std::set<const typed::Variable *> used;
+      changed.insert(variable);
+  bool isUsed = false;
+  auto use = [&](const typed::Expr &variable) {
+    isUsed |= changed.count(cast<typed::VariableExpr>(variable).variable) != 0;
+  };
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (isLocal(inner) && livesInMemory(inner.type))
-      used.insert(cast<typed::VariableExpr>(inner).variable);
+      use(inner);
   });
-  for (const typed::Expr *target : written) {
-    const typed::Expr &whole = wholeOf(*target);
-    if (isLocal(whole))
-      used.insert(cast<typed::VariableExpr>(whole).variable);
-  }
-  if (std::any_of(used.begin(), used.end(),
-                  [&](const auto *variable) { return changedBefore.count(variable) != 0; }))
-    return false;
+  for (const typed::Expr *target : writes.lvalues)
+    if (const typed::Expr &whole = wholeOf(*target); isLocal(whole))
+      use(whole);
+  return isUsed;
+}
 
-  for (const typed::Expr *target : written) {
+/// Collects the variables that the expression itself, not a subexpression, writes.
+bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evaluation) {
+  const Writes writes = writesOf(expr);
+  if (partsChangeUsed(expr, writes))
+    return false;
+  for (const typed::Expr *target : writes.lvalues) {
     if (isInOutputBuffer(*target))
       continue;
     const typed::Expr &whole = wholeOf(*target);
@@ -158,7 +175,7 @@ bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evalu
       auto *named = dynCast<typed::VariableExpr>(&inner);
       mentions += named && named->variable == variable;
     });
-    if (readsOld || &whole != target || mentions > 1)
+    if (writes.readsOld || &whole != target || mentions > 1)
       storeTo(load(lvalue), copy, whole.type);
     evaluation.addresses[variable] = copy;
     evaluation.outputs.push_back({lvalue, copy});

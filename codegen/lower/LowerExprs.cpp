@@ -5,6 +5,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/formulas/Color.h"
+#include "codegen/ir/Attributes.h"
 #include "codegen/lower/Lowering.h"
 #include "sema/typed/Analysis.h"
 
@@ -320,6 +321,8 @@ Parts FunctionLowering::lowerShortCircuit(const typed::BinaryExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   const bool isRead = module.options.source != nullptr; // then `and` must not be given a name
   Value result = temporary(isRead ? isAnd ? "both" : "either" : isAnd ? "and" : "or", expr.type);
+  if (isRead)
+    ir::attr::shortCircuit.set(result.getDefiningOp());
   emitter.store(left, result);
   emitter.ifThen(isAnd ? left : !left, [&] { emitter.store(value(*expr.right), result); });
   return {emitter.load(result)};

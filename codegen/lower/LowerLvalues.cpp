@@ -80,6 +80,8 @@ Lvalue FunctionLowering::lowerLvalue(const typed::Expr &expr) {
   case ExprKind::Swizzle: {
     const auto &swizzle = cast<typed::SwizzleExpr>(expr);
     Lvalue base = lowerLvalue(*swizzle.base);
+    if (typed::isWholeVector(swizzle))
+      return base;
     result.address = base.address;
     result.guard = base.guard;
     result.isPartOfVector = true;

@@ -27,6 +27,16 @@ std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin) {
   return {first, count};
 }
 
+bool isWholeVector(const SwizzleExpr &expr) {
+  const Type *type = expr.base->type;
+  if (!type->isVector() || expr.components.size() != type->componentCount())
+    return false;
+  for (std::size_t i = 0; i < expr.components.size(); ++i)
+    if (expr.components[i] != i)
+      return false;
+  return true;
+}
+
 bool isInOutputBuffer(const Expr &place) {
   if (place.type->is(TypeKind::Buffer)) // the whole one, or a row
     return false;

@@ -1,14 +1,11 @@
-#include "codegen/cpp/Effects.h"
+#include "sema/typed/Effects.h"
 
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
 
 #include <algorithm>
 
-namespace rtsl::cpp {
-
-using typed::Builtin;
-using typed::ExprKind;
+namespace rtsl::typed {
 
 void Effects::add(const Effects &other) {
   reads.insert(other.reads.begin(), other.reads.end());
@@ -39,51 +36,51 @@ bool conflicts(const Effects &first, const Effects &second) {
          (first.reportsHit && second.reportsHit) || (first.hasOutput && second.hasOutput);
 }
 
-const void *EffectsOf::place(typed::StateVariable variable) {
+const void *EffectsOf::place(StateVariable variable) {
   static const char places[256] = {};
   return places + static_cast<std::size_t>(variable);
 }
 
-bool EffectsOf::isSilent(const typed::Expr &expr) const {
-  auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
+bool EffectsOf::isSilent(const Expr &expr) const {
+  auto *builtin = dynCast<BuiltinExpr>(&expr);
   return !prints && builtin && builtin->builtin == Builtin::Print;
 }
 
-EffectsOf::EffectsOf(const typed::Module &module, bool prints, bool raises)
+EffectsOf::EffectsOf(const Module &module, bool prints, bool raises)
     : module(module), prints(prints), raises(raises) {
   // Textures call one another, so their effects are found before those of any `lookup`.
   for (const auto &definition : module.classes)
     if (definition->root == "rt_Texture")
       for (const auto &method : definition->functions)
         if (method->body)
-          forEachExpr(*method->body, [&](const typed::Expr &expr) {
-            if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-              texturesDraw |= typed::drawsRandom(builtin->builtin);
-            if (auto *call = dynCast<typed::CallExpr>(&expr))
+          forEachExpr(*method->body, [&](const Expr &expr) {
+            if (auto *builtin = dynCast<BuiltinExpr>(&expr))
+              texturesDraw |= drawsRandom(builtin->builtin);
+            if (auto *call = dynCast<CallExpr>(&expr))
               texturesDraw |= !call->function->owner && function(*call->function).random;
           });
 }
 
-bool isCalledByEngineAlone(const typed::Function &function) {
+bool isCalledByEngineAlone(const Function &function) {
   return function.isStateMethod && !function.isCalledOnSelf;
 }
 
-const typed::Function &overridden(const typed::Function &function) {
-  const typed::Function *top = &function;
+const Function &overridden(const Function &function) {
+  const Function *top = &function;
   if (function.owner && !function.isConstructor && !isCalledByEngineAlone(function))
-    for (const typed::Class *base = function.owner->base; base; base = base->base)
+    for (const Class *base = function.owner->base; base; base = base->base)
       for (const auto &method : base->functions)
-        if (method->name == function.name && typed::sameParameters(*method, function))
+        if (method->name == function.name && sameParameters(*method, function))
           top = method.get();
   return *top;
 }
 
 // Methods of the name in all classes are treated as one: they have one signature, and a call may
 // run any of them.
-Effects EffectsOf::ofBodies(const typed::Function &function) {
+Effects EffectsOf::ofBodies(const Function &function) {
   Effects effects;
   std::set<const void *> locals;
-  auto addBody = [&](const typed::Function &definition) {
+  auto addBody = [&](const Function &definition) {
     if (definition.body)
       effects.add(statement(*definition.body));
     for (const auto &parameter : definition.parameters)
@@ -96,7 +93,7 @@ Effects EffectsOf::ofBodies(const typed::Function &function) {
     for (const auto &other : module.classes)
       if (other.get() != function.owner && other->derivesFrom(function.owner))
         for (const auto &method : other->functions)
-          if (method->name == function.name && typed::sameParameters(*method, function))
+          if (method->name == function.name && sameParameters(*method, function))
             addBody(*method);
   // What is local to them does not show.
   for (const void *local : locals) {
@@ -106,8 +103,8 @@ Effects EffectsOf::ofBodies(const typed::Function &function) {
   return effects;
 }
 
-const Effects &EffectsOf::function(const typed::Function &named) {
-  const typed::Function &function = overridden(named);
+const Effects &EffectsOf::function(const Function &named) {
+  const Function &function = overridden(named);
   if (auto found = known.find(&function); found != known.end()) {
     hasCycle |= open.count(&function) != 0;
     return found->second;
@@ -131,16 +128,16 @@ const Effects &EffectsOf::function(const typed::Function &named) {
 
 template <typename Tree>
 void EffectsOf::collectAll(const Tree &tree, Effects &effects) {
-  std::set<const typed::Expr *> onlyWritten; // outer expressions come first
-  forEachEvaluated(tree, [&](const typed::Expr &inner) {
-    if (auto *assign = dynCast<typed::AssignExpr>(&inner); assign && !assign->compound)
-      onlyWritten.insert(&typed::wholeOf(*assign->target));
+  std::set<const Expr *> onlyWritten; // outer expressions come first
+  forEachEvaluated(tree, [&](const Expr &inner) {
+    if (auto *assign = dynCast<AssignExpr>(&inner); assign && !assign->compound)
+      onlyWritten.insert(&wholeOf(*assign->target));
     if (!onlyWritten.count(&inner))
       collect(inner, effects);
   });
 }
 
-Effects EffectsOf::expression(const typed::Expr &expr) {
+Effects EffectsOf::expression(const Expr &expr) {
   Effects effects;
   collectAll(expr, effects);
   return effects;
@@ -149,39 +146,38 @@ Effects EffectsOf::expression(const typed::Expr &expr) {
 /// What lights do with a point.
 void EffectsOf::collectLights(Effects &effects) {
   effects.usesRay = effects.random = true;
-  for (typed::StateVariable variable :
-       {typed::StateVariable::LightDirection, typed::StateVariable::LightDistance,
-        typed::StateVariable::LightColor})
+  for (StateVariable variable :
+       {StateVariable::LightDirection, StateVariable::LightDistance, StateVariable::LightColor})
     effects.writes.insert(place(variable));
 }
 
-Effects EffectsOf::statement(const typed::Stmt &stmt) {
+Effects EffectsOf::statement(const Stmt &stmt) {
   Effects effects;
   collectAll(stmt, effects);
-  std::vector<const typed::Stmt *> pending = {&stmt};
+  std::vector<const Stmt *> pending = {&stmt};
   while (!pending.empty()) {
-    const typed::Stmt *at = pending.back();
+    const Stmt *at = pending.back();
     pending.pop_back();
-    auto push = [&](const typed::StmtPtr &inner) {
+    auto push = [&](const StmtPtr &inner) {
       if (inner)
         pending.push_back(inner.get());
     };
-    if (auto *compound = dynCast<typed::CompoundStmt>(at))
+    if (auto *compound = dynCast<CompoundStmt>(at))
       for (const auto &inner : compound->body)
         push(inner);
-    else if (auto *branch = dynCast<typed::IfStmt>(at))
+    else if (auto *branch = dynCast<IfStmt>(at))
       push(branch->thenStmt), push(branch->elseStmt);
-    else if (auto *loop = dynCast<typed::ForStmt>(at))
+    else if (auto *loop = dynCast<ForStmt>(at))
       push(loop->init), push(loop->body);
-    else if (auto *loop = dynCast<typed::WhileStmt>(at))
+    else if (auto *loop = dynCast<WhileStmt>(at))
       push(loop->body);
-    else if (auto *loop = dynCast<typed::DoWhileStmt>(at))
+    else if (auto *loop = dynCast<DoWhileStmt>(at))
       push(loop->body);
-    else if (auto *choice = dynCast<typed::SwitchStmt>(at))
+    else if (auto *choice = dynCast<SwitchStmt>(at))
       for (const auto &arm : choice->arms)
         for (const auto &inner : arm.body)
           push(inner);
-    else if (auto *illuminance = dynCast<typed::IlluminanceStmt>(at)) {
+    else if (auto *illuminance = dynCast<IlluminanceStmt>(at)) {
       collectLights(effects);
       push(illuminance->body);
     }
@@ -189,11 +185,11 @@ Effects EffectsOf::statement(const typed::Stmt &stmt) {
   return effects;
 }
 
-void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
-  const typed::Expr *root = &typed::wholeOf(target);
-  if (auto *variable = dynCast<typed::VariableExpr>(root)) {
+void EffectsOf::collectWrite(const Expr &target, Effects &effects) {
+  const Expr *root = &wholeOf(target);
+  if (auto *variable = dynCast<VariableExpr>(root)) {
     effects.writes.insert(variable->variable);
-  } else if (auto *member = dynCast<typed::MemberExpr>(root)) {
+  } else if (auto *member = dynCast<MemberExpr>(root)) {
     effects.writes.insert(member->member);
     if (member->member->type->is(TypeKind::Buffer))
       effects.usesRay = true; // has an exception ended the sample?
@@ -202,13 +198,13 @@ void EffectsOf::collectWrite(const typed::Expr &target, Effects &effects) {
     else
       effects.writesMembers = true;
     effects.usesScratch |= member->member->access == ast::Access::Scratch;
-  } else if (auto *state = dynCast<typed::StateExpr>(root)) {
+  } else if (auto *state = dynCast<StateExpr>(root)) {
     effects.writes.insert(place(state->variable));
     effects.usesRay = true;
   }
 }
 
-void EffectsOf::collectCall(const typed::Function &callee, const std::vector<typed::ExprPtr> &args,
+void EffectsOf::collectCall(const Function &callee, const std::vector<ExprPtr> &args,
                             Effects &effects) {
   for (std::size_t i = 0; i < args.size(); ++i)
     if (callee.parameters[i]->direction != ast::Direction::In)
@@ -216,7 +212,7 @@ void EffectsOf::collectCall(const typed::Function &callee, const std::vector<typ
   effects.add(function(callee));
 }
 
-void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effects) {
+void EffectsOf::collectBuiltin(const BuiltinExpr &builtin, Effects &effects) {
   switch (builtin.builtin) {
   case Builtin::Rand:
   case Builtin::RandOpen:
@@ -229,14 +225,14 @@ void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effec
     break;
   case Builtin::Hit:
     effects.usesRay = effects.reportsHit = true;
-    effects.writes.insert(place(typed::StateVariable::HitDistance));
+    effects.writes.insert(place(StateVariable::HitDistance));
     break;
   case Builtin::Ambient:
   case Builtin::LightCount:
     effects.usesRay = true;
     break;
   case Builtin::IlluminateBySurface:
-    effects.writes.insert(place(typed::StateVariable::PDF));
+    effects.writes.insert(place(StateVariable::PDF));
     [[fallthrough]];
   case Builtin::Illuminate:
     collectLights(effects);
@@ -250,9 +246,9 @@ void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effec
     effects.usesRay = effects.hasOutput = true;
     break;
   default:
-    if (typed::isAtomic(builtin.builtin))
+    if (isAtomic(builtin.builtin))
       collectWrite(*builtin.args.front(), effects);
-    if (typed::info(builtin.builtin).effect == typed::BuiltinEffect::Outputs)
+    if (info(builtin.builtin).effect == BuiltinEffect::Outputs)
       for (std::size_t i = 0; i < builtin.args.size(); ++i)
         if (isOutArgument(builtin.builtin, i))
           collectWrite(*builtin.args[i], effects);
@@ -260,13 +256,13 @@ void EffectsOf::collectBuiltin(const typed::BuiltinExpr &builtin, Effects &effec
   }
 }
 
-void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
+void EffectsOf::collect(const Expr &expr, Effects &effects) {
   switch (expr.kind) {
   case ExprKind::Variable:
-    effects.reads.insert(cast<typed::VariableExpr>(expr).variable);
+    effects.reads.insert(cast<VariableExpr>(expr).variable);
     break;
   case ExprKind::Member: {
-    const typed::Member &member = *cast<typed::MemberExpr>(expr).member;
+    const Member &member = *cast<MemberExpr>(expr).member;
     if (member.isConst)
       break;
     effects.reads.insert(&member);
@@ -274,42 +270,42 @@ void EffectsOf::collect(const typed::Expr &expr, Effects &effects) {
     break;
   }
   case ExprKind::State:
-    effects.reads.insert(place(cast<typed::StateExpr>(expr).variable));
+    effects.reads.insert(place(cast<StateExpr>(expr).variable));
     effects.usesRay = true;
     break;
   case ExprKind::Index:
-    effects.usesRay |= typed::isInOutputBuffer(expr);
-    effects.usesRay |= raises && cast<typed::IndexExpr>(expr).index->kind != ExprKind::Literal;
+    effects.usesRay |= isInOutputBuffer(expr);
+    effects.usesRay |= raises && cast<IndexExpr>(expr).index->kind != ExprKind::Literal;
     break;
   case ExprKind::IncDec:
-    collectWrite(*cast<typed::IncDecExpr>(expr).target, effects);
+    collectWrite(*cast<IncDecExpr>(expr).target, effects);
     break;
   case ExprKind::Assign:
-    collectWrite(*cast<typed::AssignExpr>(expr).target, effects);
+    collectWrite(*cast<AssignExpr>(expr).target, effects);
     break;
   case ExprKind::Call: {
-    const auto &call = cast<typed::CallExpr>(expr);
+    const auto &call = cast<CallExpr>(expr);
     collectCall(*call.function, call.args, effects);
     break;
   }
   case ExprKind::MethodCall: {
-    const auto &call = cast<typed::MethodCallExpr>(expr);
+    const auto &call = cast<MethodCallExpr>(expr);
     effects.usesRay = true;
     if (call.function) {
       collectCall(*call.function, call.args, effects);
     } else { // `lookup` reads the state, and does not change it
       effects.random |= texturesDraw;
-      effects.writes.insert(place(typed::StateVariable::TextureColor));
-      effects.writes.insert(place(typed::StateVariable::FloatTextureValue));
+      effects.writes.insert(place(StateVariable::TextureColor));
+      effects.writes.insert(place(StateVariable::FloatTextureValue));
     }
     break;
   }
   case ExprKind::Builtin:
-    collectBuiltin(cast<typed::BuiltinExpr>(expr), effects);
+    collectBuiltin(cast<BuiltinExpr>(expr), effects);
     break;
   default:
     break;
   }
 }
 
-} // namespace rtsl::cpp
+} // namespace rtsl::typed

@@ -47,10 +47,10 @@ Code Assignments::stepped(const Code &value, const Type *scalar, bool increment)
 }
 
 Code Assignments::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
-  const Effects value = context.effects.expression(*expr.value);
+  const typed::Effects value = context.effects.expression(*expr.value);
   const typed::Expr *vector = nullptr;
   const std::vector<std::uint8_t> parts = printer.lvalues.components(*expr.target, vector);
-  const Effects indices = printer.lvalues.indexEffects(*expr.target);
+  const typed::Effects indices = printer.lvalues.indexEffects(*expr.target);
   const bool storeIndices = conflicts(indices, value) || (parts.size() > 1 && !indices.isPure());
 
   // Indices that do something are evaluated once; the old value is kept if evaluating the new one

@@ -84,14 +84,14 @@ Code Builtins::print(const typed::BuiltinExpr &expr) {
 Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
-  const Effects indices = printer.lvalues.indexEffects(payload);
+  const typed::Effects indices = printer.lvalues.indexEffects(payload);
   bool isChanged = false;
   std::vector<const typed::Expr *> inputs;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {
     if (i == at)
       continue;
     inputs.push_back(expr.args[i].get());
-    const Effects effects = context.effects.expression(*expr.args[i]);
+    const typed::Effects effects = context.effects.expression(*expr.args[i]);
     isChanged |= conflicts(effects, indices) ||
                  (i > at && conflicts(effects, context.effects.expression(payload)));
   }

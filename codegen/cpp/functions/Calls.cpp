@@ -12,7 +12,7 @@ namespace rtsl::cpp {
 using typed::ExprKind;
 
 /// What an assignment to the lvalue would write: all that it is part of.
-static std::set<const void *> writesOf(EffectsOf &effects, const typed::Expr &place) {
+static std::set<const void *> writesOf(typed::EffectsOf &effects, const typed::Expr &place) {
   return effects.expression(typed::wholeOf(place)).reads;
 }
 
@@ -22,13 +22,13 @@ static bool meet(const std::set<const void *> &a, const std::set<const void *> &
 
 Code Calls::callWith(const Code &callee, std::vector<Code> first, const typed::Function &target,
                      const std::vector<typed::ExprPtr> &args, const Type *result) {
-  EffectsOf &effects = context.effects;
-  const Effects &inside = effects.function(target);
+  typed::EffectsOf &effects = context.effects;
+  const typed::Effects &inside = effects.function(target);
   auto isOutput = [&](std::size_t i) {
     return target.parameters[i]->direction != ast::Direction::In;
   };
 
-  std::vector<Effects> facts;
+  std::vector<typed::Effects> facts;
   std::vector<std::set<const void *>> roots(args.size());
   for (std::size_t i = 0; i < args.size(); ++i) {
     facts.push_back(isOutput(i) ? printer.lvalues.indexEffects(*args[i])

@@ -39,7 +39,7 @@ static std::string hintFor(const typed::Expr &expr) {
 
 std::vector<Code> Expressions::operands(const std::vector<const typed::Expr *> &exprs,
                                         Binding atLeast) {
-  std::vector<Effects> all;
+  std::vector<typed::Effects> all;
   bool anyEffects = false;
   for (const typed::Expr *expr : exprs) {
     all.push_back(context.effects.expression(*expr));

@@ -48,6 +48,8 @@ std::vector<std::uint8_t> Lvalues::components(const typed::Expr &place,
   auto *swizzle = dynCast<typed::SwizzleExpr>(&place);
   if (!swizzle || !swizzle->base->type->isVector())
     return {};
+  if (typed::isWholeVector(*swizzle))
+    return components(*swizzle->base, vector);
   std::vector<std::uint8_t> inner = components(*swizzle->base, vector);
   if (inner.empty()) {
     vector = swizzle->base.get();
@@ -59,8 +61,8 @@ std::vector<std::uint8_t> Lvalues::components(const typed::Expr &place,
   return result;
 }
 
-Effects Lvalues::indexEffects(const typed::Expr &place) {
-  Effects effects;
+typed::Effects Lvalues::indexEffects(const typed::Expr &place) {
+  typed::Effects effects;
   for (const typed::Expr *at = &place;;) {
     if (auto *field = dynCast<typed::FieldExpr>(at)) {
       at = field->base.get();
@@ -100,8 +102,9 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
     const std::vector<std::uint8_t> parts = components(expr, vector);
     if (parts.size() == 1)
       return component(of(*vector, storeIndices), parts[0]);
-    if (auto *swizzle = dynCast<typed::SwizzleExpr>(&expr); swizzle->base->type->isScalar())
-      return of(*swizzle->base, storeIndices);
+    const auto &swizzle = cast<typed::SwizzleExpr>(expr);
+    if (swizzle.base->type->isScalar() || (parts.empty() && typed::isWholeVector(swizzle)))
+      return of(*swizzle.base, storeIndices);
     break;
   }
   case ExprKind::Index: {

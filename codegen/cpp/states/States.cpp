@@ -1,8 +1,8 @@
 #include "codegen/cpp/states/States.h"
 
-#include "codegen/cpp/Effects.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
+#include "sema/typed/Effects.h"
 
 #include <memory>
 
@@ -19,22 +19,22 @@ static const std::vector<std::pair<StateVariable, const char *>> &stateVariables
 }
 
 SourceTable makeSourceTable(const typed::Module &module) {
-  auto effects = std::make_shared<EffectsOf>(module);
+  auto effects = std::make_shared<typed::EffectsOf>(module);
   SourceTable table;
   table.isPure = [effects](const typed::Function &function) {
-    const Effects &inside = effects->function(function);
+    const typed::Effects &inside = effects->function(function);
     return inside.isPure() && !inside.usesRay && !inside.usesScratch;
   };
   table.writes = [effects](const typed::Expr &expr) -> std::optional<std::vector<std::string>> {
     auto *call = dynCast<typed::CallExpr>(&expr);
     if (!call) // of a method that is known when the scene is
       return std::nullopt;
-    const Effects &inside = effects->function(*call->function);
+    const typed::Effects &inside = effects->function(*call->function);
     if (typed::raysOf(expr).any() || inside.writesScratch || inside.reportsHit)
       return std::nullopt;
     std::vector<std::string> names;
     for (const auto &[variable, name] : stateVariables())
-      if (inside.writes.count(EffectsOf::place(variable)))
+      if (inside.writes.count(typed::EffectsOf::place(variable)))
         names.emplace_back(name);
     return names;
   };

@@ -1,6 +1,7 @@
 #include "codegen/cpp/states/values/PendingValues.h"
 
 #include "codegen/cpp/states/statements/StatePrinter.h"
+#include "codegen/ir/NamedLocation.h"
 #include "codegen/passes/continuation/common/Names.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
@@ -23,6 +24,11 @@ Code PendingValues::use(mlir::Value value, const Type *type) {
   if (--found->second.usesLeft == 0)
     pending.erase(value);
   return code;
+}
+
+/// Is it the result of `&&` or `||`, whose name is the compiler's?
+static bool isOfShortCircuit(mlir::Value value) {
+  return ir::nameIn(value.getLoc()).isOfShortCircuit;
 }
 
 /// Can the variable of a value become that of `value`, which the author calls the same? It can if
@@ -56,7 +62,7 @@ void PendingValues::materialise(mlir::Value value, Statements &out, bool isNew) 
   const Insertion *whole = insertion(value);
   const mlir::Value last = whole ? whole->before : latest[wanted];
   bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) &&
-                 !isCompilersName(wanted) && isReplacedBy(last, value);
+                 !isOfShortCircuit(value) && isReplacedBy(last, value);
   const std::string before = isAgain ? declared[last] : "";
   for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
     isAgain = isAgain && !mentions(whole->parts[i].value, before) &&
@@ -69,7 +75,7 @@ void PendingValues::materialise(mlir::Value value, Statements &out, bool isNew) 
     Statement &made =
         state.emitter.emit(out, declaration(typeName, own, whole ? whole->vector : waiting.code));
     made.written.identity = value.getAsOpaquePointer();
-    made.written.isTemporary = isCompilersName(own);
+    made.written.isTemporary = isOfShortCircuit(value);
   } else if (!whole) {
     state.emitter.emit(out, state.memory.assignment(name(own), waiting.code, value));
   }
@@ -84,7 +90,7 @@ Code PendingValues::named(mlir::Value value, Statements &out) {
   return use(value, state.types.of(value));
 }
 
-void PendingValues::flush(const MemoryAccesses &accesses, Statements &out) {
+void PendingValues::flush(const continuation::MemoryAccesses &accesses, Statements &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending)
     if (conflict(waiting.accesses, accesses))
@@ -94,7 +100,7 @@ void PendingValues::flush(const MemoryAccesses &accesses, Statements &out) {
 }
 
 void PendingValues::flushBefore(mlir::Operation &op, Statements &out) {
-  const MemoryAccesses inside = accessesOf(&op);
+  const continuation::MemoryAccesses inside = continuation::accessesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending) {
@@ -111,8 +117,8 @@ void PendingValues::flushBefore(mlir::Operation &op, Statements &out) {
     materialise(value, out);
 }
 
-void PendingValues::define(mlir::Operation &op, Code code, MemoryAccesses accesses, bool isPure,
-                           Statements &out) {
+void PendingValues::define(mlir::Operation &op, Code code, continuation::MemoryAccesses accesses,
+                           bool isPure, Statements &out) {
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {
@@ -126,7 +132,7 @@ void PendingValues::define(mlir::Operation &op, Code code, MemoryAccesses access
            (llvm::isa<ir::StoreOp>(user) && user->getBlock() == op.getBlock());
   };
   const std::string authors = continuation::authorsName(value);
-  const bool isLoose = isCompilersName(authors) ||
+  const bool isLoose = isOfShortCircuit(value) ||
                        (value.getType().isInteger(1) && continuation::isNamedByCaller(value));
   const bool isNamed = llvm::isa<ir::ExpressionOp, ir::EvaluateOp, ir::RandOp>(op) &&
                        !authors.empty() && !(uses == 1 && isLoose);

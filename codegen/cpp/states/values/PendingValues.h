@@ -8,7 +8,7 @@
 
 #include "codegen/cpp/states/StatePart.h"
 #include "codegen/cpp/states/statements/Insertion.h"
-#include "codegen/cpp/states/values/MemoryAccesses.h"
+#include "codegen/passes/continuation/common/MemoryAccesses.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
@@ -30,7 +30,7 @@ public:
   const Insertion *insertion(mlir::Value value) const;
 
   /// The value of an operation becomes pending, or gets a variable.
-  void define(mlir::Operation &op, Code code, MemoryAccesses accesses, bool isPure,
+  void define(mlir::Operation &op, Code code, continuation::MemoryAccesses accesses, bool isPure,
               Statements &out);
   /// The same for an operation without effects of its own, made of the operands that were used.
   void make(mlir::Operation &op, Code code, Statements &out);
@@ -39,18 +39,19 @@ public:
   void makeInsertion(mlir::Operation &op, Insertion insertion, Statements &out);
 
   /// Evaluates pending values that accesses would change, or whose evaluation would change these.
-  void flush(const MemoryAccesses &accesses, Statements &out);
+  void flush(const continuation::MemoryAccesses &accesses, Statements &out);
   /// Before a construct with regions: values that an inner statement would change are not pending
   /// in another region, and a value that is used once is not evaluated in each iteration of a
   /// loop.
   void flushBefore(mlir::Operation &op, Statements &out);
 
-  MemoryAccesses consumed; // by the values used for the operation that is being printed
+  continuation::MemoryAccesses
+      consumed; // by the values used for the operation that is being printed
 
 private:
   struct Pending {
     Code code;
-    MemoryAccesses accesses;
+    continuation::MemoryAccesses accesses;
     unsigned usesLeft = 0;
     bool isPure = true;     // no effects of its own
     bool isTrivial = false; // may be repeated in the text

@@ -48,14 +48,6 @@ std::string ValueNames::fresh(const std::string &wanted) {
   return name;
 }
 
-bool isCompilersName(llvm::StringRef name) {
-  return llvm::any_of(llvm::ArrayRef<llvm::StringRef>{"both", "either"}, [&](llvm::StringRef own) {
-    llvm::StringRef rest = name;
-    return rest.consume_front(own) &&
-           rest.find_first_not_of(".0123456789") == llvm::StringRef::npos;
-  });
-}
-
 std::string nameFor(mlir::Value value) {
   if (std::string name = continuation::authorsName(value); !name.empty())
     return name.substr(0, name.find('.') == std::string::npos ? name.size() : name.find('.'));

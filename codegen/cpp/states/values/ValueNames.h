@@ -11,8 +11,6 @@ namespace rtsl::cpp {
 
 /// A readable name for a value: the author's, or one after the operation that makes it.
 std::string nameFor(mlir::Value value);
-/// Is it the compiler's name for the result of `&&` or `||`?
-bool isCompilersName(llvm::StringRef name);
 /// A name of the IR as C++ writes it: `m[0]` is m0, `ray.origin` ray_origin, and the state's
 /// `HitPoint` hitPoint.
 std::string spelling(const Machine &machine, llvm::StringRef name);
