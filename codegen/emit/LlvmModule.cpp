@@ -1,8 +1,8 @@
 //===- LlvmModule.cpp - LLVM IR: translation, linking, optimisation -------===//
 #include "codegen/emit/LlvmModule.h"
 
-#include "codegen/emit/JoinCalls.h"
-#include "codegen/emit/UniteAddresses.h"
+#include "codegen/emit/rewrites/JoinCalls.h"
+#include "codegen/emit/rewrites/UniteAddresses.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"

@@ -1,10 +1,11 @@
 //===- Parts.cpp - large programs in parts that are compiled in parallel --===//
 #include "codegen/emit/Parts.h"
 
+#include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/ir/Attributes.h"
-#include "codegen/ir/RtslDialect.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/dialect/RtslDialect.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "llvm/ADT/SetVector.h"
@@ -111,7 +112,7 @@ std::vector<std::string> shareLargeFunctions(llvm::Module &part) {
   std::vector<llvm::Function *> large;
   for (llvm::Function &function : part)
     if (function.hasLocalLinkage() &&
-        function.getName().starts_with("rtsl_") && // others have no external name
+        isRuntimeFunction(function.getName()) && // others have no external name
         !function.hasFnAttribute(llvm::Attribute::AlwaysInline) &&
         instructionCount(function) > largestInlined)
       large.push_back(&function);

@@ -15,6 +15,12 @@ namespace rtsl::codegen {
 /// calls none.
 std::string runtimeFunction(mlir::Operation *op);
 
+/// Is it the LLVM name of a function of runtime/device, or of one that linking adds for it?
+/// Functions of shaders have a dot in their names.
+inline bool isRuntimeFunction(llvm::StringRef name) {
+  return name.starts_with("rtsl_") && !name.contains('.');
+}
+
 /// Declares, once and in the order of first use, every runtime function that an op of the module
 /// calls.
 void declareRuntimeFunctions(mlir::ModuleOp module);

@@ -1,6 +1,8 @@
 //===- StackUse.cpp - the stack size of machine code ----------------------===//
 #include "codegen/emit/StackUse.h"
 
+#include "codegen/emit/RuntimeFunctions.h"
+
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/ADT/StringMap.h"
 #include "llvm/IR/DiagnosticHandler.h"
@@ -30,11 +32,8 @@ struct Node {
   std::uint64_t frame = 0;
   std::vector<Index> callees; // each once
 
-  /// Functions of runtime/device and the switches over classes, which each ray passes once: trace,
-  /// and the slots of methods. Functions of shaders have a dot in their names.
-  bool isRuntime() const {
-    return name.compare(0, 5, "rtsl_") == 0 && name.find('.') == std::string::npos;
-  }
+  /// Functions that each ray passes once: trace, and the switches over classes.
+  bool isRuntime() const { return isRuntimeFunction(name); }
 };
 using Graph = std::vector<Node>;
 

@@ -12,6 +12,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/link/BindTables.h"
 #include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/BindMembers.h"
@@ -34,21 +35,17 @@ namespace rtsl {
 
 namespace {
 
-constexpr llvm::StringLiteral boundsEntry = "rtsl_rt_Primitive_computeBounds";
-
 /// Whether the runtime calls the function only while a scene is built.
 bool isForBuilding(mlir::func::FuncOp function) {
-  const llvm::StringRef name = function.getSymName();
-  return ir::attr::constructor.isOn(function) || name == boundsEntry ||
-         (ir::attr::exported.isOn(function) && name.ends_with(".initialize"));
+  return ir::attr::constructor.isOn(function) || ir::slotOf(function) == ir::slot::computeBounds;
 }
 
 /// Does rtsl_emitted_power call it?
 bool isOfEmission(mlir::func::FuncOp function) {
-  return llvm::StringSwitch<bool>(function.getSymName())
-      .Cases({"rtsl_rt_Material_emission", "rtsl_rt_Primitive_generateSample"}, true)
-      .Cases({"rtsl_rt_Primitive_computeNormal", "rtsl_rt_Primitive_computeTextureCoordinates",
-              "rtsl_rt_Primitive_computeDerivatives"},
+  return llvm::StringSwitch<bool>(ir::slotOf(function))
+      .Cases({"rt_Material.emission", "rt_Primitive.generateSample"}, true)
+      .Cases({"rt_Primitive.computeNormal", "rt_Primitive.computeTextureCoordinates",
+              "rt_Primitive.computeDerivatives"},
              true)
       .Default(false);
 }
@@ -230,7 +227,7 @@ std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &re
 void keepConstructors(mlir::ModuleOp ir, bool withEmission) {
   for (auto function : ir.getOps<mlir::func::FuncOp>())
     if (ir::attr::exported.isOn(function) && !isForBuilding(function) &&
-        !(withEmission && isOfEmission(function)) && function.getSymName() != "rtsl_features")
+        !(withEmission && isOfEmission(function)) && ir::slotOf(function) != ir::slot::features)
       hide(function);
 }
 

@@ -66,7 +66,7 @@ bool traces(const Cycle &cycle, mlir::ModuleOp ir) {
 }
 
 bool isDispatch(mlir::Operation *function) {
-  return llvm::cast<FuncOp>(function).getSymName().starts_with(linking::dispatchPrefix);
+  return ir::attr::dispatch.isOn(function);
 }
 
 class Unroller {

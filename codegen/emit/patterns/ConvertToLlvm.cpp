@@ -7,9 +7,9 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
-#include "codegen/ir/RtslDialect.h"
-#include "codegen/ir/RtslOps.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/dialect/RtslDialect.h"
+#include "codegen/ir/dialect/RtslOps.h"
 #include "codegen/passes/ShareExpressions.h"
 #include "runtime/device/ray/Abi.h"
 
@@ -155,7 +155,7 @@ void addStateParameter(mlir::ModuleOp module) {
   mlir::Type pointer = LLVM::LLVMPointerType::get(module.getContext());
   const bool pointsToFrames = ir::attr::holdsPayloads.isOn(module);
   for (FuncOp function : module.getOps<FuncOp>()) {
-    bool isState = ir::attr::state.isOn(function) || function.getSymName() == "rtsl_run_state";
+    bool isState = ir::attr::state.isOn(function) || ir::attr::runsStates.isOn(function);
     for (auto [index, type] : llvm::enumerate(function.getArgumentTypes()))
       if (auto address = llvm::dyn_cast<ir::PtrType>(type))
         // Arguments in memory are copies by the caller (in), temporaries (out, inout, results), or

@@ -1,6 +1,7 @@
 //===- CheckNumbers.cpp - where a number stops being finite ----------------===//
-#include "codegen/emit/CheckNumbers.h"
+#include "codegen/emit/rewrites/CheckNumbers.h"
 
+#include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/ir/SourcePlace.h"
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
@@ -27,7 +28,7 @@ bool computes(mlir::Operation *op) {
   if (op->getNumResults() != 1 || !isFloat(op->getResult(0).getType()))
     return false;
   if (auto call = llvm::dyn_cast<LLVM::CallOp>(op))
-    return call.getCallee() && call.getCallee()->starts_with("rtsl_");
+    return call.getCallee() && isRuntimeFunction(*call.getCallee());
   return llvm::isa<LLVM::FAddOp, LLVM::FSubOp, LLVM::FMulOp, LLVM::FDivOp, LLVM::FRemOp,
                    LLVM::FMAOp, LLVM::SqrtOp>(op);
 }

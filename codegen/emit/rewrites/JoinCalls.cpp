@@ -1,5 +1,5 @@
 //===- JoinCalls.cpp - a program as one function --------------------------===//
-#include "codegen/emit/JoinCalls.h"
+#include "codegen/emit/rewrites/JoinCalls.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/STLExtras.h"

@@ -1,5 +1,5 @@
 //===- UniteAddresses.cpp - the same address on all paths -----------------===//
-#include "codegen/emit/UniteAddresses.h"
+#include "codegen/emit/rewrites/UniteAddresses.h"
 
 #include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/DataLayout.h"

@@ -110,7 +110,7 @@ private:
       };
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
         // a dispatch function has the cause of its callers
-        const bool isDispatch = function.getSymName().starts_with(dispatchPrefix);
+        const bool isDispatch = ir::attr::dispatch.isOn(function);
         add(context.function(call.getCallee()),
             isDispatch ? reached.lookup(function) : by("called by"));
       } else if (auto slot = llvm::dyn_cast<ir::CallMethodOp>(op)) { // not resolved yet

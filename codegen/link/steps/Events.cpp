@@ -5,6 +5,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -31,7 +32,7 @@ runtime::ValueType::Kind kindOf(llvm::StringRef type) {
 void makeFeatures(LinkContext &context) {
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Location location = builder.getUnknownLoc();
-  auto function = mlir::func::FuncOp::create(builder, location, "rtsl_features",
+  auto function = mlir::func::FuncOp::create(builder, location, ir::slotSymbol(ir::slot::features),
                                              builder.getFunctionType({}, {builder.getI32Type()}));
   context.symbols.insert(function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
@@ -39,6 +40,7 @@ void makeFeatures(LinkContext &context) {
       builder, location,
       builder.getI32IntegerAttr(static_cast<std::int32_t>(context.request.features)));
   ir::ReturnOp::create(builder, location, features);
+  ir::attr::slot.set(function, builder.getStringAttr(ir::slot::features));
   ir::attr::exported.set(function);
 }
 

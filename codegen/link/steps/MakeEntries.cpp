@@ -8,6 +8,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
@@ -27,22 +28,22 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   for (const LinkedClass &linked : context.classes)
     if (linked.isUsed && linked.info->root == slot.base)
       classes.push_back(&linked);
-  const std::string subject = std::string(slot.base) + "." + slot.method;
+  const std::string name = ir::slotName(slot.base, slot.method);
   const bool isNoted = llvm::any_of(
-      context.findings, [&](const Finding &finding) { return finding.subject == subject; });
+      context.findings, [&](const Finding &finding) { return finding.subject == name; });
   const auto hasMethod = [&](const LinkedClass *linked) {
     return findMethod(context, *linked, slot.method);
   };
   const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
   const bool isDerived = slot.method == hitErrorMethod; // no author has defined it
   if (!isNoted && !isForBuilding && !isDerived && llvm::any_of(classes, hasMethod))
-    context.findings.push_back(describeDispatch(subject, classes, {}));
+    context.findings.push_back(describeDispatch(name, classes, {}));
 
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(context.ir.getBody());
   const mlir::Type object = ir::RefType::get(builder.getContext(), slot.base);
-  auto function = mlir::func::FuncOp::create(builder, builder.getUnknownLoc(),
-                                             std::string("rtsl_") + slot.base + "_" + slot.method,
+  auto function = mlir::func::FuncOp::create(builder, builder.getUnknownLoc(), ir::slotSymbol(name),
                                              builder.getFunctionType({object}, {}));
+  ir::attr::slot.set(function, builder.getStringAttr(name));
   context.symbols.insert(function);
   buildDispatch(context, function, classes, slot.method);
   exportFunction(function);

@@ -12,6 +12,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "runtime/device/ray/Abi.h"
@@ -223,13 +224,16 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
     if (methodsFor(context, type, method).empty())
       continue;
     FuncOp target = create("dispatch." + base + "." + method + "." + type.name());
+    ir::attr::dispatch.set(target);
     target.setPrivate();
     buildDispatch(context, target, classes, method + "." + type.name());
     targets.push_back(target);
     numbers.push_back({static_cast<std::int32_t>(type.number)});
   }
 
-  FuncOp slot = create("rtsl_" + base + "_" + method + "_payload");
+  const std::string name = ir::slotName(base, method, /*takesPayload=*/true);
+  FuncOp slot = create(ir::slotSymbol(name));
+  ir::attr::slot.set(slot, builder.getStringAttr(name));
   mlir::Block *entry = slot.addEntryBlock();
   builder.setInsertionPointToEnd(entry);
   auto call = [&](mlir::OpBuilder &at, FuncOp target) {

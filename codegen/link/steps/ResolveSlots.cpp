@@ -7,6 +7,7 @@
 // a direct call.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/link/steps/Steps.h"
 #include "sema/typed/Analysis.h"
@@ -113,18 +114,19 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
   llvm::SmallVector<ir::CallMethodOp> calls;
   ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
 
+  std::map<std::pair<std::string, std::string>, mlir::func::FuncOp> functions;
   for (ir::CallMethodOp call : calls) {
     const SlotCall slot = {mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
                            call.getMethod().str()};
-    const std::string name = dispatchPrefix.str() + slot.base + "." + slot.method;
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
-    auto function = symbols.lookup<mlir::func::FuncOp>(name);
+    mlir::func::FuncOp &function = functions[{slot.base, slot.method}];
     if (!function) {
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
       function = mlir::func::FuncOp::create(
-          builder, call.getLoc(), name,
+          builder, call.getLoc(), "dispatch." + slot.base + "." + slot.method,
           builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
+      ir::attr::dispatch.set(function);
       symbols.insert(function);
       define(slot, function);
     }

@@ -114,17 +114,14 @@ const typed::Class *findClass(const ClassesByName &classes, const std::string &n
 /// The scratch member of this name of a class; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);
 
-/// The prefix of the functions for calls through references: `@dispatch.rt_Texture.lookup`.
-constexpr llvm::StringLiteral dispatchPrefix = "dispatch.";
-
 /// A method that is called through a reference.
 struct SlotCall {
   std::string base; // the class of the reference: "rt_Texture" or one of the source
   std::string method;
 };
 
-/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`. Calls `define` once
-/// for each such function, which has no body.
+/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`, which has
+/// attr::dispatch. Calls `define` once for each such function, which has no body.
 void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
                   llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
 

@@ -1,6 +1,7 @@
 //===- Split.cpp - shaders that trace become state machines ---------------===//
 #include "codegen/passes/continuation/Split.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
@@ -144,7 +145,7 @@ void keepTracingMethods(mlir::ModuleOp module) {
   // Cycles are cut at calls through references: each leads to an object further down a chain of
   // references.
   for (FuncOp function : functionsThatMayCallThemselves(module))
-    if (function.getSymName().starts_with("dispatch.")) {
+    if (ir::attr::dispatch.isOn(function)) {
       ir::attr::noinline.set(function);
       ir::attr::framed.set(function);
     }
@@ -157,8 +158,8 @@ bool splitAtTrace(mlir::ModuleOp module, const SplitOptions &options, SplitRepor
     report.trimmed = trimPayloads(module);
   llvm::SmallVector<FuncOp> functions = tracingFunctions(module);
   llvm::SmallPtrSet<mlir::Operation *, 16> listed(functions.begin(), functions.end());
-  for (llvm::StringRef name : machineEntries())
-    if (auto entry = module.lookupSymbol<FuncOp>(name);
+  for (llvm::StringRef slot : machineSlots())
+    if (auto entry = ir::entryPoint(module, slot);
         entry && !entry.isExternal() && !isEmpty(entry) && listed.insert(entry).second)
       functions.push_back(entry);
   for (FuncOp function : module.getOps<FuncOp>())

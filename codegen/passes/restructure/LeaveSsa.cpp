@@ -15,6 +15,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/NamedLocation.h"
 #include "codegen/passes/continuation/common/Liveness.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/restructure/Steps.h"
@@ -111,7 +112,7 @@ private:
 
   struct Web {
     llvm::SmallVector<Value> members;
-    std::string name; // in the source; empty: none
+    ir::VariableName name;
     Value address;
   };
 
@@ -133,7 +134,7 @@ bool Variables::needsVariable(Value value) {
 void Variables::collect() {
   auto add = [&](Value value) {
     webOf[value] = webs.size();
-    webs.push_back({{value}, continuation::authorsName(value), {}});
+    webs.push_back({{value}, ir::nameIn(value.getLoc()), {}});
   };
   for (Value value : liveness.values())
     if (needsVariable(value))
@@ -169,14 +170,14 @@ void Variables::join(Value argument, Value incoming) {
     if (!isFree(incoming))
       return;
     webOf[incoming] = webs.size();
-    webs.push_back({{incoming}, continuation::authorsName(incoming), {}});
+    webs.push_back({{incoming}, ir::nameIn(incoming.getLoc()), {}});
   }
   const unsigned into = webOf[argument], from = webOf[incoming];
   if (into == from)
     return;
-  const bool haveNames = !webs[into].name.empty() && !webs[from].name.empty();
-  bool meet =
-      argument.getType() != incoming.getType() || (haveNames && webs[into].name != webs[from].name);
+  const bool haveNames = !webs[into].name.isEmpty() && !webs[from].name.isEmpty();
+  bool meet = argument.getType() != incoming.getType() ||
+              (haveNames && !(webs[into].name == webs[from].name));
   for (Value a : webs[into].members)
     for (Value b : webs[from].members)
       meet = meet || isLiveAfter(a, b) || isLiveAfter(b, a);
@@ -186,7 +187,7 @@ void Variables::join(Value argument, Value incoming) {
     webOf[member] = into;
     webs[into].members.push_back(member);
   }
-  if (webs[into].name.empty())
+  if (webs[into].name.isEmpty())
     webs[into].name = webs[from].name;
   webs[from].members.clear();
 }
@@ -210,10 +211,13 @@ void Variables::makeVariables() {
     }
     if (web.members.empty())
       continue;
-    std::string name = web.name.empty() ? continuation::sourceName(web.members.front()) : web.name;
+    const std::string name =
+        web.name.isEmpty() ? continuation::sourceName(web.members.front()) : web.name.text;
     auto variable = ir::VarOp::create(builder, web.members.front().getLoc(), names.unique(name),
                                       web.members.front().getType());
     ir::attr::value.set(variable); // stores come before loads
+    if (web.name.isOfShortCircuit)
+      ir::attr::shortCircuit.set(variable);
     web.address = variable;
   }
 }

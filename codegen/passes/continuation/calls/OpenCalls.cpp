@@ -16,7 +16,8 @@
 
 #include "mlir/IR/SymbolTable.h"
 #include "llvm/ADT/SetVector.h"
-#include "llvm/ADT/StringMap.h"
+
+#include <map>
 
 namespace rtsl::continuation {
 
@@ -40,6 +41,7 @@ private:
   mlir::SymbolTable symbols;
   llvm::SmallSetVector<mlir::Operation *, 8>
       framed; // methods that calls through references may run
+  std::map<std::pair<std::string, std::string>, FuncOp> declared; // by class and method
   // declared dispatch functions and their possible callees
   llvm::SmallVector<std::pair<FuncOp, llvm::SmallVector<FuncOp>>> declarations;
 };
@@ -106,7 +108,6 @@ void OpenCalls::giveFrame(FuncOp method) {
 
 void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
   const std::string base = firstWith(baseOf(call), call.getMethod());
-  const std::string name = "dispatch." + base + "." + call.getMethod().str();
   mlir::OpBuilder builder(call);
   mlir::Value object = call.getObject();
   const mlir::Type type = ir::RefType::get(module.getContext(), base);
@@ -114,12 +115,13 @@ void OpenCalls::replace(ir::CallMethodOp call, llvm::ArrayRef<FuncOp> mayRun) {
     object = ir::CastRefOp::create(builder, call.getLoc(), type, object);
   llvm::SmallVector<mlir::Value> arguments = {object};
   llvm::append_range(arguments, call.getArguments());
-  auto declaration = symbols.lookup<FuncOp>(name);
+  FuncOp &declaration = declared[{base, call.getMethod().str()}];
   if (!declaration) {
     declaration = FuncOp::create(
-        call.getLoc(), name,
+        call.getLoc(), "dispatch." + base + "." + call.getMethod().str(),
         builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
     declaration.setPrivate();
+    ir::attr::dispatch.set(declaration);
     ir::attr::className.set(declaration, builder.getStringAttr(base));
     ir::attr::methodName.set(declaration, call.getMethodAttr());
     symbols.insert(declaration);

@@ -1,13 +1,11 @@
-#include "codegen/cpp/states/values/MemoryAccesses.h"
+#include "codegen/passes/continuation/common/MemoryAccesses.h"
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
-namespace rtsl::cpp {
+namespace rtsl::continuation {
 
 void MemoryAccesses::add(const MemoryAccesses &other) {
   reads.insert(other.reads.begin(), other.reads.end());
@@ -47,8 +45,14 @@ MemoryLocation locationOf(mlir::Value address) {
   if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
     return {Kind::State, state.getName().str()};
   if (llvm::isa_and_nonnull<ir::VarOp>(op))
-    return {Kind::Variable, fmt::format("{}", static_cast<const void *>(op))};
-  return {Kind::Payload, {}};
+    return {Kind::Variable, std::to_string(reinterpret_cast<std::uintptr_t>(op))};
+  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+    return {Kind::Payload, {}};
+  if (llvm::isa_and_nonnull<ir::AttributeOp>(op))
+    return {Kind::Attribute, {}};
+  if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp, ir::BufferElementOp>(op))
+    return {Kind::Scene, {}};
+  return {Kind::Unknown, {}};
 }
 
 bool changes(ir::EvaluateOp op, std::size_t operand) {
@@ -58,11 +62,21 @@ bool changes(ir::EvaluateOp op, std::size_t operand) {
 
 MemoryAccesses accessesOf(mlir::Operation *op) {
   MemoryAccesses accesses;
+  auto addRead = [&](mlir::Value address) {
+    const MemoryLocation location = locationOf(address);
+    accesses.readsAny |= location.kind == MemoryLocation::Kind::Unknown;
+    accesses.reads.insert(location);
+  };
+  auto addWrite = [&](mlir::Value address) {
+    const MemoryLocation location = locationOf(address);
+    accesses.writesAny |= location.kind == MemoryLocation::Kind::Unknown;
+    accesses.writes.insert(location);
+  };
   op->walk([&](mlir::Operation *inner) {
     if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
-      accesses.reads.insert(locationOf(load.getAddress()));
+      addRead(load.getAddress());
     else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
-      accesses.writes.insert(locationOf(store.getAddress()));
+      addWrite(store.getAddress());
     else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
       accesses.reads.insert({MemoryLocation::Kind::Frame, frameLoad.getName().str()});
     else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
@@ -70,16 +84,16 @@ MemoryAccesses accessesOf(mlir::Operation *op) {
     else if (llvm::isa<ir::RandOp>(inner))
       accesses.writes.insert({MemoryLocation::Kind::Random, {}});
     else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
-      accesses.writes.insert(locationOf(clear.getAddress()));
+      addWrite(clear.getAddress());
     else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
-      accesses.reads.insert(locationOf(copy.getSource()));
-      accesses.writes.insert(locationOf(copy.getTarget()));
+      addRead(copy.getSource());
+      addWrite(copy.getTarget());
     } else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
       for (auto [index, operand] : llvm::enumerate(call.getOperands()))
         if (llvm::isa<ir::PtrType>(operand.getType())) {
-          accesses.reads.insert(locationOf(operand));
+          addRead(operand);
           if (changes(call, index))
-            accesses.writes.insert(locationOf(operand));
+            addWrite(operand);
         }
       if (!ir::attr::plain.isOn(call)) {
         accesses.readsAny = true;
@@ -116,4 +130,4 @@ bool writesTo(mlir::Operation *op, mlir::Value address) {
                       [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
 }
 
-} // namespace rtsl::cpp
+} // namespace rtsl::continuation

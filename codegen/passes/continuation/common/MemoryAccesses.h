@@ -1,4 +1,9 @@
 //===- MemoryAccesses.h - memory that operations read and write -----------===//
+//
+// The one analysis of memory on the IR: of single operations here, and of functions with their
+// callees in Recompute.h (WriteSummary).
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include "codegen/ir/Rtsl.h"
@@ -6,11 +11,22 @@
 #include <set>
 #include <tuple>
 
-namespace rtsl::cpp {
+namespace rtsl::continuation {
 
-/// Something that can be read and written: a variable of the state, of the ray or of the frame, ...
+/// Something that can be read and written.
 struct MemoryLocation {
-  enum class Kind : std::uint8_t { Variable, State, Frame, Object, Payload, Argument, Random };
+  enum class Kind : std::uint8_t {
+    Variable,
+    State,     // a state variable of the ray
+    Frame,     // a slot of the frame
+    Object,    // a variable that lies in the frame
+    Payload,   // of the ray that runs the shader
+    Argument,  // of a function on its own frame: an address of its caller's
+    Random,    // the sequence of random numbers
+    Attribute, // of the hit
+    Scene,     // members, tables and buffers
+    Unknown
+  };
   Kind kind;
   std::string name;
   bool operator<(const MemoryLocation &other) const {
@@ -36,4 +52,4 @@ bool changes(ir::EvaluateOp op, std::size_t operand);
 /// Does the operation write what lies at an address, or in a part of it?
 bool writesTo(mlir::Operation *op, mlir::Value address);
 
-} // namespace rtsl::cpp
+} // namespace rtsl::continuation

@@ -2,6 +2,7 @@
 #include "codegen/passes/continuation/common/Names.h"
 
 #include "codegen/ir/IncomingEdges.h"
+#include "codegen/ir/NamedLocation.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/SourcePlace.h"
 
@@ -9,25 +10,6 @@
 #include "llvm/ADT/SmallPtrSet.h"
 
 namespace rtsl::continuation {
-
-static std::string nameInLocation(mlir::Location location) {
-  // Built-in functions give their own name to their code: not a name in the source.
-  if (auto name = llvm::dyn_cast<mlir::NameLoc>(location))
-    return name.getName().strref().starts_with("rtsl.") ? "" : name.getName().str();
-  if (auto fused = llvm::dyn_cast<mlir::FusedLoc>(location)) {
-    for (mlir::Location part : fused.getLocations()) {
-      std::string name = nameInLocation(part);
-      if (!name.empty())
-        return name;
-    }
-  }
-  // Prefer the name in an inlined function to that of the variable that gets its result.
-  if (auto call = llvm::dyn_cast<mlir::CallSiteLoc>(location)) {
-    std::string name = nameInLocation(call.getCallee());
-    return name.empty() ? nameInLocation(call.getCaller()) : name;
-  }
-  return {};
-}
 
 static std::string nameOfAddress(mlir::Value address) {
   mlir::Operation *op = address.getDefiningOp();
@@ -63,7 +45,7 @@ static std::string nameOfArgument(mlir::BlockArgument argument,
     mlir::Value value = edge.passedTo(argument);
     if (!name.empty() || !value || value == argument)
       return;
-    name = nameInLocation(value.getLoc());
+    name = authorsName(value);
     if (auto outer = llvm::dyn_cast<mlir::BlockArgument>(value); outer && name.empty())
       name = nameOfArgument(outer, seen);
   });
@@ -71,7 +53,7 @@ static std::string nameOfArgument(mlir::BlockArgument argument,
 }
 
 std::string sourceName(mlir::Value value) {
-  std::string name = nameInLocation(value.getLoc());
+  std::string name = authorsName(value);
   if (!name.empty())
     return name;
   if (auto argument = llvm::dyn_cast<mlir::BlockArgument>(value)) {
@@ -100,11 +82,11 @@ std::string sourceName(mlir::Value value) {
 
 bool isNamedByCaller(mlir::Value value) {
   auto call = llvm::dyn_cast<mlir::CallSiteLoc>(value.getLoc());
-  return call && nameInLocation(call.getCallee()).empty();
+  return call && ir::nameIn(call.getCallee()).isEmpty();
 }
 
 std::string authorsName(mlir::Value value) {
-  return nameInLocation(value.getLoc());
+  return ir::nameIn(value.getLoc()).text;
 }
 
 std::string describeToAuthor(mlir::Value value) {

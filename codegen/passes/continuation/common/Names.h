@@ -9,7 +9,7 @@
 
 namespace rtsl::continuation {
 
-/// The name of an address or a value: the variable that it was (a NameLoc), the member or state
+/// The name of an address or a value: the variable that it was, the member or state
 /// variable that it was loaded from, or the operation ("mulf"). Never empty, and the same on every
 /// run.
 std::string sourceName(mlir::Value value);

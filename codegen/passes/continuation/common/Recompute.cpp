@@ -3,6 +3,8 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
+#include "codegen/ir/Slots.h"
+#include "codegen/passes/continuation/common/MemoryAccesses.h"
 
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "llvm/ADT/SmallPtrSet.h"
@@ -11,9 +13,9 @@ namespace rtsl::continuation {
 
 /// State that only the runtime writes, before a shader runs: calls do not change it.
 static constexpr llvm::StringLiteral fixedState[] = {
-    "Epsilon",       "HitDistance",    "ScreenCoord",   "LensCoord",  "TimeSeed",
-    "LaunchIndex",   "LaunchSize",     "Time",          "Depth",      "ObjectToWorld",
-    "WorldToObject", "PrimitiveIndex", "InstanceIndex", "InstanceId", "ExceptionCode"};
+#define RTSL_STATE_SOURCE(name, Source) #name,
+#include "language/StateUses.def"
+};
 
 bool StateWrites::add(const StateWrites &other) {
   bool isNew = other.any && !any;
@@ -27,22 +29,22 @@ bool StateWrites::add(const StateWrites &other) {
 static constexpr llvm::StringLiteral payloadName = "payload";
 
 static StateWrites writesThrough(mlir::Value address) {
+  using Kind = MemoryLocation::Kind;
   StateWrites writes;
-  mlir::Operation *base = ir::baseOperation(address);
-  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(base))
-    writes.names.insert(state.getName());
-  else if (llvm::isa_and_nonnull<ir::PayloadOp>(base))
+  const MemoryLocation location = locationOf(address);
+  if (location.kind == Kind::State)
+    writes.names.insert(location.name);
+  else if (location.kind == Kind::Payload)
     writes.names.insert(payloadName);
-  else if (!llvm::isa_and_nonnull<ir::VarOp, ir::FrameObjectOp, ir::MemberOp, ir::AttributeOp,
-                                  ir::BufferElementOp>(base))
-    writes.any = true; // an argument: any address of the caller
+  else if (location.kind == Kind::Argument || location.kind == Kind::Unknown)
+    writes.any = true; // any address of the caller
   return writes;
 }
 
 static bool isLight(FuncOp function) {
   auto method = ir::attr::methodName.of(function);
   return (method && method.getValue() == "illumination") ||
-         function.getSymName() == "rtsl_rt_Light_illumination";
+         ir::slotOf(function) == ir::slot::illumination;
 }
 
 WriteSummary::WriteSummary(mlir::ModuleOp module) {

@@ -1,6 +1,7 @@
 //===- TracedFunctions.cpp - the functions of a module that trace ---------===//
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 
 #include "llvm/ADT/DenseMap.h"
 
@@ -29,11 +30,11 @@ bool isFramed(mlir::Operation *op) {
   return ir::attr::framed.isOn(op);
 }
 
-llvm::ArrayRef<llvm::StringLiteral> machineEntries() {
-  static constexpr llvm::StringLiteral entries[] = {
-      "rtsl_rt_Material_shade", "rtsl_rt_Miss_miss", "rtsl_rt_Material_closestHit_payload",
-      "rtsl_rt_Miss_miss_payload", "rtsl_rt_RayGeneration_generate"};
-  return entries;
+llvm::ArrayRef<llvm::StringLiteral> machineSlots() {
+  static constexpr llvm::StringLiteral slots[] = {ir::slot::shade, ir::slot::miss,
+                                                  ir::slot::closestHitForPayload,
+                                                  ir::slot::missForPayload, ir::slot::generate};
+  return slots;
 }
 
 namespace {

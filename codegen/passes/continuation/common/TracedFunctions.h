@@ -23,9 +23,9 @@ llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 /// Those of them that are recursive.
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module);
 
-/// The entry points that the machine starts (runtime/device/engines/Machine.h): they become states
-/// even if they do not trace.
-llvm::ArrayRef<llvm::StringLiteral> machineEntries();
+/// The slots whose entry points the machine starts (runtime/device/engines/Machine.h): these become
+/// states even if they do not trace.
+llvm::ArrayRef<llvm::StringLiteral> machineSlots();
 
 /// Has the function, or the call, a frame of its own (calls/Steps.h)?
 bool isFramed(mlir::Operation *op);

@@ -8,6 +8,7 @@
 // used after it, so that each state can be separated.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/NamedLocation.h"
 #include "codegen/passes/continuation/common/Liveness.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/common/SsaRepair.h"
@@ -37,7 +38,8 @@ mlir::LogicalResult saveLive(FuncOp function) {
       auto nameAttr = mlir::StringAttr::get(function.getContext(), name);
       namesHere.push_back(nameAttr);
       redefinitions[value][suspend.getResume()] = suspend.getResume()->addArgument(
-          value.getType(), mlir::NameLoc::get(nameAttr, value.getLoc()));
+          value.getType(),
+          ir::withName({name, ir::nameIn(value.getLoc()).isOfShortCircuit}, value.getLoc()));
     }
     suspend.setNamesAttr(mlir::ArrayAttr::get(function.getContext(), namesHere));
     suspend.getSavedMutable().assign(values);

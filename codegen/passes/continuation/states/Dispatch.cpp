@@ -13,6 +13,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/KeptState.h"
 #include "codegen/passes/continuation/states/PassFrame.h"
@@ -170,6 +171,7 @@ void Dispatcher::makeRunState() {
   mlir::Type object = ir::RefType::get(builder.getContext(), "object");
   FuncOp function = makeFunction(
       "rtsl_run_state", {builder.getI32Type(), object, ir::PtrType::get(builder.getI32Type())});
+  ir::attr::runsStates.set(function);
   mlir::Block *entry = &function.getBody().front();
 
   mlir::Block *none = function.addBlock();
@@ -223,8 +225,8 @@ mlir::LogicalResult Dispatcher::run() {
   const RayGraph rays = findRays(module);
   const KeptState kept = findKeptState(module);
   std::map<std::string, std::int32_t> entries;
-  for (llvm::StringRef name : machineEntries())
-    entries[name.str() + "_first"] = 0;
+  for (llvm::StringRef slot : machineSlots())
+    entries[ir::slotSymbol(slot) + "_first"] = 0;
   for (FuncOp state : module.getOps<FuncOp>()) {
     if (!ir::attr::state.isOn(state))
       continue;

@@ -5,6 +5,7 @@
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "runtime/device/engines/KeptState.h"
 
@@ -56,8 +57,13 @@ KeptField fieldOf(llvm::StringRef variable) {
 /// Fields that are the same for all rays of a sample: they stay in the state (takeFromSample in
 /// runtime/device/ray/Undefined.h).
 Fields sharedByRays() {
-  return Fields::of({device::keptScreenCoord, device::keptLensCoord, device::keptTimeSeed,
-                     device::keptLaunchIndex, device::keptLaunchSize, device::keptExceptionCode});
+  enum Source : std::uint8_t { Sample, Ray };
+  Fields shared;
+#define RTSL_STATE_SOURCE(name, Source)                                                            \
+  if (Source == Sample)                                                                            \
+    shared.add(Fields::of({device::kept##name}));
+#include "language/StateUses.def"
+  return shared;
 }
 
 /// The fields of the state that an address points to.
@@ -89,6 +95,10 @@ Fields readsOfSending() {
                      device::keptGeometricNormal});
 }
 
+llvm::StringRef symbolOf(FuncOp function) {
+  return function ? function.getSymName() : llvm::StringRef();
+}
+
 class Finder {
 public:
   explicit Finder(mlir::ModuleOp module);
@@ -104,13 +114,16 @@ private:
   bool update(FuncOp state);
 
   mlir::ModuleOp module;
+  llvm::StringRef illumination, exception; // symbols of the entry points; empty: there is none
   bool sendsPayloads = false, hasOpenCalls = false;
   llvm::StringSet<> callers;         // states that resume after calls with frames of their own
   llvm::StringMap<Fields> functions; // read by functions, including their callees
   llvm::StringMap<Fields> live;      // at the beginnings of states
 };
 
-Finder::Finder(mlir::ModuleOp module) : module(module) {
+Finder::Finder(mlir::ModuleOp module)
+    : module(module), illumination(symbolOf(ir::entryPoint(module, ir::slot::illumination))),
+      exception(symbolOf(ir::entryPoint(module, ir::slot::exception))) {
   module.walk([&](mlir::Operation *op) {
     sendsPayloads |= llvm::isa<ir::SpawnPayloadOp>(op);
     hasOpenCalls |= llvm::isa<ir::EvaluateOp, ir::CallMethodOp>(op);
@@ -144,7 +157,7 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
       .Case([&](ir::IlluminateOp) {
         fields = readsOfSending();
         fields.add(inherited);
-        fields.add(ofFunction("rtsl_rt_Light_illumination"));
+        fields.add(ofFunction(illumination));
       })
       .Case([&](ir::PayloadOp) { fields = Fields::of({device::keptPayload}); })
       .Case([&](ir::RayTypeOp) { fields = Fields::of({device::keptRayType}); })
@@ -205,10 +218,9 @@ void Finder::summarise() {
 /// Whether rays of the state's kind return a color, or the sample's color is theirs.
 bool bringsColor(FuncOp state) {
   const auto method = ir::attr::methodName.of(state);
-  const llvm::StringRef name = state.getSymName();
-  return !(method && method.getValue().contains('.')) &&
-         !name.starts_with("rtsl_rt_Material_closestHit_payload.") &&
-         !name.starts_with("rtsl_rt_Miss_miss_payload.");
+  const llvm::StringRef slot = ir::slotOf(state);
+  return !(method && method.getValue().contains('.')) && slot != ir::slot::closestHitForPayload &&
+         slot != ir::slot::missForPayload;
 }
 
 /// The fields that are live after a state with this end.
@@ -224,9 +236,8 @@ Fields Finder::after(ir::NextOp next) const {
   case ir::Transition::Done:
     if (bringsColor(next->getParentOfType<FuncOp>()))
       fields.add(Fields::of({device::keptSampleColor}));
-    if (const auto exception = functions.find("rtsl_rt_Exception_exception");
-        exception != functions.end())
-      fields.add(exception->second);
+    if (!exception.empty())
+      fields.add(ofFunction(exception));
     break;
   case ir::Transition::Last:
     break;

@@ -3,6 +3,7 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "runtime/device/engines/StackBound.h"
 
@@ -103,10 +104,10 @@ std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
   if (isOfGenerate(state))
     return 1u << (graph.kinds.size() - 1);
   // A method that has been inlined into its entry point.
-  llvm::StringRef name = state.getSymName();
-  if (name.starts_with("rtsl_rt_Material_shade.") || name.starts_with("rtsl_rt_Miss_miss."))
+  const llvm::StringRef slot = ir::slotOf(state);
+  if (slot == ir::slot::shade || slot == ir::slot::miss)
     return 1;
-  return name.starts_with("rtsl_") || name.starts_with("dispatch.") ? allPayloads() : 0;
+  return !slot.empty() || ir::attr::dispatch.isOn(state) ? allPayloads() : 0;
 }
 
 void Finder::addRays(mlir::func::FuncOp state) {
@@ -190,8 +191,7 @@ bool RayGraph::grows() const {
 
 bool isOfGenerate(mlir::func::FuncOp state) {
   auto method = ir::attr::methodName.of(state);
-  return (method && method.getValue() == "generate") ||
-         state.getSymName().starts_with("rtsl_rt_RayGeneration_generate.");
+  return (method && method.getValue() == "generate") || ir::slotOf(state) == ir::slot::generate;
 }
 
 RayGraph findRays(mlir::ModuleOp module) {

@@ -139,8 +139,9 @@ FuncOp Splitter::makeState(unsigned index, mlir::Block *start) {
   auto state = FuncOp::create(builder, function.getLoc(), stateName(index),
                               builder.getFunctionType(inputs, {builder.getI32Type()}));
   state.setPrivate();
-  for (llvm::StringRef name : {ir::attr::className.name, ir::attr::methodName.name,
-                               ir::attr::frameSize.name, ir::attr::framed.name})
+  for (llvm::StringRef name :
+       {ir::attr::className.name, ir::attr::methodName.name, ir::attr::slot.name,
+        ir::attr::dispatch.name, ir::attr::frameSize.name, ir::attr::framed.name})
     if (mlir::Attribute value = function->getAttr(name))
       state->setAttr(name, value);
   ir::attr::state.set(state, builder.getI32IntegerAttr(index));

@@ -210,12 +210,12 @@ func.func private @A.closestHit.P(%self: !rtsl.ref<"A">) attributes {rtsl.class 
 )" + closestHit + R"(
   rtsl.return
 }
-func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export, rtsl.slot = "rt_Material.shade"} {
   %a = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"A">
   func.call @A.shade(%a) : (!rtsl.ref<"A">) -> ()
   rtsl.return
 }
-func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export, rtsl.slot = "rt_Material.closestHit.payload"} {
   %a = rtsl.cast_ref %o : !rtsl.ref<"rt_Material"> -> !rtsl.ref<"A">
   func.call @A.closestHit.P(%a) : (!rtsl.ref<"A">) -> ()
   rtsl.return

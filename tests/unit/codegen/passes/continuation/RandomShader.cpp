@@ -407,7 +407,7 @@ std::string Generator::module() {
   method("B", "closestHit.P", true);
   method("Sky", "miss.P", true);
   text += R"(
-func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export, rtsl.slot = "rt_Material.shade"} {
   %id = rtsl.class_id %o : !rtsl.ref<"rt_Material">
   rtsl.switch %id : i32 {
     arm [1] {
@@ -423,15 +423,15 @@ func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl
   }
   rtsl.return
 }
-func.func @rtsl_rt_Exception_exception(%o: !rtsl.ref<"rt_Exception">) attributes {rtsl.export} {
+func.func @rtsl_rt_Exception_exception(%o: !rtsl.ref<"rt_Exception">) attributes {rtsl.export, rtsl.slot = "rt_Exception.exception"} {
   rtsl.return
 }
-func.func @rtsl_rt_Miss_miss(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export} {
+func.func @rtsl_rt_Miss_miss(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export, rtsl.slot = "rt_Miss.miss"} {
   %s = rtsl.cast_ref %o : !rtsl.ref<"rt_Miss"> -> !rtsl.ref<"Sky">
   func.call @Sky.miss(%s) : (!rtsl.ref<"Sky">) -> ()
   rtsl.return
 }
-func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export} {
+func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export, rtsl.slot = "rt_Material.closestHit.payload"} {
   %id = rtsl.class_id %o : !rtsl.ref<"rt_Material">
   %type = rtsl.ray_type
   %one = arith.constant 1 : i32
@@ -453,12 +453,12 @@ func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) att
   }
   rtsl.return
 }
-func.func @rtsl_rt_Miss_miss_payload(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export} {
+func.func @rtsl_rt_Miss_miss_payload(%o: !rtsl.ref<"rt_Miss">) attributes {rtsl.export, rtsl.slot = "rt_Miss.miss.payload"} {
   %s = rtsl.cast_ref %o : !rtsl.ref<"rt_Miss"> -> !rtsl.ref<"Sky">
   func.call @Sky.miss.P(%s) : (!rtsl.ref<"Sky">) -> ()
   rtsl.return
 }
-func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"rt_Camera">) attributes {rtsl.export} {
+func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"rt_Camera">) attributes {rtsl.export, rtsl.slot = "rt_Camera.generateRay"} {
   %uv = rtsl.state "ScreenCoord" : !rtsl.ptr<vector<2xf32>>
   %v = rtsl.load %uv : !rtsl.ptr<vector<2xf32>>
   %x = vector.extract %v[0] : f32 from vector<2xf32>
@@ -472,7 +472,7 @@ func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"rt_Camera">) attributes {rt
   rtsl.store %o2, %ro : !rtsl.ptr<vector<3xf32>>
   rtsl.return
 }
-func.func @rtsl_rt_Primitive_computeNormal(%o: !rtsl.ref<"rt_Primitive">) attributes {rtsl.export} {
+func.func @rtsl_rt_Primitive_computeNormal(%o: !rtsl.ref<"rt_Primitive">) attributes {rtsl.export, rtsl.slot = "rt_Primitive.computeNormal"} {
   %p = rtsl.state "HitPoint" : !rtsl.ptr<vector<3xf32>>
   %v = rtsl.load %p : !rtsl.ptr<vector<3xf32>>
   %n = rtsl.state "GeometricNormal" : !rtsl.ptr<vector<3xf32>>
