@@ -47,4 +47,8 @@ inline constexpr unsigned frameBool = 6; // one bit of a word: load and extract
 /// An operand of `?:`, `&&` and `||` that costs no more than this is computed without a branch.
 inline constexpr unsigned withoutBranch = 12;
 
+/// An expression of constants and members that costs no more than this is repeated in printed C++,
+/// where the state of a shader uses it, instead of getting a variable.
+inline constexpr unsigned withoutVariable = 6;
+
 } // namespace rtsl::cost

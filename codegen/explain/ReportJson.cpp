@@ -23,6 +23,13 @@ static Json describe(const ExtraReport &extra) {
           {"cost", extra.cost}};
 }
 
+static Json namesOf(const std::vector<LiveValue> &values) {
+  Json names = Json::array();
+  for (const LiveValue &value : values)
+    names.push_back(value.name);
+  return names;
+}
+
 static Json describe(const TraceReport &trace) {
   Json json = {{"location", trace.place.text()}};
   if (trace.isJoin)
@@ -31,10 +38,10 @@ static Json describe(const TraceReport &trace) {
     json["callee"] = trace.callee;
   json["resumesAt"] = trace.resumesAt;
   json["liveBytes"] = trace.liveBytes;
-  json["live"] = trace.live;
+  json["live"] = namesOf(trace.live);
   json["savedBytes"] = trace.savedBytes;
-  json["saved"] = trace.saved;
-  json["rematerialised"] = trace.rematerialised;
+  json["saved"] = namesOf(trace.saved);
+  json["rematerialised"] = namesOf(trace.rematerialised);
   json["rematerialisedBytes"] = trace.rematerialisedBytes;
   json["steps"] = Json::array();
   for (const StepReport &step : trace.steps)

@@ -34,18 +34,15 @@ static void writeRays(llvm::raw_ostream &out, const SplitReport &report) {
         << "because methods call themselves through them\n";
 }
 
-/// "constant", or "constant.2": a constant without a name in the source.
-static bool isConstant(llvm::StringRef name) {
-  return name == "constant" || name.starts_with("constant.");
-}
-
-std::string listOf(const std::vector<std::string> &names) {
-  const auto constants = llvm::count_if(names, isConstant);
+std::string listOf(const std::vector<LiveValue> &values) {
+  const auto constants =
+      llvm::count_if(values, [](const LiveValue &value) { return value.isConstant; });
   std::vector<std::string> shown;
   if (constants != 0)
     shown.push_back(constants == 1 ? "a constant" : std::to_string(constants) + " constants");
-  llvm::copy_if(names, std::back_inserter(shown),
-                [](const std::string &name) { return !isConstant(name); });
+  for (const LiveValue &value : values)
+    if (!value.isConstant)
+      shown.push_back(value.name);
   return shown.empty() ? "" : ": " + llvm::join(shown, ", ");
 }
 

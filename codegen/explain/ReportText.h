@@ -11,7 +11,7 @@ std::string toText(const SplitReport &report);
 /// "4 bytes", "0 to 4 bytes".
 std::string toText(const BytesRange &range);
 
-/// ": 2 constants, normal, sum" of these names of values; "" if there are none.
-std::string listOf(const std::vector<std::string> &names);
+/// ": 2 constants, normal, sum" of these values; "" if there are none.
+std::string listOf(const std::vector<LiveValue> &values);
 
 } // namespace rtsl

@@ -101,13 +101,13 @@ bool isCheap(const Expr &expr) {
     case ExprKind::Field:
     case ExprKind::Unary:
     case ExprKind::Convert:
-      cost += 1;
+      cost += cost::arithmetic;
       break;
     case ExprKind::Binary: {
       const auto &binary = cast<BinaryExpr>(inner);
       bool isDivision = binary.op == ast::BinaryOp::Div || binary.op == ast::BinaryOp::Mod;
       bool isLarge = binary.left->type->isMatrix() || binary.right->type->isMatrix();
-      cost += isDivision || isLarge ? tooMuch : 2;
+      cost += isDivision || isLarge ? tooMuch : 2 * cost::arithmetic;
       break;
     }
     case ExprKind::Builtin: {
@@ -116,7 +116,7 @@ bool isCheap(const Expr &expr) {
       break;
     }
     case ExprKind::Construct:
-      cost += inner.type->isScalar() || inner.type->isVector() ? 1 : tooMuch;
+      cost += inner.type->isScalar() || inner.type->isVector() ? cost::arithmetic : tooMuch;
       break;
     default:
       cost += tooMuch;

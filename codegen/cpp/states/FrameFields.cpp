@@ -1,6 +1,7 @@
 #include "codegen/cpp/states/FrameFields.h"
 
 #include "codegen/cpp/states/values/ValueNames.h"
+#include "codegen/passes/continuation/common/Names.h"
 
 #include <algorithm>
 
@@ -28,6 +29,13 @@ static unsigned lineOfUse(ir::FrameLoadOp load, llvm::StringRef file) {
   return line;
 }
 
+/// Is the value one of the author's expressions without a name?
+static bool hasNoName(mlir::Value value) {
+  return llvm::isa_and_nonnull<ir::ExpressionOp, ir::EvaluateOp, ir::CallReturnedOp>(
+             value.getDefiningOp()) &&
+         continuation::authorsName(value).empty();
+}
+
 void collectFrame(Machine &machine, MethodPrinter &method, const std::set<std::string> &types) {
   ValueNames names(method.context, method.source, machine, method.functions);
   std::set<std::string> taken;
@@ -41,13 +49,15 @@ void collectFrame(Machine &machine, MethodPrinter &method, const std::set<std::s
     const auto [at, isNew] = fields.try_emplace({key.str(), isObject}, machine.frame.size());
     if (!isNew)
       return machine.frame[at->second];
-    std::string name = spelling(machine, key);
-    if (name == "evaluate" || name == "expression" ||
-        name == "call_returned") // what the IR calls it
-      name = value ? names.ofValue(value) : "value";
-    machine.frame.push_back(
-        {key.str(), unique(name, taken, types), nullptr, 0, 0, !isObject, !isObject, isObject});
-    return machine.frame.back();
+    const bool isUnnamed = value && hasNoName(value);
+    const std::string name = isUnnamed ? names.ofValue(value) : spelling(machine, key);
+    FrameField &made = machine.frame.emplace_back();
+    made.key = key.str();
+    made.name = unique(name, taken, types);
+    made.isTraced = made.isReturned = !isObject;
+    made.isObject = isObject;
+    made.isUnnamed = isUnnamed;
+    return made;
   };
   for (mlir::func::FuncOp state : machine.states)
     state.walk([&](ir::FrameObjectOp object) {

@@ -18,6 +18,7 @@ struct FrameField {
   bool isTraced = false;      // the color of a ray
   bool isReturned = false;    // what a call returned
   bool isObject = false;      // a variable that lies in the frame all the time
+  bool isUnnamed = false;     // its key names an operation, not what the author called it
 };
 
 /// What the states of one method share.

@@ -71,6 +71,12 @@ mlir::LogicalResult Recorder::trimmedVectors() {
   return notePlainLiveness("trim-vectors");
 }
 
+static LiveValue describe(mlir::Value value, UniqueNames &names) {
+  mlir::Operation *op = value.getDefiningOp();
+  const bool isConstant = op && op->hasTrait<mlir::OpTrait::ConstantLike>();
+  return {names.of(value), isConstant && authorsName(value).empty()};
+}
+
 /// The values that would be saved if none were recomputed: after the first step, the baseline of
 /// all others.
 mlir::LogicalResult Recorder::notePlainLiveness(const char *step) {
@@ -86,7 +92,7 @@ mlir::LogicalResult Recorder::notePlainLiveness(const char *step) {
     if (trace.steps.size() > 1)
       continue;
     for (mlir::Value value : plan.saved)
-      trace.live.push_back(plainNames.of(value));
+      trace.live.push_back(describe(value, plainNames));
     trace.liveBytes = trace.steps.front().savedBytes;
   }
   return mlir::success();
@@ -97,7 +103,7 @@ void Recorder::planned(llvm::ArrayRef<SuspendPlan> plans) {
   for (auto [plan, trace] : llvm::zip(plans, report.traces)) {
     trace.savedBytes = bytesOf(plan.saved);
     for (mlir::Value value : plan.saved) {
-      trace.saved.push_back(names.of(value));
+      trace.saved.push_back(describe(value, names));
       trace.savedShown.push_back(describeToAuthor(value));
       trace.savedSizes.push_back(value.getType().isInteger(1) ? 0
                                                               : ir::sizeInBytes(value.getType()));
@@ -111,8 +117,8 @@ void Recorder::planned(llvm::ArrayRef<SuspendPlan> plans) {
 void Recorder::explainPlan(const SuspendPlan &plan, TraceReport &trace) {
   trace.steps.push_back(stepBeforeSplit("rematerialise", plan));
   llvm::StringSet<> live;
-  for (const std::string &name : trace.live)
-    live.insert(name);
+  for (const LiveValue &value : trace.live)
+    live.insert(value.name);
   llvm::SmallVector<mlir::Value> again;
   llvm::SmallPtrSet<mlir::Operation *, 16> operations;
   for (mlir::Value value : plan.recomputed) {
@@ -121,8 +127,8 @@ void Recorder::explainPlan(const SuspendPlan &plan, TraceReport &trace) {
       ++trace.extra.recomputed;
       trace.extra.cost += cost;
     }
-    if (std::string name = plainNames.of(value); live.contains(name)) {
-      trace.rematerialised.push_back(name);
+    if (live.contains(plainNames.of(value))) {
+      trace.rematerialised.push_back(describe(value, plainNames));
       again.push_back(value);
     }
   }

@@ -45,6 +45,12 @@ struct ExtraReport {
   std::int64_t cost = 0;                          // units of CostTable.h
 };
 
+/// A value that is live across a trace.
+struct LiveValue {
+  std::string name;
+  bool isConstant = false; // one without a name in the source
+};
+
 /// One trace of a function, in the order of the code.
 struct TraceReport {
   TracePlace place;
@@ -52,16 +58,16 @@ struct TraceReport {
   std::string resumesAt; // the state
   // The values that plain liveness would save, constants included. This and the data derived from
   // it (`steps`, `rematerialised`, `plainly`) require SplitOptions::explain.
-  std::vector<std::string> live;
+  std::vector<LiveValue> live;
   std::uint32_t liveBytes = 0;
-  std::vector<std::string> saved;
-  std::vector<std::string> savedShown;     // their names in messages
-  std::vector<std::uint32_t> savedSizes;   // bytes of each; 0 for a bool
-  std::uint32_t savedBytes = 0;            // bools as bits of one word
-  std::vector<std::string> rematerialised; // of the live values; without intermediate ones
-  std::uint32_t rematerialisedBytes = 0;   // of these, had they been saved
-  std::vector<StepReport> steps;           // in the order of the optimisations
-  ExtraReport extra, plainly;              // with the optimisations, and with all live values saved
+  std::vector<LiveValue> saved;
+  std::vector<std::string> savedShown;   // their names in messages
+  std::vector<std::uint32_t> savedSizes; // bytes of each; 0 for a bool
+  std::uint32_t savedBytes = 0;          // bools as bits of one word
+  std::vector<LiveValue> rematerialised; // of the live values; without intermediate ones
+  std::uint32_t rematerialisedBytes = 0; // of these, had they been saved
+  std::vector<StepReport> steps;         // in the order of the optimisations
+  ExtraReport extra, plainly;            // with the optimisations, and with all live values saved
   /// No ray is sent: this state begins at a join that several states reach (CutJoins.h).
   bool isJoin = false;
   /// Followed only by sums and products of the result: recursion saves their operands.

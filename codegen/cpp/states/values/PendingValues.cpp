@@ -3,6 +3,7 @@
 #include "codegen/cpp/states/statements/StatePrinter.h"
 #include "codegen/ir/NamedLocation.h"
 #include "codegen/passes/continuation/common/Names.h"
+#include "language/Costs.h"
 
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 
@@ -141,9 +142,9 @@ void PendingValues::define(mlir::Operation &op, Code code, continuation::MemoryA
   const bool isRead =
       llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
-  const bool isTrivial =
-      isRead || llvm::isa<ir::LightCountOp>(op) ||
-      (expression && expression.getNumOperands() == 0 && expression.getCost() <= 6);
+  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
+                         (expression && expression.getNumOperands() == 0 &&
+                          expression.getCost() <= cost::withoutVariable);
   pending[value] = {std::move(code), std::move(accesses), uses, isPure, isTrivial};
   if (uses == 1 ? (isNamed && !stores()) || isLong : isNamed || !isTrivial)
     materialise(value, out, /*isNew=*/true);

@@ -83,9 +83,8 @@ std::string ValueNames::ofValue(mlir::Value value) {
       whole && source.entries[whole.getSource()].kind == SourceTable::Kind::AngleCosine)
     return "cosine";
   const std::string name = nameFor(value);
-  const bool isOfIr = name == "expression" || name == "evaluate" || name == "call_returned";
-  if (auto load = value.getDefiningOp<ir::FrameLoadOp>(); load && isOfIr)
-    if (const FrameField *field = machine.savedField(load.getName()))
+  if (auto load = value.getDefiningOp<ir::FrameLoadOp>())
+    if (const FrameField *field = machine.savedField(load.getName()); field && field->isUnnamed)
       return field->name;
   auto call = value.getDefiningOp<ir::EvaluateOp>();
   if (!call || name != "value")

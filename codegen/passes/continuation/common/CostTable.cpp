@@ -41,9 +41,7 @@ static std::optional<std::int64_t> componentCost(mlir::Operation *op) {
       .Case<ir::CallArgumentOp>([](auto) { return Cost(cost::load); })
       .Case<ir::AmbientOp>([](auto) { return Cost(cost::memberLoad); })
       .Case([](ir::ElementaryOp call) {
-        const ir::Elementary function = call.getFunction();
-        const bool isPower = function == ir::Elementary::Pow || function == ir::Elementary::Atan2;
-        return Cost(isPower ? cost::power : cost::elementary);
+        return Cost(call.getOperands().size() == 2 ? cost::power : cost::elementary);
       })
       .Case<ir::ToSintOp, ir::ToUintOp>([](auto) { return Cost(cost::conversionToInt); })
       .Case<ir::SDivOp, ir::UDivOp, ir::SRemOp, ir::URemOp>(
