@@ -8,6 +8,22 @@
 
 namespace rtsl::codegen {
 
+void hoistVariables(mlir::func::FuncOp function) {
+  mlir::Block &entry = function.getBody().front();
+  llvm::SmallVector<ir::VarOp> scattered;
+  function.walk([&](ir::VarOp variable) {
+    if (variable->getBlock() != &entry)
+      scattered.push_back(variable);
+  });
+
+  mlir::OpBuilder builder(function.getContext());
+  for (ir::VarOp variable : llvm::reverse(scattered)) {
+    builder.setInsertionPointAfter(variable);
+    ir::ClearOp::create(builder, variable.getLoc(), variable.getResult());
+    variable->moveBefore(&entry, entry.begin());
+  }
+}
+
 namespace {
 
 struct HoistVariables : mlir::PassWrapper<HoistVariables, mlir::OperationPass<mlir::func::FuncOp>> {
@@ -18,21 +34,8 @@ struct HoistVariables : mlir::PassWrapper<HoistVariables, mlir::OperationPass<ml
   }
 
   void runOnOperation() override {
-    if (getOperation().isExternal())
-      return;
-    mlir::Block &entry = getOperation().getBody().front();
-    llvm::SmallVector<ir::VarOp> scattered;
-    getOperation().walk([&](ir::VarOp variable) {
-      if (variable->getBlock() != &entry)
-        scattered.push_back(variable);
-    });
-
-    mlir::OpBuilder builder(&getContext());
-    for (ir::VarOp variable : llvm::reverse(scattered)) {
-      builder.setInsertionPointAfter(variable);
-      ir::ClearOp::create(builder, variable.getLoc(), variable.getResult());
-      variable->moveBefore(&entry, entry.begin());
-    }
+    if (!getOperation().isExternal())
+      hoistVariables(getOperation());
   }
 };
 

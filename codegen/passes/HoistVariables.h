@@ -7,6 +7,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "mlir/Dialect/Func/IR/FuncOps.h"
+
 #include <memory>
 
 namespace mlir {
@@ -14,6 +16,8 @@ class Pass;
 } // namespace mlir
 
 namespace rtsl::codegen {
+
+void hoistVariables(mlir::func::FuncOp function);
 
 /// `rtsl-hoist-vars`, on a function of level 2.
 std::unique_ptr<mlir::Pass> createHoistVariablesPass();

@@ -5,6 +5,7 @@
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
+#include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/continuation/Recorder.h"
 #include "codegen/passes/continuation/states/KeptState.h"
@@ -110,6 +111,8 @@ mlir::LogicalResult FunctionSplitter::run() {
   if (mlir::failed(states))
     return mlir::failure();
   recorder.split(*states);
+  for (FuncOp state : *states)
+    codegen::hoistVariables(state);
   for (FuncOp state : *states)
     if (mlir::failed(check(state, "split")) || (options.cleanUp && mlir::failed(cleanUp(state))))
       return mlir::failure();

@@ -8,10 +8,16 @@
 // Variables that mem2reg could not promote are indexed at run time, or are payloads of rays. They
 // move to the frame; the address is the same on both sides of a trace.
 //
+// All variables were moved to the entry of the function (HoistVariables.h). One that is declared
+// after a trace, and used before the next one, is not live across any: it moves back to its
+// declaration, which cleared it, and stays out of the frame.
+//
 //===----------------------------------------------------------------------===//
 #include "codegen/passes/continuation/common/Liveness.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/continuation/frame/Steps.h"
+
+#include "mlir/IR/Dominance.h"
 
 namespace rtsl::continuation {
 
@@ -23,10 +29,30 @@ static void addDerived(mlir::Value address, llvm::SmallVectorImpl<mlir::Value> &
       addDerived(user->getResult(0), derived);
 }
 
+/// Moves a variable to the clear that precedes all its uses, if there is one.
+static void moveToDeclaration(ir::VarOp variable, const mlir::DominanceInfo &dominance) {
+  for (mlir::Operation *user : variable->getUsers()) {
+    auto clear = llvm::dyn_cast<ir::ClearOp>(user);
+    if (!clear || llvm::any_of(variable->getUsers(), [&](mlir::Operation *other) {
+          return other != clear && !dominance.properlyDominates(clear, other);
+        }))
+      continue;
+    variable->moveBefore(clear);
+    clear.erase(); // a variable begins as zero
+    return;
+  }
+}
+
 void moveVariablesToFrame(FuncOp function) {
   llvm::SmallVector<ir::SuspendOp> suspends = suspendsOf(function);
   if (suspends.empty())
     return;
+  llvm::SmallVector<ir::VarOp> variables;
+  function.walk([&](ir::VarOp variable) { variables.push_back(variable); });
+  const mlir::DominanceInfo dominance(function);
+  for (ir::VarOp variable : variables)
+    moveToDeclaration(variable, dominance);
+
   Liveness liveness(function);
   liveness.compute();
   llvm::BitVector acrossTraces = liveness.none();
@@ -34,8 +60,6 @@ void moveVariablesToFrame(FuncOp function) {
     acrossTraces |= liveness.into(suspend.getResume());
 
   UniqueNames names;
-  llvm::SmallVector<ir::VarOp> variables;
-  function.walk([&](ir::VarOp variable) { variables.push_back(variable); });
   for (ir::VarOp variable : variables) {
     llvm::SmallVector<mlir::Value> derived;
     addDerived(variable.getResult(), derived);
