@@ -16,6 +16,18 @@ std::string slotSymbol(llvm::StringRef slot) {
   return symbol;
 }
 
+void insertForRuntime(mlir::SymbolTable &symbols, mlir::func::FuncOp function) {
+  const mlir::StringAttr name = function.getSymNameAttr();
+  symbols.insert(function);
+  if (function.getSymNameAttr() != name)
+    attr::symbol.set(function, name);
+}
+
+llvm::StringRef finalSymbol(mlir::func::FuncOp function) {
+  const auto symbol = attr::symbol.of(function);
+  return symbol ? symbol.getValue() : function.getSymName();
+}
+
 llvm::StringRef slotOf(mlir::func::FuncOp function) {
   const auto name = attr::slot.of(function);
   return name ? name.getValue() : llvm::StringRef();

@@ -9,6 +9,7 @@
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/BuiltinOps.h"
+#include "mlir/IR/SymbolTable.h"
 
 #include <string>
 
@@ -30,6 +31,13 @@ std::string slotName(llvm::StringRef base, llvm::StringRef method, bool takesPay
 
 /// The symbol by which the runtime finds the entry point: `rtsl_rt_Miss_miss_payload`.
 std::string slotSymbol(llvm::StringRef slot);
+
+/// Adds a function that the runtime finds by its symbol. If an author's class has that name, the
+/// function has another one in the IR, and its own again in machine code.
+void insertForRuntime(mlir::SymbolTable &symbols, mlir::func::FuncOp function);
+
+/// The symbol of a function in machine code.
+llvm::StringRef finalSymbol(mlir::func::FuncOp function);
 
 /// The slot of an entry point, or of one of its states; empty for other functions.
 llvm::StringRef slotOf(mlir::func::FuncOp function);

@@ -8,6 +8,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/ir/dialect/RtslOps.h"
 #include "codegen/passes/ShareExpressions.h"
@@ -112,7 +113,9 @@ void renameFunctions(mlir::ModuleOp module) {
   llvm::StringMap<std::string> renamed;
   for (FuncOp function : module.getOps<FuncOp>()) {
     llvm::StringRef name = function.getName();
-    if (!ir::attr::exported.isOn(function) && !name.contains('.'))
+    if (llvm::StringRef symbol = ir::finalSymbol(function); symbol != name)
+      renamed[name] = symbol.str();
+    else if (!ir::attr::exported.isOn(function) && !name.contains('.'))
       renamed[name] = "function." + name.str();
   }
   for (FuncOp function : module.getOps<FuncOp>())
@@ -272,7 +275,7 @@ LogicalResult convertOperations(mlir::ModuleOp module) {
   mlir::ub::populateUBToLLVMConversionPatterns(converter, patterns);
 
   mlir::LLVMConversionTarget target(*context);
-  target.addLegalOp<mlir::ModuleOp, ir::ClassOp, ir::MemberDeclOp>();
+  target.addLegalOp<mlir::ModuleOp>();
   return mlir::applyFullConversion(module, target, std::move(patterns));
 }
 
@@ -294,6 +297,8 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       return signalPassFailure();
     if (!ir::attr::noted.isOn(module))
       noteWholeProgram(module);
+    for (auto classOp : llvm::make_early_inc_range(module.getOps<ir::ClassOp>()))
+      classOp.erase(); // a function of the runtime may have its name
     renameFunctions(module);
     addStateParameter(module);
     returnBoolsAsNumbers(module);
@@ -301,11 +306,8 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     declareNullRecord(module);
     declareTables(module);
     defineSceneTables(module);
-    llvm::SmallVector<ir::ClassOp> classes(module.getOps<ir::ClassOp>());
     if (mlir::failed(convertOperations(module)))
       return signalPassFailure();
-    for (ir::ClassOp classOp : classes)
-      classOp.erase();
     for (auto function : module.getOps<LLVM::LLVMFuncOp>())
       finish(function);
     ir::attr::records.removeFrom(module);

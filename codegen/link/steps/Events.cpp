@@ -34,7 +34,7 @@ void makeFeatures(LinkContext &context) {
   const mlir::Location location = builder.getUnknownLoc();
   auto function = mlir::func::FuncOp::create(builder, location, ir::slotSymbol(ir::slot::features),
                                              builder.getFunctionType({}, {builder.getI32Type()}));
-  context.symbols.insert(function);
+  ir::insertForRuntime(context.symbols, function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
   const mlir::Value features = mlir::arith::ConstantOp::create(
       builder, location,

@@ -44,7 +44,7 @@ void makeSlot(LinkContext &context, const Slot &slot) {
   auto function = mlir::func::FuncOp::create(builder, builder.getUnknownLoc(), ir::slotSymbol(name),
                                              builder.getFunctionType({object}, {}));
   ir::attr::slot.set(function, builder.getStringAttr(name));
-  context.symbols.insert(function);
+  ir::insertForRuntime(context.symbols, function);
   buildDispatch(context, function, classes, slot.method);
   exportFunction(function);
 }

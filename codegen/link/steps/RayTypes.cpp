@@ -210,7 +210,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   auto create = [&](const std::string &name) {
     builder.setInsertionPointToEnd(context.ir.getBody());
     auto function = FuncOp::create(builder, location, name, builder.getFunctionType({object}, {}));
-    context.symbols.insert(function);
+    ir::insertForRuntime(context.symbols, function);
     return function;
   };
   std::vector<const LinkedClass *> classes;

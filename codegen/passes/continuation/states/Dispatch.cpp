@@ -46,7 +46,8 @@ std::uint32_t payloadsOf(const RayGraph &rays) {
 
 class Dispatcher {
 public:
-  explicit Dispatcher(mlir::ModuleOp module) : module(module), builder(module.getContext()) {}
+  explicit Dispatcher(mlir::ModuleOp module)
+      : module(module), symbols(module), builder(module.getContext()) {}
   mlir::LogicalResult run();
 
 private:
@@ -63,6 +64,7 @@ private:
   }
 
   mlir::ModuleOp module;
+  mlir::SymbolTable symbols;
   mlir::OpBuilder builder;
   std::vector<FuncOp> states;
   StateNumbers numbers;
@@ -99,6 +101,7 @@ FuncOp Dispatcher::makeFunction(llvm::StringRef name, llvm::ArrayRef<mlir::Type>
   builder.setInsertionPointToEnd(module.getBody());
   auto function = FuncOp::create(builder, builder.getUnknownLoc(), name,
                                  builder.getFunctionType(inputs, {builder.getI32Type()}));
+  ir::insertForRuntime(symbols, function);
   ir::attr::exported.set(function);
   builder.setInsertionPointToEnd(function.addEntryBlock());
   return function;

@@ -19,6 +19,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/states/Steps.h"
 #include "codegen/passes/continuation/suspend/CutJoins.h"
 
@@ -146,7 +147,7 @@ FuncOp Splitter::makeState(unsigned index, mlir::Block *start) {
       state->setAttr(name, value);
   ir::attr::state.set(state, builder.getI32IntegerAttr(index));
   if (index == 0 && ir::attr::exported.isOn(function))
-    ir::attr::entry.set(state, builder.getStringAttr(function.getSymName()));
+    ir::attr::entry.set(state, builder.getStringAttr(ir::finalSymbol(function)));
 
   mlir::IRMapping mapping;
   llvm::SmallVector<mlir::Block *> blocks = reachableFrom(start);
