@@ -2,10 +2,12 @@
 #include "scenefile/SceneFile.h"
 
 #include "scenefile/Graph.h"
+#include "scenefile/KeyFrames.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
 #include "support/AtomicFile.h"
+#include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
@@ -32,11 +34,11 @@ public:
       checkKeys(root, {"$schema", "rtsl",     "import",     "camera",  "rayGeneration", "images",
                        "helpers", "textures", "materials",  "objects", "nodes",         "root",
                        "roots",   "lights",   "background", "ambient", "exception",     "render",
-                       "buffers", "passes",   "variables"},
+                       "buffers", "passes",   "variables",  "cameras", "frame"},
                 "a scene");
     });
     section("import", [&](const JsonValue &imports) { readImports(imports); });
-    readSingle("camera", scene.camera);
+    readCameras();
     readSingle("rayGeneration", scene.rayGeneration);
     readImages();
     readBuffers();
@@ -98,14 +100,57 @@ private:
             [&](const JsonValue &value) { object = readObject(value, fmt::format("`{}`", key)); });
   }
 
+  /// The scene's camera: an object, the name of one of `cameras`, or else the first of these.
+  void readCameras() {
+    section("cameras", [&](const JsonValue &value) {
+      expect(value, Kind::Object, "`cameras`");
+      for (const auto &[key, member] : value.members)
+        errors.attempt([&, &key = key, &member = member] {
+          scene.cameras.emplace_back(key.text, readObject(member, fmt::format("`{}`", key.text)));
+        });
+    });
+    if (!scene.cameras.empty())
+      scene.camera = scene.cameras.front().second;
+    section("camera", [&](const JsonValue &value) {
+      scene.camera =
+          value.kind == Kind::String ? cameraNamed(value) : readObject(value, "`camera`");
+    });
+  }
+
+  ObjectDescription cameraNamed(const JsonValue &name) const {
+    std::vector<std::string> names;
+    for (const auto &[known, camera] : scene.cameras) {
+      if (known == name.string)
+        return camera;
+      names.push_back(known);
+    }
+    Error error(ErrorCode::UnknownName,
+                names.empty() ? fmt::format("there is no camera `{}`: the scene has no `cameras`",
+                                            name.string)
+                              : fmt::format("there is no camera `{}`; there are `{}`", name.string,
+                                            fmt::join(names, "`, `")),
+                name.place());
+    if (const std::string near = closestName(name.string, names); !near.empty())
+      error.fix(near);
+    throw error;
+  }
+
+  void requireCamera(const std::string &what) const {
+    if (!root.find("cameras"))
+      require(root, "camera", what);
+    else if (root.find("cameras")->members.empty() && !root.find("camera"))
+      throw Error(ErrorCode::MissingKey, fmt::format("{} needs a camera in `cameras`", what),
+                  root.find("cameras")->place());
+  }
+
   /// Requires the object that starts samples.
   void requireStart() const {
     if (scene.render.engine == runtime::Engine::Classic)
-      require(root, "camera", "a scene");
+      requireCamera("a scene");
     else if (root.find("passes"))
       return;
     else if (libraryEngine)
-      require(root, "camera", fmt::format("a scene for the engine `{}`", libraryEngine->string));
+      requireCamera(fmt::format("a scene for the engine `{}`", libraryEngine->string));
     else
       require(root, "rayGeneration", "a scene for the engine `programs`");
   }
@@ -205,7 +250,8 @@ private:
     for (const auto &[key, value] : root.members) {
       const bool isOfNames = key.text == "images" || key.text == "helpers" ||
                              key.text == "textures" || key.text == "materials" ||
-                             key.text == "nodes" || key.text == "variables";
+                             key.text == "nodes" || key.text == "variables" ||
+                             key.text == "cameras";
       if (isOfNames)
         forEachValue(value, [&](const JsonValue &object) { readFilesIn(object); });
       else if (key.text != "roots" && key.text != "render")
@@ -498,6 +544,16 @@ private:
   ErrorCollector errors;
 };
 
+/// Makes the scene that of its frame.
+void chooseFrame(JsonValue &root) {
+  double frame = 0;
+  if (const JsonValue *value = root.find("frame"))
+    frame = readNumber(*value, "`frame`");
+  ErrorCollector errors;
+  resolveKeyFrames(root, frame, errors);
+  errors.throwIfAny();
+}
+
 } // namespace
 
 SceneDescription parseScene(const std::string &text, const std::string &path,
@@ -505,6 +561,7 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
   auto root = std::make_shared<JsonValue>(parseJson(text, path));
   for (const std::string &override : overrides)
     applyOverride(*root, override);
+  chooseFrame(*root);
   SceneDescription scene;
   scene.file = path;
   scene.root = root;

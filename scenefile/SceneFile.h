@@ -136,8 +136,9 @@ struct ImportDescription {
 struct SceneDescription {
   std::string file; // as given
   std::vector<ImportDescription> imports;
-  std::optional<ObjectDescription> camera;        // the classic engine needs it
-  std::optional<ObjectDescription> rayGeneration; // the programs engine needs it
+  std::optional<ObjectDescription> camera;                        // the classic engine needs it
+  std::vector<std::pair<std::string, ObjectDescription>> cameras; // by name, to choose from
+  std::optional<ObjectDescription> rayGeneration;                 // the programs engine needs it
   std::map<std::string, ObjectDescription> images, helpers, textures, materials;
   std::map<const JsonValue *, ImageDescription> imageValues; // all, those written in place too
   std::map<const JsonValue *, BufferDescription> bufferValues;

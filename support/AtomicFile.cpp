@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,24 +28,37 @@ constexpr const char *standardOutput = "-";
               fmt::format("cannot write `{}`: {}", path, std::strerror(error)), Place{path});
 }
 
-/// A name in the same folder, so that renaming stays within one file system.
-std::string temporaryName(const std::string &path) {
-  static std::atomic<unsigned> counter{0};
+constexpr std::string_view temporarySuffix = ".tmp";
+
+/// Folder, with a slash at its end or empty, and beginning of the names of temporary files. They are
+/// in the same folder, so that renaming stays within one file system.
+std::pair<std::string, std::string> temporaryPrefix(const std::string &path) {
   std::size_t slash = path.find_last_of('/');
   std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
   std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
   // Shortened, so that the result is a valid name.
-  return fmt::format("{}.{}.{}-{}.tmp", folder, file.substr(0, 200), ::getpid(), counter++);
+  return {folder, fmt::format(".{}.", file.substr(0, 200))};
 }
 
-/// Creates the temporary file with the permissions of a new file, or those of the file that it
-/// replaces.
+std::string temporaryName(const std::string &path) {
+  static std::atomic<unsigned> counter{0};
+  const auto [folder, prefix] = temporaryPrefix(path);
+  return fmt::format("{}{}{}-{}{}", folder, prefix, ::getpid(), counter++, temporarySuffix);
+}
+
+/// Creates the temporary file with the permissions of a new file. It is locked until it is closed or
+/// the process ends, which shows removeUnfinishedFiles() that it is in use.
 int createTemporary(const std::string &path, std::string &temporary) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     temporary = temporaryName(path);
     int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0 || errno != EEXIST)
+    if (file < 0 && errno != EEXIST)
       return file;
+    if (file < 0)
+      continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // or it knows no locks
+      return file;
+    ::close(file); // it is being removed
   }
   return -1;
 }
@@ -61,6 +76,14 @@ int writeAll(int file, std::string_view bytes) {
     bytes.remove_prefix(std::size_t(written));
   }
   return 0;
+}
+
+int writeAll(int file, const std::vector<std::string_view> &parts) {
+  int error = 0;
+  for (const std::string_view part : parts)
+    if (error == 0)
+      error = writeAll(file, part);
+  return error;
 }
 
 bool isSpecial(const std::string &path) {
@@ -88,11 +111,11 @@ std::string followLinks(std::string path) {
   throwUnwritable(path, ELOOP);
 }
 
-void writeDirectly(const std::string &path, std::string_view bytes) {
+void writeDirectly(const std::string &path, const std::vector<std::string_view> &parts) {
   int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0)
     throwUnwritable(path, errno);
-  int error = writeAll(file, bytes);
+  int error = writeAll(file, parts);
   if (::close(file) != 0 && error == 0)
     error = errno;
   if (error)
@@ -124,9 +147,13 @@ void checkFileWritable(const std::string &path) {
 }
 
 void writeFileAtomically(const std::string &path, std::string_view bytes) {
+  writeFileAtomically(path, std::vector<std::string_view>{bytes});
+}
+
+void writeFileAtomically(const std::string &path, const std::vector<std::string_view> &parts) {
   if (path == standardOutput) {
     std::fflush(stdout); // earlier output comes first
-    if (const int error = writeAll(STDOUT_FILENO, bytes))
+    if (const int error = writeAll(STDOUT_FILENO, parts))
       throwUnwritable(path, error);
     return;
   }
@@ -135,7 +162,7 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   if (isFolder(path))
     throwUnwritable(path, EISDIR);
   if (isSpecial(path))
-    return writeDirectly(path, bytes);
+    return writeDirectly(path, parts);
   std::string target = followLinks(path), temporary;
   struct stat replaced;
   bool replaces = ::stat(target.c_str(), &replaced) == 0;
@@ -145,7 +172,7 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   int file = createTemporary(target, temporary);
   if (file < 0)
     throwUnwritable(path, errno);
-  int error = writeAll(file, bytes);
+  int error = writeAll(file, parts);
   if (error == 0 && replaces && ::fchmod(file, replaced.st_mode & 07777) != 0)
     error = errno;
   // Some file systems report only here that they are full.
@@ -158,6 +185,25 @@ void writeFileAtomically(const std::string &path, std::string_view bytes) {
   if (error) {
     ::unlink(temporary.c_str());
     throwUnwritable(path, error);
+  }
+}
+
+void removeUnfinishedFiles(const std::string &path) {
+  const auto [folder, prefix] = temporaryPrefix(followLinks(path));
+  std::error_code ignored; // what cannot be removed does no harm
+  for (const auto &entry :
+       std::filesystem::directory_iterator(folder.empty() ? "." : folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (name.compare(0, prefix.size(), prefix) != 0 ||
+        name.size() < prefix.size() + temporarySuffix.size() ||
+        name.compare(name.size() - temporarySuffix.size(), std::string::npos, temporarySuffix) != 0)
+      continue;
+    const int file = ::open(entry.path().c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+    if (file < 0)
+      continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0)
+      ::unlink(entry.path().c_str());
+    ::close(file);
   }
 }
 

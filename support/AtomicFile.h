@@ -13,6 +13,12 @@ namespace rtsl {
 /// that is not a regular file (a pipe, /dev/stdout) is written directly; "-" is standard output. On
 /// an error no partial file remains. Throws FileUnwritable.
 void writeFileAtomically(const std::string &path, std::string_view bytes);
+/// The same for bytes in several parts.
+void writeFileAtomically(const std::string &path, const std::vector<std::string_view> &parts);
+
+/// Removes temporary files that writeFileAtomically(path, ...) has left because its process was
+/// killed. Those that are being written stay.
+void removeUnfinishedFiles(const std::string &path);
 
 /// Throws FileUnwritable if writeFileAtomically could not create its file.
 void checkFileWritable(const std::string &path);

@@ -20,6 +20,8 @@ const char *name(ErrorCode code) {
     return "badImage";
   case ErrorCode::BadBuffer:
     return "badBuffer";
+  case ErrorCode::BadCheckpoint:
+    return "badCheckpoint";
   case ErrorCode::BadPackage:
     return "badPackage";
   case ErrorCode::NotAScene:

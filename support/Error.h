@@ -25,8 +25,9 @@ enum class ErrorCode : std::uint8_t {
   // Meshes and images.
   BadMesh, // truncated, empty, not finite, an index out of range
   BadImage,
-  BadBuffer,  // a file of numbers that is truncated, damaged, or of another size
-  BadPackage, // not a package, of another version, truncated, damaged
+  BadBuffer,     // a file of numbers that is truncated, damaged, or of another size
+  BadCheckpoint, // not a checkpoint, of another rendering or version, truncated, damaged
+  BadPackage,    // not a package, of another version, truncated, damaged
   // Scene files.
   NotAScene, // shaders where a scene is expected
   JsonSyntax,

@@ -110,6 +110,33 @@ void GpuRenderer::fetchPixels() {
   device.download(picture.pixels.data(), pixelAddress, pixelBytes());
 }
 
+/// Calls visit(values, where the device has them) for the parts of the sums.
+template <typename Visit>
+static void forEachPart(PixelSums &sums, RtslPixelSums &onDevice, Visit visit) {
+  visit(sums.colors, onDevice.colors);
+  visit(sums.squares, onDevice.squares);
+  visit(sums.counted, onDevice.counted);
+  visit(sums.taken, onDevice.taken);
+}
+
+RtslPixelSums GpuRenderer::placeSums() {
+  forEachPart(*sums, sumsOnDevice, [&](auto &values, auto *&address) {
+    const std::size_t bytes = values.size() * sizeof values[0];
+    if (!address)
+      address =
+          reinterpret_cast<decltype(values.data())>(allocate(bytes, "the sums of the pixels"));
+    device.upload(reinterpret_cast<Address>(address), values.data(), bytes);
+  });
+  return sumsOnDevice;
+}
+
+void GpuRenderer::fetchSums() {
+  forEachPart(*sums, sumsOnDevice, [&](auto &values, auto *&address) {
+    device.download(values.data(), reinterpret_cast<Address>(address),
+                    values.size() * sizeof values[0]);
+  });
+}
+
 void GpuRenderer::runLanes(Address job) {
   void *arguments[] = {&job};
   device.launch(kernel, figures.blocks, threadsPerBlock, arguments);

@@ -46,6 +46,8 @@ private:
   void download(void *to, Address from, std::uint64_t bytes) override;
   Address clearedPixels() override;
   void fetchPixels() override;
+  RtslPixelSums placeSums() override;
+  void fetchSums() override;
   void runLanes(Address job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
@@ -58,6 +60,7 @@ private:
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;
+  RtslPixelSums sumsOnDevice{}; // all null until there are sums
 };
 
 } // namespace rtsl::runtime

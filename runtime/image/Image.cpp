@@ -79,7 +79,11 @@ void writeImage(const std::string &path, const Image &image, PictureFormat forma
     throw Error(ErrorCode::BadImage, fmt::format("cannot write `{}`: the picture is empty", path),
                 Place{path});
   writeFileAtomically(path, format == PictureFormat::Png ? encodePng(image, path)
-                                                         : encodeExr(image, path));
+                                                         : encodeExr(image, {}, path));
+}
+
+void writeLayers(const std::string &path, const Image &image, const std::vector<Layer> &layers) {
+  writeFileAtomically(path, encodeExr(image, layers, path));
 }
 
 Image readImage(const std::string &path) {

@@ -15,6 +15,9 @@ struct Image {
   std::uint32_t width = 0, height = 0, channels = 3;
   std::vector<float> pixels;
 
+  /// Of a part of a larger picture: where it begins in that, and the size of that. 0: it is whole.
+  std::uint32_t left = 0, top = 0, wholeWidth = 0, wholeHeight = 0;
+
   Image() = default;
   Image(std::uint32_t width, std::uint32_t height, std::uint32_t channels)
       : width(width), height(height), channels(channels),

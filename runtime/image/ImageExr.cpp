@@ -77,18 +77,58 @@ Imf::Slice slice(const float *pixels, std::uint32_t channel, std::uint32_t chann
                     sizeof(float) * channels, sizeof(float) * channels * width);
 }
 
+/// OpenEXR addresses pixels by their position in the whole picture, of which (0, 0) may be outside.
+const float *originOf(const Image &image, const Imath::V2i &first) {
+  return image.pixels.data() -
+         (std::ptrdiff_t(first.y) * image.width + first.x) * std::ptrdiff_t(image.channels);
+}
+
+/// Adds the channels of a picture to a file that is to be written.
+void addChannels(const Image &image, const std::vector<std::string> &names, Imf::Header &header,
+                 Imf::FrameBuffer &frame) {
+  const float *origin = originOf(image, header.dataWindow().min);
+  for (std::uint32_t c = 0; c < image.channels; ++c) {
+    header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+    frame.insert(names[c], slice(origin, c, image.channels, image.width));
+  }
+}
+
+std::vector<std::string> channelNames(const Layer &layer) {
+  std::vector<std::string> names = layer.channels;
+  if (names.empty())
+    names = channelNames(layer.image.channels);
+  for (std::string &name : names)
+    name = layer.name + "." + name;
+  return names;
+}
+
+/// The channels that are read: those of the picture itself, without layers beside it.
+std::vector<std::string> channelsOfPicture(const Imf::ChannelList &channels) {
+  if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
+    return {"R", "G", "B"};
+  std::vector<std::string> all, withoutLayer;
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    all.emplace_back(channel.name());
+    if (all.back().find('.') == std::string::npos)
+      withoutLayer.push_back(all.back());
+  }
+  return withoutLayer.empty() ? all : withoutLayer;
+}
+
 } // namespace
 
-std::string encodeExr(const Image &image, const std::string &path) {
+std::string encodeExr(const Image &image, const std::vector<Layer> &layers,
+                      const std::string &path) {
   try {
-    Imf::Header header(int(image.width), int(image.height));
+    const Imath::V2i first(int(image.left), int(image.top));
+    const Imath::Box2i data(first, first + Imath::V2i(int(image.width) - 1, int(image.height) - 1));
+    const Imath::Box2i whole({0, 0}, {int(image.wholeWidth) - 1, int(image.wholeHeight) - 1});
+    Imf::Header header(image.wholeWidth ? whole : data, data);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer frame;
-    std::vector<std::string> names = channelNames(image.channels);
-    for (std::uint32_t c = 0; c < image.channels; ++c) {
-      header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-      frame.insert(names[c], slice(image.pixels.data(), c, image.channels, image.width));
-    }
+    addChannels(image, channelNames(image.channels), header, frame);
+    for (const Layer &layer : layers)
+      addChannels(layer.image, channelNames(layer), header, frame);
     MemoryOutput output;
     {
       Imf::OutputFile file(output, header);
@@ -107,23 +147,14 @@ Image decodeExr(const std::string &bytes, const std::string &path) {
     MemoryInput input(bytes);
     Imf::InputFile file(input);
     Imath::Box2i window = file.header().dataWindow();
-    std::vector<std::string> names;
-    const Imf::ChannelList &channels = file.header().channels();
-    for (auto channel = channels.begin(); channel != channels.end(); ++channel)
-      names.push_back(channel.name());
+    const std::vector<std::string> names = channelsOfPicture(file.header().channels());
     if (names.empty())
       throw std::runtime_error("it has no channels");
-    if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
-      names = {"R", "G", "B"};
     Image image(std::uint32_t(window.max.x - window.min.x + 1),
                 std::uint32_t(window.max.y - window.min.y + 1), std::uint32_t(names.size()));
     Imf::FrameBuffer frame;
-    // OpenEXR addresses pixels by their position in the data window.
-    const float *base =
-        image.pixels.data() - (std::ptrdiff_t(window.min.y) * image.width + window.min.x) *
-                                  std::ptrdiff_t(image.channels);
     for (std::uint32_t c = 0; c < image.channels; ++c)
-      frame.insert(names[c], slice(base, c, image.channels, image.width));
+      frame.insert(names[c], slice(originOf(image, window.min), c, image.channels, image.width));
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
     return image;

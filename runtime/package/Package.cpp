@@ -1,11 +1,11 @@
 //===- Package.cpp - a scene and its compiled code in one file ------------===//
 #include "runtime/package/Package.h"
 
+#include "runtime/render/Crc64.h"
 #include "support/AtomicFile.h"
 #include "support/Error.h"
 
 #include <fmt/format.h>
-#include <lzma.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -63,11 +63,6 @@ std::string_view bytesOf(const void *data, std::size_t size) {
 
 std::uint64_t aligned(std::uint64_t offset) {
   return (offset + alignment - 1) / alignment * alignment;
-}
-
-/// CRC-64/XZ of `bytes`; `before` is that of what stands before them.
-std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0) {
-  return lzma_crc64(reinterpret_cast<const std::uint8_t *>(bytes.data()), bytes.size(), before);
 }
 
 /// The checksum of a file whose header is there.

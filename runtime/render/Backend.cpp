@@ -18,7 +18,14 @@ Backend::Backend(const RenderOptions &options) : options(checked(options)) {}
 Backend::~Backend() = default;
 
 void Backend::makePicture(std::uint32_t channels) {
-  picture = newImage(options.width, options.height, channels);
+  const Window window = windowOf(options);
+  picture = newImage(window.width(), window.height(), channels);
+  if (options.crop) {
+    picture.left = window.x0;
+    picture.top = window.y0;
+    picture.wholeWidth = options.width;
+    picture.wholeHeight = options.height;
+  }
 }
 
 void addEvents(const RtslStatus &status, RenderStatistics &statistics) {
@@ -33,6 +40,7 @@ Image Backend::render(RenderStatistics *statistics) {
   if (picture.pixels.empty())
     makePicture(channels());
   RenderStatistics said;
+  samplesOfPixel = options.samplesPerPixel;
   try {
     begin();
     Watch watch(options);

@@ -9,7 +9,11 @@
 #pragma once
 
 #include "runtime/image/Image.h"
+#include "runtime/render/Passes.h"
 #include "runtime/render/RenderOptions.h"
+
+#include <chrono>
+#include <functional>
 
 namespace rtsl::runtime {
 
@@ -30,6 +34,15 @@ public:
   /// throws OutOfMemory, and Internal if the program or its device fails.
   Image render(RenderStatistics *statistics = nullptr);
 
+  /// As render(), but in passes, which go on with `rendering` if that has sums, and leave it as it
+  /// is at the end. `progress` is called after each pass; RenderOptions::progress is not called.
+  /// RenderOptions::cancel ends it after the pass, of which there is at least one; see also
+  /// PassOptions::checkpoint. Throws OutOfRange if `rendering` has more samples than the options
+  /// allow, or sums of another size, and what the functions of `passes` throw.
+  Image renderInPasses(const PassOptions &passes,
+                       const std::function<void(const PassState &)> &progress,
+                       PartialRendering &rendering, RenderStatistics *statistics = nullptr);
+
 protected:
   /// Throws OutOfRange for invalid options.
   explicit Backend(const RenderOptions &options);
@@ -40,10 +53,12 @@ protected:
   /// The picture that is being rendered, initially 0.
   Image picture;
 
-  std::uint64_t pixelCount() const { return std::uint64_t(options.width) * options.height; }
+  std::uint64_t pixelCount() const { return windowOf(options).pixels(); }
 
   const RenderOptions options;
-  double buildSeconds = 0; // spent by constructors of backends
+  std::uint32_t samplesOfPixel = 0; // run() renders each pixel until it has so many
+  PixelSums *sums = nullptr;        // run() goes on with them; null: pixels begin without samples
+  double buildSeconds = 0;          // spent by constructors of backends
 
 private:
   virtual std::uint32_t channels() const = 0;
@@ -51,9 +66,19 @@ private:
   virtual void begin() = 0;
   /// Renders until all samples are done or `watch` is stopped.
   virtual void run(Watch &watch) = 0;
-  /// Copies the pixels to `picture`, and returns the statistics without the times and
-  /// isUnfinished.
+  /// Copies the pixels to `picture`, unless there are sums, and returns the statistics of the last
+  /// run, without the times and isUnfinished.
   virtual RenderStatistics finish() = 0;
+  /// Copies `sums` to where run() goes on with them, and back. Backends that use them where they
+  /// are have nothing to do.
+  virtual void uploadSums() {}
+  virtual void fetchSums() {}
+
+  void takeSums(PartialRendering &rendering);
+  bool runPass(const PassOptions &passes, std::chrono::steady_clock::time_point pause,
+               RenderStatistics &met);
+  void runPasses(const PassOptions &passes, const std::function<void(const PassState &)> &progress,
+                 PartialRendering &rendering);
 };
 
 } // namespace rtsl::runtime

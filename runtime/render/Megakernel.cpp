@@ -29,7 +29,8 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
                             options.maxDepth));
   RenderStatistics statistics;
   // Every pixel that was taken is done, but for those that the stop has cut off.
-  const std::uint64_t pixels = std::uint64_t(options.width) * options.height;
+  const Window window = windowOf(options);
+  const std::uint64_t pixels = window.pixels();
   statistics.pixels = std::min(status.nextPixel, pixels) - status.unfinishedPixels;
   statistics.samples = statistics.pixels * options.samplesPerPixel + status.unfinishedSamples;
   statistics.samplesNotFinite = status.samplesNotFinite;
@@ -37,8 +38,8 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
   for (const std::uint64_t rank : status.firstNotFinite)
     if (rank != 0 && statistics.notFinite.size() < options.mostNotFinite) {
       const std::uint64_t sample = ~rank, pixel = sample / options.samplesPerPixel;
-      statistics.notFinite.push_back({std::uint32_t(pixel % options.width),
-                                      std::uint32_t(pixel / options.width),
+      statistics.notFinite.push_back({window.x0 + std::uint32_t(pixel % window.width()),
+                                      window.y0 + std::uint32_t(pixel / window.width()),
                                       std::uint32_t(sample % options.samplesPerPixel)});
     }
   addEvents(status, statistics);
@@ -65,7 +66,11 @@ void Megakernel::prepare() {
   makePicture(colorComponents);
   job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
   job.status = reinterpret_cast<RtslStatus *>(statusAddress);
-  job.samplesPerPixel = options.samplesPerPixel;
+  const Window window = windowOf(options);
+  job.left = window.x0;
+  job.top = window.y0;
+  job.width = window.width();
+  job.height = window.height();
   clearedPixels(); // allocates them before the rays, whose number adapts to the free memory
   job.lanes = reinterpret_cast<std::uint8_t *>(
       allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
@@ -76,6 +81,8 @@ void Megakernel::begin() {
   const RtslStatus nothing{};
   upload(statusAddress, &nothing, sizeof nothing);
   job.pixels = reinterpret_cast<float *>(clearedPixels());
+  job.samplesPerPixel = samplesOfPixel;
+  job.sums = sums ? placedSums : RtslPixelSums{};
   upload(jobAddress, &job, sizeof job);
 }
 
@@ -90,11 +97,18 @@ void Megakernel::run(Watch &watch) {
 RenderStatistics Megakernel::finish() {
   RtslStatus status;
   download(&status, statusAddress, sizeof status);
-  RenderStatistics statistics = readStatus(status, options);
-  fetchPixels();
+  RenderOptions ofRun = options;
+  ofRun.samplesPerPixel = samplesOfPixel;
+  RenderStatistics statistics = readStatus(status, ofRun);
+  if (!sums)
+    fetchPixels();
   for (const FlatScene::Output &output : outputs)
     download(output.elements, reinterpret_cast<Address>(job.launch) + output.offset, output.bytes);
   return statistics;
+}
+
+void Megakernel::uploadSums() {
+  placedSums = placeSums();
 }
 
 } // namespace rtsl::runtime

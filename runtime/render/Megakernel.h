@@ -18,8 +18,8 @@ namespace rtsl::runtime {
 /// Sets the size, depth and seed of the scene's launch, and its status.
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
 
-/// The statistics of a job, without the times and isUnfinished. Throws Internal if the lanes had too
-/// little memory.
+/// The statistics of a job without sums, and without the times and isUnfinished. Throws Internal if
+/// the lanes had too little memory.
 RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options);
 
 class Megakernel : public Backend {
@@ -47,6 +47,8 @@ private:
   virtual Address clearedPixels() = 0;
   /// Copies them to `picture`.
   virtual void fetchPixels() = 0;
+  /// Copies `sums` to the device, and gives their addresses there.
+  virtual RtslPixelSums placeSums() = 0;
   /// Runs all lanes of the job and waits for them.
   virtual void runLanes(Address job) = 0;
   // Read and write a number in the status while lanes run, from another thread.
@@ -57,12 +59,14 @@ private:
   void begin() final;
   void run(Watch &watch) final;
   RenderStatistics finish() final;
+  void uploadSums() final;
 
   FlatScene scene; // empty after prepare()
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0;
   RtslJob job{};
+  RtslPixelSums placedSums{};
 };
 
 } // namespace rtsl::runtime

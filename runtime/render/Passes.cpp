@@ -2,30 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace rtsl::runtime {
 
-double relativeError(const PixelSums &sums, std::uint32_t components) {
-  double mean = 0, variance = 0;
-  std::uint64_t pixels = 0;
-  for (std::size_t pixel = 0; pixel < sums.counted.size(); ++pixel) {
-    const double count = sums.counted[pixel];
-    if (count < 2)
-      continue;
-    double sum = 0;
-    for (std::uint32_t c = 0; c < components; ++c)
-      sum += sums.colors[pixel * components + c];
-    const double value = sum / components / count;
-    mean += value;
-    variance += std::max(0.0, (sums.squares[pixel] / count - value * value) / (count - 1));
-    ++pixels;
-  }
-  if (pixels == 0)
-    return std::numeric_limits<double>::infinity();
-  if (variance == 0)
-    return 0;
-  return std::sqrt(variance / double(pixels)) / std::abs(mean / double(pixels));
+std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes, std::uint32_t most) {
+  constexpr double longestSeconds = 0.5;
+  if (state.samplesPerPixel == 0)
+    return 1;
+  const double rate = state.samplesPerPixel / std::max(state.seconds, 1e-9); // per second
+  const double seconds = std::min(longestSeconds, std::max(0.0, passes.seconds - state.seconds));
+  const double samples =
+      std::clamp(std::floor(rate * seconds), 1.0, double(state.samplesPerPixel)); // at most double
+  std::uint32_t left = most - state.samplesPerPixel;
+  if (passes.error > 0)
+    left = std::min(left, nextMeasurement(state.samplesPerPixel) - state.samplesPerPixel);
+  return std::uint32_t(std::min(samples, double(left)));
 }
 
 std::uint32_t nextMeasurement(std::uint32_t samples) {

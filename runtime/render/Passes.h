@@ -1,14 +1,35 @@
 //===- Passes.h - renderings that go on until the picture is good enough ---===//
 #pragma once
 
-#include "runtime/image/Image.h"
+#include "runtime/render/PixelSums.h"
+#include "runtime/render/RenderOptions.h"
 
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <vector>
 
 namespace rtsl::runtime {
+
+/// How far a rendering in passes is.
+struct PassState {
+  std::uint32_t samplesPerPixel = 0; // that every pixel has
+  double seconds = 0;
+  /// The estimated relative error of the picture: the root of the mean over the pixels of the
+  /// variance of their means, divided by the mean of the picture. A pixel's value is the mean of its
+  /// components, its variance the sample variance divided by the number of samples, as if these were
+  /// independent: they are spread evenly, so the true error is smaller. Measured at
+  /// certain numbers of samples, which do not depend on time; infinite before the first of them.
+  double error = std::numeric_limits<double>::infinity();
+};
+
+/// All that a rendering needs to go on.
+struct PartialRendering {
+  PassState state;
+  PixelSums sums;
+  /// What rays and samples have met, and the first samples that are not finite. What can be counted
+  /// in the sums is 0.
+  RenderStatistics met;
+};
 
 /// A rendering in passes of samples, which ends at the first of these limits, or at
 /// RenderOptions::samplesPerPixel. Sample indices go on from one pass to the next, so n samples per
@@ -19,30 +40,18 @@ struct PassOptions {
   double secondsBetweenPictures = 10;
   /// Called after a pass if the last call is as long ago; not after the last pass.
   std::function<void(const Image &)> picture;
+
+  double secondsBetweenCheckpoints = 30;
+  /// Called with a rendering that can be resumed: at these intervals, and at the end with true.
+  /// Passes are interrupted for it. With it, RenderOptions::cancel ends a rendering at once, not
+  /// after the pass.
+  std::function<void(const PartialRendering &, bool isLast)> checkpoint;
 };
 
-/// How far it is.
-struct PassState {
-  std::uint32_t samplesPerPixel = 0;
-  double seconds = 0;
-  /// The estimated relative error of the picture: the root of the mean over the pixels of the
-  /// variance of their means, divided by the mean of the picture. A pixel's value is the mean of its
-  /// components, its variance the sample variance divided by the number of samples, as if these were
-  /// independent: they are spread evenly, so the true error is smaller. Measured at
-  /// certain numbers of samples, which do not depend on time; infinite before the first of them.
-  double error = std::numeric_limits<double>::infinity();
-};
-
-/// The sums of each pixel between passes.
-struct PixelSums {
-  std::vector<double> colors;         // as many as a color has components
-  std::vector<double> squares;        // of pixel values
-  std::vector<std::uint32_t> counted; // finite samples
-};
-
-/// The estimate of PassState::error. Infinite if no pixel has two samples; 0 for a black picture
-/// without variance.
-double relativeError(const PixelSums &sums, std::uint32_t components);
+/// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are
+/// short, so that the limits are met and Ctrl-C need not wait, and long enough that starting threads
+/// costs nothing. None passes a number of samples at which the error is measured.
+std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes, std::uint32_t most);
 
 /// The next number of samples at which the error is measured: 16, 20, 25, ...
 std::uint32_t nextMeasurement(std::uint32_t samples);

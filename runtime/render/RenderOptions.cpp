@@ -19,9 +19,21 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
 void checkOptions(const RenderOptions &options) {
   checkRange("width", options.width, 1, options.height == 1 ? mostLaunchWidth : mostPixelsOfSide);
   checkRange("height", options.height, 1, mostPixelsOfSide);
+  if (const std::optional<Window> &crop = options.crop;
+      crop && (crop->x0 >= crop->x1 || crop->y0 >= crop->y1 || crop->x1 > options.width ||
+               crop->y1 > options.height))
+    throw Error(
+        ErrorCode::OutOfRange,
+        fmt::format("the crop {},{},{},{} is no part of a picture of {}x{} pixels: it takes "
+                    "columns x0 to x1 - 1 and rows y0 to y1 - 1 of x0,y0,x1,y1",
+                    crop->x0, crop->y0, crop->x1, crop->y1, options.width, options.height));
   checkRange("number of samples per pixel", options.samplesPerPixel, 1, mostSamplesPerPixel);
   // Each level of trace takes stack of the thread.
   checkRange("depth", options.maxDepth, 0, maxRayDepth);
+}
+
+Window windowOf(const RenderOptions &options) {
+  return options.crop.value_or(Window{0, 0, options.width, options.height});
 }
 
 unsigned threadCount(const RenderOptions &options) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -25,8 +26,19 @@ constexpr std::uint32_t mostLaunchWidth = 1u << 28;
 constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
 constexpr std::uint32_t mostThreads = 1024;
 
+/// A part of a picture: columns x0 to x1 - 1 and rows y0 to y1 - 1, from the top left.
+struct Window {
+  std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  std::uint32_t width() const { return x1 - x0; }
+  std::uint32_t height() const { return y1 - y0; }
+  std::uint64_t pixels() const { return std::uint64_t(width()) * height(); }
+};
+
 struct RenderOptions {
   std::uint32_t width = 960, height = 540;
+  std::optional<Window>
+      crop; // only these pixels are rendered: those of the whole picture, bit for bit
   std::uint32_t samplesPerPixel = 16;
   std::uint32_t maxDepth = 8; // 0: camera rays only
   std::uint32_t seed = 1;
@@ -72,8 +84,11 @@ struct RenderStatistics {
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
 
-/// Throws OutOfRange if the size, the samples or the depth make no picture.
+/// Throws OutOfRange if the size, the crop, the samples or the depth make no picture.
 void checkOptions(const RenderOptions &options);
+
+/// The pixels that are rendered.
+Window windowOf(const RenderOptions &options);
 
 /// Of a rendering: the requested number, or one a core.
 unsigned threadCount(const RenderOptions &options);

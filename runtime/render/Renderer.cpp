@@ -30,11 +30,11 @@ struct Worker {
   SamplesNotFinite notFinite;
 };
 
-/// The sums of one pixel's finite samples.
+/// The sums of one pixel.
 struct PixelSum {
   double colors[RTSL_MAX_COLOR] = {};
   double squares = 0; // of the means of the components
-  std::uint32_t counted = 0;
+  std::uint32_t counted = 0, taken = 0;
 
   template <typename Count>
   void add(const float *color, Count components) {
@@ -57,6 +57,7 @@ struct PixelSum {
     std::copy_n(&from.colors[pixel * components], std::uint32_t(components), colors);
     squares = from.squares[pixel];
     counted = from.counted[pixel];
+    taken = from.taken[pixel];
   }
 
   template <typename Count>
@@ -64,6 +65,7 @@ struct PixelSum {
     std::copy_n(colors, std::uint32_t(components), &to.colors[pixel * components]);
     to.squares[pixel] = squares;
     to.counted[pixel] = counted;
+    to.taken[pixel] = taken;
   }
 };
 
@@ -82,9 +84,10 @@ struct Renderer::Implementation {
   // One rendering.
   Image *image = nullptr;
   Watch *watch = nullptr;
-  std::uint32_t samplesBefore = 0, samplesAfter = 0; // per pixel, of this pass
+  std::uint32_t samplesOfPixel = 0;
   PixelSums *sums = nullptr; // of the passes before; null: there is one pass
   std::atomic<std::uint64_t> nextTile{0};
+  Window window;
   std::uint64_t tilesAcross = 0, tileCount = 0;
   std::mutex mutex; // for what follows
   RenderStatistics totals;
@@ -121,8 +124,9 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
   self->launch.height = options.height;
   self->launch.maxDepth = options.maxDepth;
   self->launch.seed = options.seed;
-  self->tilesAcross = (options.width + tileSize - 1) / tileSize;
-  self->tileCount = self->tilesAcross * ((options.height + tileSize - 1) / tileSize);
+  self->window = windowOf(options);
+  self->tilesAcross = (self->window.width() + tileSize - 1) / tileSize;
+  self->tileCount = self->tilesAcross * ((self->window.height() + tileSize - 1) / tileSize);
   buildSeconds = std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -151,37 +155,39 @@ bool isFinite(const float *color, Count components) {
 template <typename Count>
 void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Count components) {
   auto sample = scene.program().sample;
-  std::uint32_t x0 = std::uint32_t(tile % tilesAcross) * tileSize,
-                y0 = std::uint32_t(tile / tilesAcross) * tileSize;
-  std::uint32_t x1 = std::min(x0 + tileSize, launch.width),
-                y1 = std::min(y0 + tileSize, launch.height);
+  std::uint32_t x0 = window.x0 + std::uint32_t(tile % tilesAcross) * tileSize,
+                y0 = window.y0 + std::uint32_t(tile / tilesAcross) * tileSize;
+  std::uint32_t x1 = std::min(x0 + tileSize, window.x1), y1 = std::min(y0 + tileSize, window.y1);
   for (std::uint32_t y = y0; y < y1; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
-      const std::size_t index = std::size_t(y) * launch.width + x;
+      const std::uint32_t column = x - window.x0, row = y - window.y0;
+      const std::size_t index = std::size_t(row) * window.width() + column;
       PixelSum sum;
       if (sums)
         sum.load(*sums, index, components);
-      std::uint32_t taken = samplesBefore;
-      for (; taken < samplesAfter && !watch->isStopped(); ++taken) {
+      const std::uint32_t before = sum.taken;
+      for (; sum.taken < samplesOfPixel && !watch->isStopped(); ++sum.taken) {
         float color[RTSL_MAX_COLOR];
-        sample(&worker.launch, x, y, taken, color);
+        sample(&worker.launch, x, y, sum.taken, color);
         if (!isFinite(color, components)) {
-          worker.notFinite.add({x, y, taken});
+          worker.notFinite.add({x, y, sum.taken});
           continue;
         }
         sum.add(color, components);
         if (sums)
           sum.addSquare(color, components);
       }
-      if (sums)
+      worker.samples += sum.taken - before;
+      worker.pixels += sum.taken == samplesOfPixel;
+      worker.pixelsWithoutSample += sum.taken > 0 && sum.counted == 0;
+      if (sums) {
         sum.store(*sums, index, components);
-      worker.samples += taken - samplesBefore;
-      worker.pixels += taken == samplesAfter;
-      worker.pixelsWithoutSample += taken > 0 && sum.counted == 0;
-      float *pixel = image->at(x, y);
+        continue;
+      }
+      float *pixel = image->at(column, row);
       for (std::uint32_t c = 0; c < components; ++c)
         pixel[c] = sum.counted ? float(sum.colors[c] / double(sum.counted))
-                   : taken     ? options.withoutSample
+                   : sum.taken ? options.withoutSample
                                : 0.0f;
     }
 }
@@ -227,8 +233,6 @@ std::uint32_t Renderer::channels() const {
 
 void Renderer::begin() {
   self->nextTile = 0;
-  self->samplesBefore = 0;
-  self->samplesAfter = options.samplesPerPixel;
   self->totals = RenderStatistics();
   self->notFinite = SamplesNotFinite(options.mostNotFinite);
 }
@@ -236,6 +240,8 @@ void Renderer::begin() {
 void Renderer::run(Watch &watch) {
   self->image = &picture;
   self->watch = &watch;
+  self->samplesOfPixel = samplesOfPixel;
+  self->sums = sums;
   const HostThreads threads(options, self->tileCount,
                             stackBytes(self->scene.program(), self->launch));
   threads.run([this](unsigned) { self->work(); });
@@ -245,87 +251,6 @@ RenderStatistics Renderer::finish() {
   self->totals.samplesNotFinite = self->notFinite.total();
   self->totals.notFinite = self->notFinite.take();
   return std::move(self->totals);
-}
-
-/// Passes are short, so that the limits are met and Ctrl-C need not wait, and long enough that
-/// starting threads costs nothing. None passes a number of samples at which the error is measured.
-static std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes,
-                                   std::uint32_t most) {
-  constexpr double longestSeconds = 0.5;
-  if (state.samplesPerPixel == 0)
-    return 1;
-  const double rate = state.samplesPerPixel / std::max(state.seconds, 1e-9); // per second
-  const double seconds = std::min(longestSeconds, std::max(0.0, passes.seconds - state.seconds));
-  const double samples =
-      std::clamp(std::floor(rate * seconds), 1.0, double(state.samplesPerPixel)); // at most double
-  std::uint32_t left = most - state.samplesPerPixel;
-  if (passes.error > 0)
-    left = std::min(left, nextMeasurement(state.samplesPerPixel) - state.samplesPerPixel);
-  return std::uint32_t(std::min(samples, double(left)));
-}
-
-Image Renderer::renderInPasses(const PassOptions &passes,
-                               const std::function<void(const PassState &)> &progress,
-                               PassState &state, RenderStatistics *statistics) {
-  using Clock = std::chrono::steady_clock;
-  const std::uint32_t components = self->launch.colorComponents;
-  PixelSums sums;
-  try {
-    sums.colors.resize(pixelCount() * components);
-    sums.squares.resize(pixelCount());
-    sums.counted.resize(pixelCount());
-  } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the sums of the pixels");
-  }
-  if (picture.pixels.empty())
-    makePicture(components);
-  RenderOptions withoutStop = options; // passes are finished
-  withoutStop.cancel = nullptr;
-  withoutStop.progress = nullptr;
-
-  begin();
-  self->sums = &sums;
-  state = PassState();
-  const Clock::time_point start = Clock::now();
-  Clock::time_point shown = start;
-  const auto secondsSince = [](Clock::time_point from) {
-    return std::chrono::duration<double>(Clock::now() - from).count();
-  };
-  try {
-    for (;;) {
-      self->samplesBefore = state.samplesPerPixel;
-      self->samplesAfter =
-          state.samplesPerPixel + samplesOfPass(state, passes, options.samplesPerPixel);
-      self->nextTile = 0;
-      self->totals.pixels = self->totals.pixelsWithoutSample = 0; // those of the last pass count
-      Watch watch(withoutStop);
-      run(watch);
-      if (passes.error > 0 && self->samplesAfter == nextMeasurement(state.samplesPerPixel))
-        state.error = relativeError(sums, components);
-      state.samplesPerPixel = self->samplesAfter;
-      state.seconds = secondsSince(start);
-      if (progress)
-        progress(state);
-      if (state.samplesPerPixel == options.samplesPerPixel || state.seconds >= passes.seconds ||
-          state.error <= passes.error || (options.cancel && *options.cancel))
-        break;
-      if (passes.picture && secondsSince(shown) >= passes.secondsBetweenPictures) {
-        passes.picture(picture);
-        shown = Clock::now();
-      }
-    }
-  } catch (...) {
-    self->sums = nullptr;
-    picture = Image();
-    throw;
-  }
-  self->sums = nullptr;
-  RenderStatistics said = finish();
-  said.renderSeconds = state.seconds;
-  said.buildSeconds = buildSeconds;
-  if (statistics)
-    *statistics = std::move(said);
-  return std::exchange(picture, Image());
 }
 
 Image render(const Scene &scene, const RenderOptions &options, RenderStatistics *statistics) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "runtime/render/Backend.h"
-#include "runtime/render/Passes.h"
 #include "runtime/scene/Scene.h"
 
 #include <functional>
@@ -18,13 +17,6 @@ public:
   /// Throws OutOfMemory, OutOfRange, IncompleteScene, MissingMethod.
   Renderer(const Scene &scene, const RenderOptions &options);
   ~Renderer() override;
-
-  /// As render(), but in passes. `progress` is called after each; `state` is that at the end.
-  /// RenderOptions::cancel ends it after the pass, of which there is at least one;
-  /// RenderOptions::progress is not called. Also throws what `passes.picture` throws.
-  Image renderInPasses(const PassOptions &passes,
-                       const std::function<void(const PassState &)> &progress, PassState &state,
-                       RenderStatistics *statistics = nullptr);
 
   /// The launch that is passed to the program, for tools that call the program themselves.
   const RtslLaunch &launch() const;

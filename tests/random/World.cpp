@@ -493,6 +493,8 @@ void World::renderByLane(std::vector<float> &pixels) {
   job.laneBytes =
       (code.megakernel.laneBytes(launch.maxDepth, launch.referenceChain) + 15) / 16 * 16;
   job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
+  job.width = launch.width;
+  job.height = launch.height;
   job.pixels = pixels.data();
   job.samplesPerPixel = 1;
   code.megakernel.runLane(&job, 0);

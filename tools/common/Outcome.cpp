@@ -49,7 +49,7 @@ std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statist
 
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
-  const double pixels = double(options.width) * options.height;
+  const double pixels = double(windowOf(options).pixels());
   const char *const signal = interruption();
   return fmt::format("stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, "
                      "and pixels without samples are black",

@@ -22,7 +22,28 @@ PictureSize parseSize(const std::string &text) {
   return {width, height};
 }
 
+runtime::Window parseCrop(const std::string &text) {
+  runtime::Window crop;
+  int used = 0;
+  const bool isCrop = text.size() < 32 && text.find_first_not_of("0123456789,") == text.npos &&
+                      std::sscanf(text.c_str(), "%5u,%5u,%5u,%5u%n", &crop.x0, &crop.y0, &crop.x1,
+                                  &crop.y1, &used) == 4 &&
+                      static_cast<std::size_t>(used) == text.size();
+  if (!isCrop || crop.x0 >= crop.x1 || crop.y0 >= crop.y1)
+    throw CLI::ValidationError("--crop", "give x0,y0,x1,y1 in pixels from the top left, such as "
+                                         "0,0,64,48: columns x0 to x1 - 1, rows y0 to y1 - 1");
+  return crop;
+}
+
 } // namespace
+
+void addCropOption(CLI::App &command, std::optional<runtime::Window> &crop) {
+  command
+      .add_option_function<std::string>(
+          "--crop", [&crop](const std::string &text) { crop = parseCrop(text); },
+          "render only these pixels: columns x0 to x1 - 1, rows y0 to y1 - 1 from the top left")
+      ->type_name("x0,y0,x1,y1");
+}
 
 void addSizeOption(CLI::App &command, std::optional<PictureSize> &size) {
   command

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/image/Image.h"
+#include "runtime/render/RenderOptions.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +18,9 @@ struct PictureSize {
 
 /// Adds --size WxH, each from 1 to 65536.
 void addSizeOption(CLI::App &command, std::optional<PictureSize> &size);
+
+/// Adds --crop x0,y0,x1,y1.
+void addCropOption(CLI::App &command, std::optional<runtime::Window> &crop);
 
 /// Adds -o IMAGE, which must be given, and --format.
 void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format);

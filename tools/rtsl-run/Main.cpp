@@ -38,6 +38,7 @@ struct Options {
   Target target = Target::Gpu;
   std::optional<std::uint32_t> samples, depth, seed;
   std::optional<tool::PictureSize> size;
+  std::optional<runtime::Window> crop;
   std::uint32_t threads = 0, registers = 0;
   bool quiet = false, json = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
@@ -49,6 +50,7 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
     render.width = options.size->width;
     render.height = options.size->height;
   }
+  render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
@@ -134,12 +136,13 @@ std::optional<runtime::Image> readReference(const Options &options, const runtim
     return std::nullopt;
   runtime::Image reference = runtime::readImage(options.reference);
   const std::uint32_t channels = package.scene.launch().colorComponents;
-  if (reference.width != render.width || reference.height != render.height ||
+  const runtime::Window window = windowOf(render);
+  if (reference.width != window.width() || reference.height != window.height() ||
       reference.channels != channels)
     throw Error(ErrorCode::BadImage,
                 fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}",
                             options.reference, reference.width, reference.height,
-                            reference.channels, render.width, render.height, channels));
+                            reference.channels, window.width(), window.height(), channels));
   return reference;
 }
 
@@ -198,6 +201,7 @@ void addOptions(CLI::App &app, Options &options) {
   tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel,
                  "samples per pixel");
   tool::addSizeOption(app, options.size);
+  tool::addCropOption(app, options.crop);
   tool::addWhole(app, "--depth", options.depth, 0, runtime::maxRayDepth,
                  "limit of nested `trace` calls; 0: camera rays only");
   tool::addWhole(app, "--seed", options.seed, 0, 0xffffffff, "seed of the random numbers");

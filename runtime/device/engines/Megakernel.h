@@ -18,9 +18,9 @@ namespace rtsl::device {
 /// stack of waiting rays is in memory.
 struct Lane {
   double sum[RTSL_MAX_COLOR]; // of the pixel's samples, in their order
-  uint64_t pixel;
-  uint32_t sample;    // the next one in the pixel
-  uint32_t notFinite; // samples of the pixel that were left out
+  uint64_t pixel;             // of the job
+  uint32_t sample;            // the next one in the pixel
+  uint32_t notFinite;         // samples of the pixel that were left out
 };
 
 /// The step of a lane without a pixel, in addition to the values of Rays::next.
@@ -63,6 +63,20 @@ inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
   }
 }
 
+inline bool hasSums(const RtslJob &job) {
+  return job.sums.colors;
+}
+
+/// Adds the square of a sample's value to that of its pixel. In memory: it would take registers of
+/// all renderings.
+inline void addSquare(const RtslJob &job, const Lane &lane, const float *color) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  double value = 0;
+  forEachComponent(components, [&](uint32_t i) { value += double(color[i]); });
+  value /= double(components);
+  job.sums.squares[lane.pixel] += value * value;
+}
+
 /// Adds the color of a finished sample to its pixel. One that is not finite is left out of the
 /// pixel's mean, which would not be finite either.
 inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
@@ -77,10 +91,38 @@ inline void addSample(const RtslJob &job, Lane &lane, const float *color) {
   }
   forEachComponent(rtsl_color_components(job.launch),
                    [&](uint32_t i) { lane.sum[i] += double(color[i]); });
+  if (hasSums(job))
+    addSquare(job, lane, color);
 }
 
-/// The mean of the samples so far; black without any.
+/// Begins a pixel, or goes on with it.
+inline void loadPixel(const RtslJob &job, Lane &lane) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  if (!hasSums(job)) {
+    lane.sample = lane.notFinite = 0;
+    forEachComponent(components, [&](uint32_t i) { lane.sum[i] = 0; });
+    return;
+  }
+  lane.sample = job.sums.taken[lane.pixel];
+  lane.notFinite = lane.sample - job.sums.counted[lane.pixel];
+  const double *sum = job.sums.colors + lane.pixel * components;
+  forEachComponent(components, [&](uint32_t i) { lane.sum[i] = sum[i]; });
+}
+
+inline void storeSums(const RtslJob &job, const Lane &lane) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  job.sums.taken[lane.pixel] = lane.sample;
+  job.sums.counted[lane.pixel] = lane.sample - lane.notFinite;
+  double *sum = job.sums.colors + lane.pixel * components;
+  forEachComponent(components, [&](uint32_t i) { sum[i] = lane.sum[i]; });
+}
+
+/// The mean of the samples so far, black without any; or their sums.
 inline void writePixel(const RtslJob &job, const Lane &lane) {
+  if (hasSums(job)) {
+    storeSums(job, lane);
+    return;
+  }
   uint32_t components = rtsl_color_components(job.launch);
   float *pixel = job.pixels + lane.pixel * components;
   uint32_t count = lane.sample - lane.notFinite;
@@ -103,14 +145,17 @@ inline void leavePixel(const RtslJob &job, Lane &lane) {
   lane.sample = job.samplesPerPixel;
 }
 
-/// Takes the next free pixel. False if there is none, or the job is to stop.
+/// Takes the next free pixel that is not done. False if there is none, or the job is to stop.
 inline bool takePixel(const RtslJob &job, Lane &lane) {
-  if (isToStop(job))
-    return false;
-  lane.pixel = countUp(&job.status->nextPixel);
-  lane.sample = lane.notFinite = 0;
-  forEachComponent(rtsl_color_components(job.launch), [&](uint32_t i) { lane.sum[i] = 0; });
-  return lane.pixel < uint64_t(job.launch->width) * job.launch->height;
+  do {
+    if (isToStop(job))
+      return false;
+    lane.pixel = countUp(&job.status->nextPixel);
+    if (lane.pixel >= uint64_t(job.width) * job.height)
+      return false;
+    loadPixel(job, lane);
+  } while (lane.sample >= job.samplesPerPixel);
+  return true;
 }
 
 /// Starts the next sample, in this pixel or another one.
@@ -123,9 +168,8 @@ inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
     rays.next = nothingLeft;
     return;
   }
-  uint32_t width = job.launch->width;
-  startRays(rays, *job.launch, uint32_t(lane.pixel % width), uint32_t(lane.pixel / width),
-            lane.sample);
+  startRays(rays, *job.launch, job.left + uint32_t(lane.pixel % job.width),
+            job.top + uint32_t(lane.pixel / job.width), lane.sample);
 }
 
 inline void endSample(const RtslJob &job, Lane &lane, Rays &rays) {

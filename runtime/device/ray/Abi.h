@@ -161,7 +161,7 @@ typedef struct RtslLaunch {
 
 /// What all lanes of a job write, atomically. The host clears it before.
 typedef struct RtslStatus {
-  uint64_t nextPixel;           // the first that no lane has taken; row by row from the top left
+  uint64_t nextPixel;           // the first of the job that no lane has taken
   uint64_t badRays;             // not finite, or without a direction: their color is 0
   uint64_t raysTooDeep;         // deeper than the launch allows: they were not sent
   uint64_t samplesNotFinite;    // left out of the means of their pixels
@@ -178,14 +178,25 @@ typedef struct RtslStatus {
 #define RTSL_PROBLEM_NONE 0u
 #define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane was started
 
-/// An image for the megakernel (runtime/device/engines/Megakernel.h) to render.
+/// The sums of the samples of each pixel, in a rendering that goes on with them.
+typedef struct RtslPixelSums {
+  double *colors;    // colorComponents per pixel
+  double *squares;   // of the means of the components of each sample
+  uint32_t *counted; // finite samples
+  uint32_t *taken;   // all samples
+} RtslPixelSums;
+
+/// An image for the megakernel (runtime/device/engines/Megakernel.h) to render: a window of the
+/// launch. Its pixels are numbered row by row from the top.
 typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16
-  float *pixels;      // colorComponents per pixel, row by row from the top
-  uint32_t samplesPerPixel;
+  uint32_t left, top, width, height;
+  uint32_t samplesPerPixel; // a pixel is done when it has so many
+  float *pixels;            // colorComponents per pixel; not used with sums
+  RtslPixelSums sums;       // all null: every pixel begins without samples
 } RtslJob;
 
 /// What happens in a sample, apart from its color.

@@ -20,19 +20,28 @@ namespace {
 std::atomic<unsigned> lanesBegun{0};
 
 /// A lane of a program that paints (x, y, seed), and takes its time for a pixel if it has a depth,
-/// in milliseconds.
+/// in milliseconds. Samples are numbered from 1 in `seed`, if sums are taken.
 void paint(const RtslJob *job, std::uint32_t) {
   ++lanesBegun;
   const RtslLaunch &launch = *job->launch;
-  const std::uint64_t pixels = std::uint64_t(launch.width) * launch.height;
+  const std::uint64_t pixels = std::uint64_t(job->width) * job->height;
   while (!__atomic_load_n(&job->status->stop, __ATOMIC_RELAXED)) {
     const std::uint64_t pixel = __atomic_fetch_add(&job->status->nextPixel, 1, __ATOMIC_RELAXED);
     if (pixel >= pixels)
       return;
-    float *const to = job->pixels + 3 * pixel;
-    to[0] = float(pixel % launch.width);
-    to[1] = float(pixel / launch.width);
-    to[2] = float(launch.seed);
+    if (job->sums.colors && job->sums.taken[pixel] == job->samplesPerPixel)
+      continue;
+    const float color[3] = {float(job->left + pixel % job->width),
+                            float(job->top + pixel / job->width), float(launch.seed)};
+    if (!job->sums.colors)
+      std::copy_n(color, 3, job->pixels + 3 * pixel);
+    else
+      for (; job->sums.taken[pixel] < job->samplesPerPixel; ++job->sums.taken[pixel]) {
+        const double factor = 1 + job->sums.taken[pixel];
+        for (int c = 0; c < 3; ++c)
+          job->sums.colors[3 * pixel + std::size_t(c)] += factor * double(color[c]);
+        ++job->sums.counted[pixel];
+      }
     std::this_thread::sleep_for(std::chrono::milliseconds(launch.maxDepth));
   }
 }
@@ -183,4 +192,127 @@ TEST(Backend, TheRendererGivesTheSameBitsAgain) {
   bool hasRun = false;
   renderer.onThread([&] { hasRun = true; });
   EXPECT_TRUE(hasRun);
+}
+
+namespace {
+
+RenderOptions withSamples(std::uint32_t samples) {
+  RenderOptions options = small();
+  options.samplesPerPixel = samples;
+  return options;
+}
+
+/// Renders in passes, and goes on with `rendering`.
+Image inPasses(const RenderOptions &options, PartialRendering &rendering,
+               const PassOptions &passes = {}, RenderStatistics *statistics = nullptr) {
+  return HostMegakernel(codeOf(paint), emptyScene(), options)
+      .renderInPasses(passes, nullptr, rendering, statistics);
+}
+
+} // namespace
+
+TEST(Passes, GoOnWhereTheyWereLeft) {
+  PartialRendering whole, parts;
+  const Image expected = inPasses(withSamples(11), whole);
+  EXPECT_EQ(expected.at(19, 9)[0], 19.0f * 6); // the mean of 1 to 11
+  for (const std::uint32_t samples : {1, 4, 4, 11}) {
+    RenderStatistics statistics;
+    const Image image = inPasses(withSamples(samples), parts, {}, &statistics);
+    EXPECT_EQ(parts.state.samplesPerPixel, samples);
+    EXPECT_EQ(statistics.samples, samples * 200);
+    EXPECT_EQ(statistics.pixels, 200u);
+    if (samples == 11)
+      EXPECT_EQ(image.pixels, expected.pixels);
+  }
+  EXPECT_EQ(parts.sums.colors, whole.sums.colors);
+}
+
+TEST(Passes, EvenOutWhatAnInterruptionHasLeft) {
+  PartialRendering whole, parts;
+  const Image expected = inPasses(withSamples(9), whole);
+  inPasses(withSamples(3), parts);
+  PartialRendering further;
+  inPasses(withSamples(5), further);
+  for (const std::size_t pixel : {0, 100, 199}) { // two samples more
+    std::copy_n(&further.sums.colors[3 * pixel], 3, &parts.sums.colors[3 * pixel]);
+    parts.sums.taken[pixel] = parts.sums.counted[pixel] = 5;
+  }
+  EXPECT_EQ(inPasses(withSamples(9), parts).pixels, expected.pixels);
+  EXPECT_EQ(parts.sums.taken, whole.sums.taken);
+}
+
+TEST(Passes, RefuseSumsThatCannotBeTheirs) {
+  PartialRendering more, larger;
+  inPasses(withSamples(4), more);
+  EXPECT_THROW(inPasses(withSamples(3), more), Error);
+  RenderOptions wide = withSamples(4);
+  wide.width = 30;
+  inPasses(wide, larger);
+  EXPECT_THROW(inPasses(withSamples(4), larger), Error);
+}
+
+TEST(Passes, WriteCheckpointsAtIntervalsAndAtTheEnd) {
+  RenderOptions options = withSamples(2);
+  options.maxDepth = 1; // 200 ms for each pass of one thread
+  options.threads = 1;
+  unsigned intermediate = 0, last = 0;
+  PassOptions passes;
+  passes.secondsBetweenCheckpoints = 0.03;
+  passes.checkpoint = [&](const PartialRendering &rendering, bool isLast) {
+    EXPECT_EQ(last, 0u);
+    ++(isLast ? last : intermediate);
+    EXPECT_EQ(rendering.sums.pixels(), 200u);
+  };
+  PartialRendering rendering;
+  inPasses(options, rendering, passes);
+  EXPECT_GE(intermediate, 2u);
+  EXPECT_EQ(last, 1u);
+}
+
+TEST(Passes, EndAtOnceIfThereAreCheckpoints) {
+  RenderOptions options = withSamples(1000);
+  options.width = 1000;
+  options.maxDepth = 1;
+  std::atomic<bool> cancel{false};
+  options.cancel = &cancel;
+  PassOptions passes;
+  passes.secondsBetweenCheckpoints = 0.02;
+  passes.checkpoint = [&](const PartialRendering &, bool) { cancel = true; };
+  PartialRendering rendering;
+  RenderStatistics statistics;
+  inPasses(options, rendering, passes, &statistics);
+  EXPECT_TRUE(statistics.isUnfinished);
+  EXPECT_GT(statistics.samples, 0u);
+  EXPECT_LT(statistics.samples, 10000u);
+}
+
+TEST(Crop, IsThePartOfThePicture) {
+  RenderOptions options = small();
+  options.crop = Window{3, 2, 8, 4};
+  for (const bool passes : {false, true}) {
+    HostMegakernel renderer(codeOf(paint), emptyScene(), options);
+    PartialRendering rendering;
+    RenderStatistics statistics;
+    const Image image = passes ? renderer.renderInPasses({}, nullptr, rendering, &statistics)
+                               : renderer.render(&statistics);
+    EXPECT_EQ(image.width, 5u);
+    EXPECT_EQ(image.height, 2u);
+    EXPECT_EQ(image.left, 3u);
+    EXPECT_EQ(image.top, 2u);
+    EXPECT_EQ(image.wholeWidth, 20u);
+    EXPECT_EQ(image.wholeHeight, 10u);
+    const float factor = passes ? 2 : 1; // the mean of 1, 2 and 3
+    EXPECT_EQ(image.at(0, 0)[0], 3.0f * factor);
+    EXPECT_EQ(image.at(4, 1)[1], 3.0f * factor);
+    EXPECT_EQ(statistics.pixels, 10u);
+  }
+}
+
+TEST(Crop, LiesInThePicture) {
+  for (const Window crop : {Window{3, 2, 3, 4}, Window{3, 4, 8, 4}, Window{0, 0, 21, 4},
+                            Window{0, 0, 8, 11}, Window{8, 2, 3, 4}}) {
+    RenderOptions options = small();
+    options.crop = crop;
+    EXPECT_THROW(HostMegakernel(codeOf(paint), emptyScene(), options), Error);
+  }
 }

@@ -74,6 +74,8 @@ Code codeFor(ErrorCode code) {
     return Code::outOfMemory;
   case E::NoDevice:
     return Code::noDevice;
+  case E::BadCheckpoint:
+    return Code::badCheckpoint;
   // rtslc reads no packages; rtsl-run has messages of its own.
   case E::BadPackage:
   case E::Internal:

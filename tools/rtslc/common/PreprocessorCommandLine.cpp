@@ -104,9 +104,8 @@ std::string dependencyRule(const std::string &target, const std::vector<std::str
   return rule + "\n";
 }
 
-/// Where the rule is written.
-static std::string dependencyFile(const DependencyOptions &options, const std::string &output,
-                                  const std::vector<std::string> &sources) {
+std::string dependencyFile(const DependencyOptions &options, const std::string &output,
+                           const std::vector<std::string> &sources) {
   if (!options.file.empty())
     return options.file;
   if (hasFile(output))

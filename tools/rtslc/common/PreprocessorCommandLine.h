@@ -29,6 +29,10 @@ std::vector<std::string> withLongDashes(int argc, char **argv);
 /// The rule `target: files` for make and ninja.
 std::string dependencyRule(const std::string &target, const std::vector<std::string> &files);
 
+/// Where the rule is written. `sources` are the files of the command line.
+std::string dependencyFile(const DependencyOptions &options, const std::string &output,
+                           const std::vector<std::string> &sources);
+
 /// Throws FileUnwritable if `output` (empty: there is none) or the dependency file cannot be
 /// written, and OverwritesInput if one of them is a file of the command line or one that was read.
 /// Before work begins, and again when all inputs are known.

@@ -45,8 +45,23 @@ void writeFixes(const Messages &messages) {
   }
 }
 
-/// Everything that happens to a scene before it is rendered: its shaders are checked and linked,
-/// its objects made.
+/// The shaders of a launch are linked, and its objects made.
+void checkLaunch(const scene::SceneDescription &launch, const typed::Module &module,
+                 const CheckOptions &options, SceneBuilder buildScene, Messages &messages) {
+  std::optional<runtime::Scene> scene;
+  const LinkRequest request = linkRequest(launch);
+  CompileInput input;
+  input.module = &module;
+  input.scene = &request;
+  input.makeObjects =
+      storeScene([&](const auto &constructors) { return buildScene(launch, constructors); }, scene);
+  emit(stage("ir"), input, options.common.compile, messages.diagnostics);
+  if (scene)
+    for (const Warning &warning : scene->warnings())
+      messages.report(warning);
+}
+
+/// Everything that happens to a scene before it is rendered, through any of its cameras.
 void checkScene(const std::string &file, const CheckOptions &options, SceneBuilder buildScene,
                 Messages &messages, std::vector<std::string> &filesRead) {
   const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
@@ -56,18 +71,12 @@ void checkScene(const std::string &file, const CheckOptions &options, SceneBuild
     return;
   filesRead = withFiles(description, filesRead);
   for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
-    const scene::SceneDescription launch = scene::launchOf(description, i);
-    std::optional<runtime::Scene> scene;
-    const LinkRequest request = linkRequest(launch);
-    CompileInput input;
-    input.module = module.get();
-    input.scene = &request;
-    input.makeObjects = storeScene(
-        [&](const auto &constructors) { return buildScene(launch, constructors); }, scene);
-    emit(stage("ir"), input, options.common.compile, messages.diagnostics);
-    if (scene)
-      for (const Warning &warning : scene->warnings())
-        messages.report(warning);
+    scene::SceneDescription launch = scene::launchOf(description, i);
+    checkLaunch(launch, *module, options, buildScene, messages);
+    for (const auto &[name, camera] : description.cameras) {
+      launch.camera = camera; // messages that are reported again are the same
+      checkLaunch(launch, *module, options, buildScene, messages);
+    }
   }
 }
 

@@ -1,0 +1,267 @@
+#include "runtime/render/Checkpoint.h"
+
+#include "runtime/render/Crc64.h"
+#include "support/AtomicFile.h"
+#include "support/Error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+namespace rtsl::runtime {
+
+namespace {
+
+constexpr char magic[8] = {'R', 'T', 'S', 'L', 'C', 'K', 'P', '\n'};
+/// Counts up with every change that older programs would misread.
+constexpr std::uint32_t formatVersion = 1;
+
+/// Numbers are little-endian. The facts follow, and then the sums of all pixels: colors, squares,
+/// counted, taken.
+struct Header {
+  char magic[8];
+  std::uint32_t version;
+  std::uint32_t factBytes;
+  std::uint64_t fileBytes;
+  std::uint64_t checksum; // CRC-64 of the whole file, with 0 here
+  char producer[32];      // ends in zeros
+};
+static_assert(sizeof(Header) == 64);
+
+template <typename Value>
+std::string_view bytesOf(const std::vector<Value> &values) {
+  return {reinterpret_cast<const char *>(values.data()), values.size() * sizeof(Value)};
+}
+
+std::string_view bytesOf(const Header &header) {
+  return {reinterpret_cast<const char *>(&header), sizeof header};
+}
+
+/// Calls visit(number) for what a rendering has met and how far it is, in the order of the file.
+template <typename Rendering, typename Visit>
+void forEachNumber(Rendering &rendering, Visit visit) {
+  visit(rendering.state.seconds);
+  visit(rendering.state.error);
+  visit(rendering.met.badRays);
+  visit(rendering.met.retracedRays);
+  visit(rendering.met.rescaledRays);
+  visit(rendering.met.raysTooDeep);
+  for (auto &count : rendering.met.exceptions)
+    visit(count);
+}
+
+class FactWriter {
+public:
+  void add(const Identity &identity) {
+    number(std::uint32_t(identity.dependences.size()));
+    for (const Dependence &one : identity.dependences) {
+      text(one.what);
+      text(one.value);
+      number(std::uint32_t(one.isContent));
+    }
+  }
+
+  void add(const PartialRendering &rendering) {
+    forEachNumber(rendering, [&](const auto &value) { number(value); });
+    number(std::uint32_t(rendering.met.notFinite.size()));
+    for (const SampleId &sample : rendering.met.notFinite) {
+      number(sample.x);
+      number(sample.y);
+      number(sample.sample);
+    }
+  }
+
+  std::string bytes;
+
+private:
+  template <typename Number>
+  void number(Number value) {
+    static_assert(std::is_arithmetic_v<Number>);
+    bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
+  }
+
+  void text(const std::string &value) {
+    number(std::uint32_t(value.size()));
+    bytes += value;
+  }
+};
+
+/// Thrown for facts that end too early, which no program has written.
+struct Malformed {};
+
+class FactReader {
+public:
+  explicit FactReader(std::string_view bytes) : bytes(bytes) {}
+
+  Identity readIdentity() {
+    Identity identity;
+    const auto count = number<std::uint32_t>();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Dependence one;
+      one.what = text();
+      one.value = text();
+      one.isContent = number<std::uint32_t>() != 0;
+      identity.dependences.push_back(std::move(one));
+    }
+    return identity;
+  }
+
+  void read(PartialRendering &rendering) {
+    forEachNumber(rendering, [&](auto &value) { value = number<std::decay_t<decltype(value)>>(); });
+    const auto count = number<std::uint32_t>();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      SampleId sample;
+      sample.x = number<std::uint32_t>();
+      sample.y = number<std::uint32_t>();
+      sample.sample = number<std::uint32_t>();
+      rendering.met.notFinite.push_back(sample);
+    }
+    if (!bytes.empty())
+      throw Malformed();
+  }
+
+private:
+  std::string_view take(std::size_t count) {
+    if (count > bytes.size())
+      throw Malformed();
+    const std::string_view taken = bytes.substr(0, count);
+    bytes.remove_prefix(count);
+    return taken;
+  }
+
+  template <typename Number>
+  Number number() {
+    Number value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+
+  std::string text() { return std::string(take(number<std::uint32_t>())); }
+
+  std::string_view bytes;
+};
+
+template <typename... Arguments>
+[[noreturn]] void refuse(const std::string &path, fmt::format_string<Arguments...> text,
+                         Arguments &&...arguments) {
+  throw Error(ErrorCode::BadCheckpoint,
+              fmt::format("cannot go on from `{}`: {}", path,
+                          fmt::format(text, std::forward<Arguments>(arguments)...)),
+              Place{path})
+      .note("it is left as it was; to begin anew, delete it or name another file");
+}
+
+[[noreturn]] void refuseDamaged(const std::string &path) {
+  refuse(path, "it is damaged");
+}
+
+/// Is it a checkpoint of this version, whole and unharmed?
+Header checkFile(std::string_view file, const std::string &path, const std::string &producer) {
+  Header header;
+  if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
+    refuse(path, "it is no checkpoint of rtslc");
+  if (file.size() < sizeof header)
+    refuse(path, "it is cut short: it ends inside of its header");
+  std::memcpy(&header, file.data(), sizeof header);
+  if (header.version != formatVersion)
+    refuse(path, "it is a checkpoint of format {}, and this program has format {}", header.version,
+           formatVersion);
+  if (file.size() < header.fileBytes)
+    refuse(path, "it is cut short: it has {} bytes of {}", file.size(), header.fileBytes);
+  if (file.size() > header.fileBytes)
+    refuse(path, "it is damaged: {} bytes follow its end", file.size() - header.fileBytes);
+  Header withoutChecksum = header;
+  withoutChecksum.checksum = 0;
+  if (header.checksum != crc64(file.substr(sizeof header), crc64(bytesOf(withoutChecksum))) ||
+      header.factBytes > file.size() - sizeof header)
+    refuseDamaged(path);
+  const std::string theirs(header.producer, strnlen(header.producer, sizeof header.producer));
+  if (theirs != producer)
+    refuse(path, "it was written by {}, and this is {}", theirs, producer);
+  return header;
+}
+
+void compare(const Identity &theirs, const Identity &ours, const std::string &path) {
+  const std::size_t count = std::max(theirs.dependences.size(), ours.dependences.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Dependence nothing{"nothing", "", false};
+    const Dependence &there = i < theirs.dependences.size() ? theirs.dependences[i] : nothing,
+                     &here = i < ours.dependences.size() ? ours.dependences[i] : nothing;
+    if (there.what != here.what)
+      refuse(path, "its picture depends on {}, where this one depends on {}", there.what,
+             here.what);
+    if (there.value == here.value)
+      continue;
+    if (there.isContent)
+      refuse(path, "{} has changed since it was written", here.what);
+    refuse(path, "{} is {} there and {} here", here.what, there.value, here.value);
+  }
+}
+
+template <typename Value>
+std::string_view readValues(std::string_view from, std::vector<Value> &values) {
+  const std::size_t bytes = values.size() * sizeof(Value);
+  std::memcpy(values.data(), from.data(), bytes);
+  return from.substr(bytes);
+}
+
+PixelSums readSums(std::string_view bytes, const std::string &path, std::uint64_t pixels,
+                   std::uint32_t components) {
+  PixelSums sums = PixelSums::make(pixels, components);
+  if (bytes.size() != pixels * (8 * (components + 1) + 8))
+    refuseDamaged(path);
+  bytes = readValues(bytes, sums.colors);
+  bytes = readValues(bytes, sums.squares);
+  bytes = readValues(bytes, sums.counted);
+  readValues(bytes, sums.taken);
+  for (std::size_t pixel = 0; pixel < sums.pixels(); ++pixel)
+    if (sums.counted[pixel] > sums.taken[pixel])
+      refuseDamaged(path);
+  return sums;
+}
+
+} // namespace
+
+void writeCheckpoint(const std::string &path, const Identity &identity,
+                     const PartialRendering &rendering) {
+  FactWriter facts;
+  facts.add(identity);
+  facts.add(rendering);
+  const PixelSums &sums = rendering.sums;
+  Header header{};
+  std::vector<std::string_view> parts = {bytesOf(header),       facts.bytes,
+                                         bytesOf(sums.colors),  bytesOf(sums.squares),
+                                         bytesOf(sums.counted), bytesOf(sums.taken)};
+  std::memcpy(header.magic, magic, sizeof magic);
+  header.version = formatVersion;
+  header.factBytes = std::uint32_t(facts.bytes.size());
+  for (const std::string_view part : parts)
+    header.fileBytes += part.size();
+  identity.producer.copy(header.producer, sizeof header.producer - 1);
+  std::uint64_t checksum = 0;
+  for (const std::string_view part : parts)
+    checksum = crc64(part, checksum);
+  header.checksum = checksum;
+  writeFileAtomically(path, parts);
+}
+
+PartialRendering parseCheckpoint(std::string_view bytes, const std::string &path,
+                                 const Identity &identity, std::uint64_t pixels,
+                                 std::uint32_t components) {
+  const Header header = checkFile(bytes, path, identity.producer);
+  PartialRendering rendering;
+  try {
+    FactReader facts(bytes.substr(sizeof header, header.factBytes));
+    compare(facts.readIdentity(), identity, path);
+    facts.read(rendering);
+  } catch (const Malformed &) {
+    refuseDamaged(path);
+  }
+  rendering.sums =
+      readSums(bytes.substr(sizeof header + header.factBytes), path, pixels, components);
+  return rendering;
+}
+
+} // namespace rtsl::runtime

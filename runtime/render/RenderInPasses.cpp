@@ -1,0 +1,200 @@
+//===- RenderInPasses.cpp - passes of samples, and checkpoints between them ===//
+#include "runtime/render/Backend.h"
+#include "runtime/render/Watch.h"
+#include "support/Error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace rtsl::runtime {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point from) {
+  return std::chrono::duration<double>(Clock::now() - from).count();
+}
+
+Clock::time_point after(Clock::time_point from, double seconds) {
+  constexpr double longest = 1e9; // further than any rendering, and not too far for the clock
+  return from + std::chrono::duration_cast<Clock::duration>(
+                    std::chrono::duration<double>(std::min(seconds, longest)));
+}
+
+/// While it exists, sets `stop` at a time, or when `cancel` is set.
+class Pause {
+public:
+  Pause(std::atomic<bool> &stop, const std::atomic<bool> *cancel, Clock::time_point time)
+      : stop(stop), cancel(cancel), time(time), thread([this] { run(); }) {}
+  ~Pause() {
+    {
+      std::lock_guard<std::mutex> lock(mutex);
+      isOver = true;
+    }
+    ended.notify_one();
+    thread.join();
+  }
+  Pause(const Pause &) = delete;
+  Pause &operator=(const Pause &) = delete;
+
+private:
+  void run() {
+    constexpr std::chrono::milliseconds moment(10); // to notice that it is cancelled
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!isOver && !stop) {
+      stop = Clock::now() >= time || (cancel && *cancel);
+      ended.wait_until(lock, std::min(time, Clock::now() + moment), [this] { return isOver; });
+    }
+  }
+
+  std::atomic<bool> &stop;
+  const std::atomic<bool> *cancel;
+  const Clock::time_point time;
+  std::mutex mutex;
+  std::condition_variable ended;
+  bool isOver = false;
+  std::thread thread;
+};
+
+/// Adds what a pass has met.
+void addMet(RenderStatistics &&pass, std::size_t mostNotFinite, RenderStatistics &met) {
+  met.badRays += pass.badRays;
+  met.retracedRays += pass.retracedRays;
+  met.rescaledRays += pass.rescaledRays;
+  met.raysTooDeep += pass.raysTooDeep;
+  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
+    met.exceptions[i] += pass.exceptions[i];
+  met.notFinite.insert(met.notFinite.end(), pass.notFinite.begin(), pass.notFinite.end());
+  std::sort(met.notFinite.begin(), met.notFinite.end());
+  met.notFinite.resize(std::min(met.notFinite.size(), mostNotFinite));
+}
+
+bool isGoodEnough(const PassState &state, const PassOptions &passes) {
+  return state.seconds >= passes.seconds || (passes.error > 0 && state.error <= passes.error);
+}
+
+} // namespace
+
+/// Allocates the sums of a rendering that begins.
+void Backend::takeSums(PartialRendering &rendering) {
+  if (rendering.sums.isEmpty())
+    rendering.sums = PixelSums::make(pixelCount(), channels());
+  if (rendering.sums.pixels() != pixelCount() ||
+      rendering.sums.colors.size() != pixelCount() * channels())
+    throw Error(ErrorCode::OutOfRange, "a rendering goes on only with the sums of as many pixels");
+  const std::uint32_t most = countSamples(rendering.sums).most;
+  if (most > options.samplesPerPixel)
+    throw Error(ErrorCode::OutOfRange,
+                fmt::format("the rendering has {} samples per pixel already, more than {}", most,
+                            options.samplesPerPixel));
+}
+
+/// Renders until each pixel has `samplesOfPixel` samples, or, if there are checkpoints, until it is
+/// cancelled or time for one. Gives whether the pass is done.
+bool Backend::runPass(const PassOptions &passes, Clock::time_point pause, RenderStatistics &met) {
+  std::atomic<bool> stop{false};
+  RenderOptions ofPass = options;
+  ofPass.progress = nullptr;
+  ofPass.cancel = passes.checkpoint ? &stop : nullptr;
+  begin();
+  {
+    std::optional<Pause> pausing;
+    if (passes.checkpoint)
+      pausing.emplace(stop, options.cancel, pause);
+    Watch watch(ofPass);
+    run(watch);
+  }
+  RenderStatistics said = finish();
+  const bool isDone = said.pixels == pixelCount();
+  addMet(std::move(said), options.mostNotFinite, met);
+  return isDone;
+}
+
+void Backend::runPasses(const PassOptions &passes,
+                        const std::function<void(const PassState &)> &progress,
+                        PartialRendering &rendering) {
+  PassState &state = rendering.state;
+  const SampleCounts before = countSamples(rendering.sums);
+  state.samplesPerPixel = before.least;
+  std::uint32_t next = before.most; // the end of a pass that was interrupted
+  const double secondsBefore = state.seconds;
+  const Clock::time_point start = Clock::now();
+  Clock::time_point shown = start, saved = start;
+  uploadSums();
+  do {
+    if (next == state.samplesPerPixel) {
+      const bool isAnyLeft = next < options.samplesPerPixel;
+      if (!isAnyLeft || (next > 0 && isGoodEnough(state, passes)))
+        break;
+      next += samplesOfPass(state, passes, options.samplesPerPixel);
+    }
+    samplesOfPixel = next;
+    const bool isDone =
+        runPass(passes, after(saved, passes.secondsBetweenCheckpoints), rendering.met);
+    state.seconds = secondsBefore + secondsSince(start);
+    if (isDone) {
+      const bool isMeasured = passes.error > 0 && next == nextMeasurement(state.samplesPerPixel);
+      const bool isShown = passes.picture && secondsSince(shown) >= passes.secondsBetweenPictures;
+      if (isMeasured || isShown)
+        fetchSums();
+      if (isMeasured)
+        state.error = relativeError(rendering.sums, channels());
+      state.samplesPerPixel = next;
+      if (progress)
+        progress(state);
+      if (isShown) {
+        resolve(rendering.sums, options.withoutSample, picture);
+        passes.picture(picture);
+        shown = Clock::now();
+      }
+    }
+    if (passes.checkpoint && secondsSince(saved) >= passes.secondsBetweenCheckpoints) {
+      fetchSums();
+      passes.checkpoint(rendering, false);
+      saved = Clock::now();
+    }
+  } while (!options.cancel || !*options.cancel);
+  fetchSums();
+}
+
+Image Backend::renderInPasses(const PassOptions &passes,
+                              const std::function<void(const PassState &)> &progress,
+                              PartialRendering &rendering, RenderStatistics *statistics) {
+  takeSums(rendering);
+  if (picture.pixels.empty())
+    makePicture(channels());
+  sums = &rendering.sums;
+  try {
+    runPasses(passes, progress, rendering);
+    if (passes.checkpoint)
+      passes.checkpoint(rendering, true);
+  } catch (...) {
+    sums = nullptr;
+    picture = Image();
+    throw;
+  }
+  sums = nullptr;
+  resolve(rendering.sums, options.withoutSample, picture);
+
+  RenderStatistics said = rendering.met;
+  const SampleCounts counts = countSamples(rendering.sums);
+  said.samples = counts.samples;
+  said.samplesNotFinite = counts.notFinite;
+  said.pixelsWithoutSample = counts.pixelsWithoutSample;
+  said.pixels = std::uint64_t(
+      std::count(rendering.sums.taken.begin(), rendering.sums.taken.end(), counts.most));
+  said.isUnfinished = counts.least < counts.most || counts.least == 0;
+  said.renderSeconds = rendering.state.seconds;
+  said.buildSeconds = buildSeconds;
+  if (statistics)
+    *statistics = std::move(said);
+  return std::exchange(picture, Image());
+}
+
+} // namespace rtsl::runtime

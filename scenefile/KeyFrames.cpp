@@ -1,0 +1,158 @@
+#include "scenefile/KeyFrames.h"
+
+#include "scenefile/Reader.h"
+#include "support/Error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace rtsl::scene {
+
+namespace {
+
+using Kind = JsonValue::Kind;
+
+struct Key {
+  double frame;
+  const JsonKey *name;
+  const JsonValue *value;
+};
+
+std::optional<double> numberOf(const std::string &text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number))
+    return std::nullopt;
+  return number;
+}
+
+/// Other objects may have a member, a parameter or a name that is called `frames`.
+bool isKeyFrames(const JsonValue &value) {
+  const JsonValue *frames = value.find("frames");
+  if (!frames || frames->kind != Kind::Object || frames->members.empty() ||
+      value.members.size() > (value.find("interpolate") ? 2u : 1u))
+    return false;
+  return std::any_of(frames->members.begin(), frames->members.end(),
+                     [](const auto &member) { return numberOf(member.first.text).has_value(); });
+}
+
+Place placeOf(const JsonValue &object, const Key &key) {
+  return key.value->fromOverride ? key.value->place() : object.place(*key.name);
+}
+
+std::vector<Key> keysOf(const JsonValue &frames) {
+  std::vector<Key> keys;
+  for (const auto &[name, value] : frames.members) {
+    const std::optional<double> frame = numberOf(name.text);
+    const Key key{frame.value_or(0), &name, &value};
+    if (!frame)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("a key of `frames` is the number of a frame, not `{}`", name.text),
+                  placeOf(frames, key));
+    for (const Key &other : keys)
+      if (other.frame == key.frame)
+        throw Error(ErrorCode::DuplicateKey,
+                    fmt::format("`{}` and `{}` are the same frame", other.name->text, name.text),
+                    placeOf(frames, key));
+    keys.push_back(key);
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key &a, const Key &b) { return a.frame < b.frame; });
+  return keys;
+}
+
+/// Changes the numbers of `value` to those at `share` of the way to `next`.
+void interpolate(JsonValue &value, const JsonValue &next, double share);
+
+void interpolateMembers(JsonValue &value, const JsonValue &next, double share) {
+  if (value.members.size() != next.members.size())
+    throw Error(ErrorCode::WrongType, "objects are interpolated only if they have the same keys",
+                next.place());
+  for (auto &[key, member] : value.members) {
+    const JsonValue *other = next.find(key.text);
+    if (!other)
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("this has no `{}`, which the key frame before it has: objects are "
+                              "interpolated only if they have the same keys",
+                              key.text),
+                  next.place());
+    interpolate(member, *other, share);
+  }
+}
+
+bool isSame(const JsonValue &a, const JsonValue &b) {
+  return a.kind == b.kind && a.boolean == b.boolean && a.string == b.string;
+}
+
+void interpolate(JsonValue &value, const JsonValue &next, double share) {
+  if (value.kind == Kind::Number && next.kind == Kind::Number) {
+    value.number += share * (next.number - value.number);
+    value.isInteger = value.isInteger && next.isInteger && value.number == std::floor(value.number);
+  } else if (value.kind == Kind::Array && next.kind == Kind::Array) {
+    if (value.elements.size() != next.elements.size())
+      throw Error(ErrorCode::WrongType,
+                  fmt::format("a list of {} cannot be interpolated with one of {}",
+                              value.elements.size(), next.elements.size()),
+                  next.place());
+    for (std::size_t i = 0; i < value.elements.size(); ++i)
+      interpolate(value.elements[i], next.elements[i], share);
+  } else if (value.kind == Kind::Object && next.kind == Kind::Object) {
+    interpolateMembers(value, next, share);
+  } else if (!isSame(value, next)) {
+    throw Error(ErrorCode::WrongType,
+                value.kind == next.kind
+                    ? fmt::format("{} cannot be interpolated", describe(value.kind))
+                    : fmt::format("{} cannot be interpolated with {}", describe(value.kind),
+                                  describe(next.kind)),
+                next.place())
+        .note("`\"interpolate\": \"step\"` beside `frames` makes values change at once");
+  }
+}
+
+bool isStep(const JsonValue &value) {
+  const JsonValue *how = value.find("interpolate");
+  if (!how)
+    return false;
+  expect(*how, Kind::String, "`interpolate`");
+  if (how->string != "linear" && how->string != "step")
+    throw Error(ErrorCode::OutOfRange,
+                fmt::format("`interpolate` is `linear` or `step`, not `{}`", how->string),
+                how->place());
+  return how->string == "step";
+}
+
+/// The value with the position of its key, or of the one before.
+JsonValue valueAt(const JsonValue &value, double frame) {
+  const std::vector<Key> keys = keysOf(*value.find("frames"));
+  const bool steps = isStep(value);
+  if (!steps) // whatever the frame is
+    for (std::size_t i = 1; i < keys.size(); ++i) {
+      JsonValue between = *keys[i - 1].value;
+      interpolate(between, *keys[i].value, 0.5);
+    }
+  std::size_t next = 0;
+  while (next < keys.size() && keys[next].frame <= frame)
+    ++next;
+  JsonValue found = *keys[next == 0 ? 0 : next - 1].value;
+  if (!steps && next > 0 && next < keys.size())
+    interpolate(found, *keys[next].value,
+                (frame - keys[next - 1].frame) / (keys[next].frame - keys[next - 1].frame));
+  return found;
+}
+
+} // namespace
+
+void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors) {
+  for (JsonValue &element : root.elements)
+    resolveKeyFrames(element, frame, errors);
+  for (auto &member : root.members)
+    resolveKeyFrames(member.second, frame, errors);
+  if (isKeyFrames(root))
+    errors.attempt([&] { root = valueAt(root, frame); });
+}
+
+} // namespace rtsl::scene

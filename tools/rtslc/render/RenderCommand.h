@@ -1,0 +1,55 @@
+//===- RenderCommand.h - options and parts of rtslc render -----------------===//
+#pragma once
+
+#include "CheckpointFile.h"
+#include "FrameSequence.h"
+#include "RenderTarget.h"
+#include "runtime/render/RenderOptions.h"
+#include "tools/common/PictureOptions.h"
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+struct RenderCommandOptions {
+  CommonOptions common;
+  std::string scene;     // or shaders, of which a class is shown
+  std::string className; // of that class; empty: the last
+  std::string output;
+  std::vector<std::string> overrides;
+  std::string engine; // empty: the scene's
+  std::optional<std::uint32_t> samples, depth, seed;
+  std::uint32_t threads = 0;
+  std::optional<PictureSize> size;
+  std::optional<runtime::Window> crop;
+  std::string camera;           // of the scene's `cameras`; empty: the scene's `camera`
+  std::optional<double> frame;  // empty: the scene's
+  std::optional<Frames> frames; // a picture for each
+  runtime::Traversal traversal = runtime::Traversal::Embree;
+  bool json = false;
+  bool quiet = false;
+  bool watches = false;          // for changes of files
+  std::optional<double> seconds; // --time
+  double noise = 0;              // --noise; 0: not given
+  CheckpointOptions checkpoint;
+  bool isOpenEnded() const { return seconds || noise > 0; }
+  bool isInPasses() const { return isOpenEnded() || !checkpoint.file.empty(); }
+  bool prints = false, exceptions = false;
+  runtime::PictureFormat format = runtime::PictureFormat::ByName;
+  TargetName target = TargetName::Host;
+  bool hasGpuArchitecture = false; // --gpu-arch was given
+};
+
+/// Renders unless there are errors, and gives whether a picture was written. `files` gets those that
+/// it depends on. `stop` stops the rendering; null: a signal does. The unfinished picture is written
+/// unless `--watch` was given.
+bool renderScene(const RenderCommandOptions &options, Messages &messages,
+                 const std::atomic<bool> *stop, std::vector<std::string> &files);
+
+} // namespace rtsl::tool

@@ -1,0 +1,295 @@
+//===- RenderScene.cpp - one picture of rtslc render -----------------------===//
+#include "Preview.h"
+#include "RenderCommand.h"
+#include "RenderIdentity.h"
+#include "RenderSummary.h"
+#include "runtime/program/PrintLog.h"
+#include "runtime/render/MachineStack.h"
+#include "tools/common/Interruption.h"
+#include "tools/common/OutOfMemory.h"
+#include "tools/common/Outcome.h"
+#include "tools/common/Output.h"
+#include "tools/common/Progress.h"
+#include "tools/rtslc/common/SceneShaders.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+namespace rtsl::tool {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What the command line changes in the scene: `--set`, and options that decide what is compiled.
+std::vector<std::string> overridesOf(const RenderCommandOptions &options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.engine.empty())
+    overrides.push_back("render.engine=" + options.engine);
+  if (options.depth)
+    overrides.push_back(fmt::format("render.depth={}", *options.depth));
+  if (!options.camera.empty())
+    overrides.push_back("camera=" + options.camera);
+  if (options.frame)
+    overrides.push_back(fmt::format("frame={}", *options.frame));
+  return overrides;
+}
+
+runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
+                                     const scene::RenderSettings &settings) {
+  runtime::RenderOptions render = scene::renderOptions(settings);
+  if (options.size) {
+    render.width = options.size->width;
+    render.height = options.size->height;
+  }
+  render.crop = options.crop;
+  render.samplesPerPixel = options.samples.value_or(
+      options.isOpenEnded() ? runtime::mostSamplesPerPixel : render.samplesPerPixel);
+  render.maxDepth = options.depth.value_or(render.maxDepth);
+  render.seed = options.seed.value_or(render.seed);
+  render.threads = options.threads;
+  render.traversal = options.traversal;
+  render.keepsUnfinished = true;
+  if (options.exceptions)
+    render.mostNotFinite = runtime::PrintLog::mostLines;
+  return render;
+}
+
+/// The scene of the file, or one that shows a class of it. Nothing if there are errors.
+std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &messages) {
+  if (holdsShaders(options.scene))
+    return makePreview({options.scene, options.className, overridesOf(options)}, options.common,
+                       messages);
+  return Preview{
+      readScene(options.scene, overridesOf(options), messages, "render"), options.scene, {}};
+}
+
+std::string unfinishedPassesText(const runtime::PassState &state, std::uint32_t requested,
+                                 const runtime::RenderStatistics &statistics, bool isOpenEnded) {
+  const bool isEven = statistics.pixels * state.samplesPerPixel == statistics.samples;
+  return fmt::format("stopped by {} after {}{} samples per pixel{}", interruption(),
+                     state.samplesPerPixel, isOpenEnded ? "" : fmt::format(" of {}", requested),
+                     isEven                      ? ""
+                     : state.samplesPerPixel > 0 ? "; some pixels have more"
+                                                 : "; some pixels have more, the others are black");
+}
+
+/// One picture, from its files to the file that it is written to.
+class ScenePicture {
+public:
+  ScenePicture(const RenderCommandOptions &options, Messages &messages,
+               const std::atomic<bool> *stop, std::vector<std::string> &files)
+      : options(options), messages(messages), stop(stop), files(files) {}
+
+  bool make() {
+    if (!read() || !compile())
+      return false;
+    const std::uint64_t failedBefore = runtime::failedMachineStacks();
+    const runtime::Image image = render();
+    if (options.watches && summary.statistics.isUnfinished) {
+      runtime::takePrintLog();
+      return false;
+    }
+    if (summary.statistics.samples == 0)
+      throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+    summary.printed = runtime::takePrintLog().texts(scene->program().prints);
+    std::uint64_t stackBytes = 0;
+    if (runtime::failedMachineStacks(&stackBytes) > failedBefore)
+      throw Error(
+          ErrorCode::OutOfMemory,
+          fmt::format(
+              "no memory for rays in flight: a thread needs {} bytes; give a smaller `--depth`",
+              stackBytes));
+    write(image);
+    describe();
+    return true;
+  }
+
+private:
+  /// Reads all files but meshes, images and buffers.
+  bool read() {
+    runtime::checkWritable(options.output, options.format);
+    checkOutputFiles();
+    input = readInput(options, messages);
+    if (!input)
+      return false;
+    files = withFiles(input->description, {input->file});
+    runtime::checkOptions(renderOptions(options, input->description.render));
+    target = makeRenderTarget(options.target, options.hasGpuArchitecture);
+    start = Clock::now();
+    std::vector<std::string> filesRead;
+    module =
+        loadShaders(input->description, options.common, messages, &filesRead, input->takenNames);
+    if (!module)
+      return false;
+    filesRead.front() = input->file;
+    files = withFiles(input->description, filesRead);
+    checkOutputFiles(files);
+    return true;
+  }
+
+  void checkOutputFiles(const std::vector<std::string> &filesRead = {}) const {
+    const DependencyOptions &dependencies = options.common.dependencies;
+    checkOutputs(options.output, dependencies, {options.scene}, filesRead);
+    checkCheckpointFile(options.checkpoint, options.output, dependencies, {options.scene},
+                        filesRead);
+  }
+
+  /// Compiles the shaders for the scene, and makes the scene.
+  bool compile() {
+    const scene::SceneDescription &description = input->description;
+    compileOptions = options.common.compile;
+    compileOptions.threads = options.threads;
+    request = linkRequest(description);
+    request.features |= features(options.prints, options.exceptions);
+    keep(options.common.keep, request, compileOptions);
+    if (options.common.keep.has(Item::Events) && options.target != TargetName::Gpu)
+      request.features |= RTSL_FEATURE_PRINT; // the lines are thrown away
+    scene = target->compile(*module, request, compileOptions, messages.diagnostics,
+                            [&](const auto &program) {
+                              const Clock::time_point begin = Clock::now();
+                              runtime::Scene made = scene::buildScene(description, program);
+                              summary.times.scene = secondsSince(begin);
+                              return made;
+                            });
+    if (!scene)
+      return false;
+    summary.times.compile = secondsSince(start) - summary.times.scene;
+    for (const Warning &warning : scene->warnings())
+      messages.report(warning);
+    return true;
+  }
+
+  runtime::Image render() {
+    runtime::RenderOptions &render = summary.render =
+        renderOptions(options, input->description.render);
+    render.cancel = stop ? stop : catchInterruptions();
+    Progress progress("rendering");
+    if (!options.quiet)
+      render.progress = [&](double share) { progress.update(share); };
+    const Clock::time_point begin = Clock::now();
+    const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, render);
+    const double seconds = secondsSince(begin);
+    runtime::Image image = options.isInPasses() ? renderInPasses(*backend, progress)
+                                                : backend->render(&summary.statistics);
+    if (summary.statistics.isUnfinished && summary.unfinished.empty())
+      summary.unfinished = unfinishedText(summary.statistics, render);
+    summary.statistics.buildSeconds = seconds;
+    summary.gpu = target->gpu();
+    return image;
+  }
+
+  /// The picture so far is written at intervals.
+  runtime::Image renderInPasses(runtime::Backend &backend, Progress &progress) {
+    runtime::PassOptions passes;
+    passes.seconds = options.seconds.value_or(passes.seconds);
+    passes.error = options.noise;
+    if (options.output != "-")
+      passes.picture = [&](const runtime::Image &image) {
+        try {
+          runtime::writeImage(options.output, image, options.format);
+        } catch (const Error &) { // it is reported if the last picture fails too
+        }
+      };
+    runtime::PartialRendering rendering;
+    if (!options.checkpoint.file.empty())
+      rendering = resume(passes);
+    const auto show = [&](const runtime::PassState &state) {
+      if (!options.quiet)
+        progress.update(fmt::format(
+            "{} spp, {:.0f} s{}", state.samplesPerPixel, state.seconds,
+            std::isfinite(state.error) ? fmt::format(", noise {:.4f}", state.error) : ""));
+    };
+    runtime::Image image = backend.renderInPasses(passes, show, rendering, &summary.statistics);
+    const runtime::PassState &state = rendering.state;
+    const std::uint32_t requested = summary.render.samplesPerPixel;
+    summary.statistics.isUnfinished |= !options.isOpenEnded() && state.samplesPerPixel < requested;
+    if (summary.statistics.isUnfinished)
+      summary.unfinished =
+          unfinishedPassesText(state, requested, summary.statistics, options.isOpenEnded());
+    summary.render.samplesPerPixel = state.samplesPerPixel;
+    summary.error = state.error;
+    return image;
+  }
+
+  /// The rendering of the checkpoint, if there is one already; from now on it is kept there.
+  runtime::PartialRendering resume(runtime::PassOptions &passes) {
+    const RenderInput identified{input->description, files,          messages.sources,
+                                 options.common,     summary.render, options.target,
+                                 options.exceptions};
+    checkpoint.emplace(options.checkpoint, identityOf(identified));
+    passes.secondsBetweenCheckpoints = checkpoint->seconds();
+    passes.checkpoint = [this](const runtime::PartialRendering &rendering, bool isLast) {
+      checkpoint->write(rendering, isLast);
+    };
+    runtime::PartialRendering rendering =
+        checkpoint->read(windowOf(summary.render).pixels(), scene->program().colorComponents);
+    const runtime::SampleCounts counts = countSamples(rendering.sums);
+    if (counts.most > summary.render.samplesPerPixel)
+      throw Error(ErrorCode::BadCheckpoint,
+                  fmt::format("cannot go on from `{}`: it has {} samples per pixel, more than {}",
+                              options.checkpoint.file, counts.most, summary.render.samplesPerPixel),
+                  Place{options.checkpoint.file});
+    summary.resumedAt = counts.least;
+    return rendering;
+  }
+
+  void write(const runtime::Image &image) {
+    const Clock::time_point begin = Clock::now();
+    runtime::writeImage(options.output, image, options.format);
+    writeDependencies(options.common.dependencies, options.output, {options.scene}, files);
+    summary.times.image = secondsSince(begin);
+    if (options.prints && !options.json) // there the lines are part of the document
+      printOut(summary.printed.empty() ? ""
+                                       : fmt::format("{}\n", fmt::join(summary.printed, "\n")));
+  }
+
+  /// Says what the rendering has met.
+  void describe() {
+    if (!summary.statistics.notFinite.empty())
+      try {
+        summary.notFinite = explainNotFinite(summary.statistics, *module, request, compileOptions,
+                                             *scene, summary.render, messages.diagnostics);
+      } catch (const std::exception &error) { // the picture is written, and the samples are counted
+        if (!isOutOfMemory(error))
+          throw;
+        for (const runtime::SampleId &sample : summary.statistics.notFinite)
+          summary.notFinite.push_back({sample, {}, std::nullopt});
+      }
+    warn(summary, messages);
+    if (checkpoint)
+      checkpoint->report(messages);
+    printSummary(options, summary);
+  }
+
+  const RenderCommandOptions &options;
+  Messages &messages;
+  const std::atomic<bool> *const stop;
+  std::vector<std::string> &files; // that the picture depends on
+
+  std::optional<Preview> input;
+  std::unique_ptr<RenderTarget> target; // outlives the scene's backend
+  std::unique_ptr<typed::Module> module;
+  CompileOptions compileOptions;
+  LinkRequest request;
+  std::optional<runtime::Scene> scene;
+  std::optional<CheckpointFile> checkpoint;
+  Clock::time_point start; // of compiling
+  PictureSummary summary;
+};
+
+} // namespace
+
+bool renderScene(const RenderCommandOptions &options, Messages &messages,
+                 const std::atomic<bool> *stop, std::vector<std::string> &files) {
+  return ScenePicture(options, messages, stop, files).make();
+}
+
+} // namespace rtsl::tool

@@ -1,0 +1,145 @@
+#include "RenderSummary.h"
+
+#include "tools/common/Interruption.h"
+#include "tools/common/Outcome.h"
+#include "tools/common/Output.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rtsl::tool {
+
+namespace {
+
+/// What samples met, by RTSL_EXCEPTION_*.
+constexpr const char *exceptionNames[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};
+
+nlohmann::ordered_json toJson(const SampleNotFinite &one) {
+  // JSON has no numbers that are not finite
+  nlohmann::ordered_json color = nlohmann::ordered_json::array();
+  for (const float value : one.color)
+    color.push_back(std::isfinite(value) ? nlohmann::ordered_json(value)
+                    : std::isnan(value)  ? nlohmann::ordered_json("nan")
+                                         : nlohmann::ordered_json(value > 0 ? "inf" : "-inf"));
+  nlohmann::ordered_json document = {
+      {"pixel", {one.sample.x, one.sample.y}}, {"sample", one.sample.sample}, {"color", color}};
+  if (one.place)
+    document["place"] = {
+        {"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
+  return document;
+}
+
+nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
+  return {{"device", gpu.device},
+          {"registers", gpu.registers},
+          {"localBytes", gpu.localBytes},
+          {"blocks", gpu.blocks},
+          {"threadsPerBlock", gpu.threadsPerBlock},
+          {"laneBytes", gpu.laneBytes},
+          {"loadSeconds", gpu.loadSeconds},
+          {"uploadSeconds", gpu.uploadSeconds}};
+}
+
+std::string toJson(const RenderCommandOptions &options, const PictureSummary &summary) {
+  const runtime::RenderOptions &render = summary.render;
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  nlohmann::ordered_json document = {{"version", 1},
+                                     {"output", options.output},
+                                     {"size", {render.width, render.height}},
+                                     {"spp", render.samplesPerPixel},
+                                     {"seed", render.seed},
+                                     {"seconds",
+                                      {{"compile", summary.times.compile},
+                                       {"scene", summary.times.scene},
+                                       {"build", statistics.buildSeconds},
+                                       {"render", statistics.renderSeconds},
+                                       {"image", summary.times.image}}},
+                                     {"samples", statistics.samples},
+                                     {"pixels", statistics.pixels},
+                                     {"badRays", statistics.badRays},
+                                     {"retracedRays", statistics.retracedRays},
+                                     {"rescaledRays", statistics.rescaledRays},
+                                     {"raysTooDeep", statistics.raysTooDeep},
+                                     {"samplesNotFinite", statistics.samplesNotFinite},
+                                     {"pixelsWithoutSample", statistics.pixelsWithoutSample},
+                                     {"notFinite", nlohmann::ordered_json::array()}};
+  for (const SampleNotFinite &one : summary.notFinite)
+    document["notFinite"].push_back(toJson(one));
+  if (std::isfinite(summary.error))
+    document["noise"] = summary.error;
+  if (summary.resumedAt)
+    document["resumedAt"] = summary.resumedAt;
+  if (statistics.isUnfinished || (options.isInPasses() && interruption()))
+    document["stoppedBy"] = interruption();
+  if (options.prints)
+    document["printed"] = summary.printed;
+  for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
+    if (statistics.exceptions[i])
+      document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
+  if (summary.gpu)
+    document["gpu"] = toJson(*summary.gpu);
+  return document.dump(2) + "\n";
+}
+
+} // namespace
+
+void printSummary(const RenderCommandOptions &options, const PictureSummary &summary) {
+  const runtime::RenderOptions &render = summary.render;
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  if (options.json)
+    return printOut(toJson(options, summary));
+  if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
+    return;
+  fmt::print(
+      stderr,
+      "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
+      options.output == "-" ? "standard output" : options.output, render.width, render.height,
+      render.samplesPerPixel, summary.times.compile * 1e3, statistics.renderSeconds,
+      double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  if (summary.resumedAt)
+    fmt::print(stderr, "resumed at {} spp\n", summary.resumedAt);
+  if (std::isfinite(summary.error))
+    fmt::print(stderr, "noise: {:.4g}\n", summary.error);
+  if (summary.gpu)
+    fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
+  for (const std::string &text : exceptionTexts(statistics, render))
+    fmt::print(stderr, "{}\n", text);
+  if (statistics.badRays)
+    fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
+               statistics.badRays);
+}
+
+void warn(const PictureSummary &summary, Messages &messages) {
+  const runtime::RenderStatistics &statistics = summary.statistics;
+  if (!summary.unfinished.empty())
+    messages.diagnostics.report(Code::unfinishedPicture, {}, summary.unfinished);
+  if (statistics.samplesNotFinite) {
+    SourceRange range;
+    for (const SampleNotFinite &one : summary.notFinite)
+      if (one.place && !range.isValid())
+        range = messages.rangeOf(*one.place);
+    Diagnostic &diagnostic =
+        messages.diagnostics.report(Code::samplesNotFinite, range, notFiniteText(statistics));
+    for (const SampleNotFinite &one : summary.notFinite) {
+      const auto isNan = [](float value) { return std::isnan(value); };
+      const char *const what = one.color.empty() ? "not finite"
+                               : std::any_of(one.color.begin(), one.color.end(), isNan)
+                                   ? "not a number"
+                                   : "infinite";
+      const std::string place = one.place ? fmt::format("since {}:{}:{}", one.place->file,
+                                                        one.place->line, one.place->column)
+                                          : "and the source line was not found";
+      diagnostic.note(fmt::format("{} is {}, {}", sampleText(one.sample), what, place));
+    }
+    if (statistics.samplesNotFinite > summary.notFinite.size())
+      diagnostic.note(fmt::format("and {} more samples",
+                                  statistics.samplesNotFinite - summary.notFinite.size()));
+  }
+  if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
+    messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
+}
+
+} // namespace rtsl::tool
