@@ -10,7 +10,7 @@ namespace {
 struct LibraryEngine {
   const char *name;
   const char *className;
-  const char *limit; // the member that limits the rays of a path; null: there is none
+  const char *limit; // the member that limits the rays of a path; null: it is a view
 };
 constexpr LibraryEngine engines[] = {
     {"path", "PathTracer", "bounces"},   {"occlusion", "OcclusionView", nullptr},
@@ -35,13 +35,21 @@ void import(SceneDescription &scene, const std::string &module, const Place &pla
 
 } // namespace
 
+static std::vector<std::string> namesOfEngines(bool areViews) {
+  std::vector<std::string> names;
+  for (const LibraryEngine &engine : engines)
+    if (!areViews || !engine.limit)
+      names.emplace_back(engine.name);
+  return names;
+}
+
 const std::vector<std::string> &libraryEngines() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const LibraryEngine &engine : engines)
-      all.emplace_back(engine.name);
-    return all;
-  }();
+  static const std::vector<std::string> names = namesOfEngines(false);
+  return names;
+}
+
+const std::vector<std::string> &libraryViews() {
+  static const std::vector<std::string> names = namesOfEngines(true);
   return names;
 }
 

@@ -11,6 +11,9 @@ namespace rtsl::scene {
 /// The names that `"engine"` may have for engines that are RTSL classes: "path", "normals", ...
 const std::vector<std::string> &libraryEngines();
 
+/// Those of them that show one property of what is seen: "normals", ...
+const std::vector<std::string> &libraryViews();
+
 /// Makes a scene for one of these engines the same for the engine `programs`: imports its class,
 /// whose object generates the rays unless the scene names an object of that class itself, to set its
 /// members; sets a limit of rays to the scene's `depth`; and makes a background color an object that

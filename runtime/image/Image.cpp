@@ -82,6 +82,10 @@ void writeImage(const std::string &path, const Image &image, PictureFormat forma
                                                          : encodeExr(image, {}, path));
 }
 
+bool isExr(const std::string &path, PictureFormat format) {
+  return formatOf(path, format) == PictureFormat::Exr;
+}
+
 void writeLayers(const std::string &path, const Image &image, const std::vector<Layer> &layers) {
   writeFileAtomically(path, encodeExr(image, layers, path));
 }

@@ -7,43 +7,11 @@ import struct
 import subprocess
 import time
 import unittest
-import zlib
 
+from exr_files import attributes, channels
 from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
 
 SMALL = ("--size", "50x37")  # not whole tiles
-
-
-def attributes(data):
-    """Those of an EXR file with one part."""
-    found, at = {}, 8
-    while data[at]:
-        name, at = data[at:data.index(0, at)].decode(), data.index(0, at) + 1
-        at = data.index(0, at) + 1
-        size = struct.unpack_from("<i", data, at)[0]
-        found[name] = data[at + 4:at + 4 + size]
-        at += 4 + size
-    return found
-
-
-def end_of_header(data):
-    at = 8
-    while data[at]:
-        at = data.index(0, data.index(0, at) + 1) + 1
-        at += 4 + struct.unpack_from("<i", data, at)[0]
-    return at + 1
-
-
-def unpacked(packed):
-    """A block of ZIP compression: differences of bytes, those with an even index first."""
-    differences = zlib.decompress(packed)
-    summed = bytearray(differences[:1])
-    for difference in differences[1:]:
-        summed.append((summed[-1] + difference - 128) % 256)
-    half = (len(summed) + 1) // 2
-    flat = bytearray(len(summed))
-    flat[0::2], flat[1::2] = summed[:half], summed[half:]
-    return bytes(flat)
 
 
 class Parts(Case):
@@ -67,29 +35,17 @@ class Parts(Case):
 
 
 class Crop(Parts):
-    def cut(self, name, x0, y0, x1, y1):
-        """The pixels of a picture that lie in a part of it."""
-        return [row[x0:x1] for row in self.pixels(name)[y0:y1]]
-
     def pixels(self, name):
         """The bits of each pixel: rows of (B, G, R)."""
         data = (self.folder / name).read_bytes()
-        left, top, right, bottom = struct.unpack("<4i", attributes(data)["dataWindow"])
-        width, height = right - left + 1, bottom - top + 1
-        blocks = (height + 15) // 16  # of ZIP compression
-        rows = []
-        for block, offset in enumerate(struct.unpack_from(f"<{blocks}q", data, end_of_header(data))):
-            first, size = struct.unpack_from("<ii", data, offset)
-            self.assertEqual(first, top + 16 * block)
-            lines = min(16, height - 16 * block)
-            packed, length = data[offset + 8:offset + 8 + size], lines * width * 3 * 4
-            flat = packed if size == length else unpacked(packed)
-            self.assertEqual(len(flat), length)
-            words = struct.unpack(f"<{length // 4}I", flat)
-            for line in range(lines):
-                planes = [words[(3 * line + c) * width:(3 * line + c + 1) * width] for c in range(3)]
-                rows.append(list(zip(*planes)))
-        return rows
+        left, _, right, _ = struct.unpack("<4i", attributes(data)["dataWindow"])
+        width = right - left + 1
+        pixels = list(zip(*channels(data).values()))
+        return [pixels[i:i + width] for i in range(0, len(pixels), width)]
+
+    def cut(self, name, x0, y0, x1, y1):
+        """The pixels of a picture that lie in a part of it."""
+        return [row[x0:x1] for row in self.pixels(name)[y0:y1]]
 
     def test_it_has_the_bits_of_the_whole_picture(self):
         for way in ([], ["--traversal=device", "--threads=1"], ["--target=host-megakernel"], ["--time=5m"], ["--trace=split"]):

@@ -3,6 +3,8 @@
 
 #include "Preview.h"
 #include "RenderOnChange.h"
+#include "runtime/image/Layers.h"
+#include "scenefile/LibraryEngines.h"
 #include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
@@ -137,6 +139,27 @@ void rejectInPasses(const RenderCommandOptions &options) {
                                                "printed; leave out `--print`");
 }
 
+/// Adds --aov.
+void addAovOption(CLI::App &command, std::vector<std::string> &aovs) {
+  const std::vector<std::string> &views = scene::libraryViews();
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--aov",
+          [&aovs, views](const std::vector<std::string> &names) {
+            for (const std::string &name : names) {
+              if (std::find(views.begin(), views.end(), name) == views.end())
+                refuseWord("--aov", name, views);
+              if (std::find(aovs.begin(), aovs.end(), name) == aovs.end())
+                aovs.push_back(name);
+            }
+          },
+          "views that are rendered too, as layers of an EXR picture; several between commas")
+      ->type_name(joined(views))
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
 /// Rejects options that a GPU cannot support.
 void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
   if (options.prints)
@@ -188,6 +211,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
       ->add_option("--engine", options->engine,
                    "classic, path, programs; or a view: normals, depth, id, albedo, occlusion")
       ->type_name("NAME");
+  addAovOption(*command, options->aovs);
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
   addTraversalOption(*command, options->traversal);
@@ -233,6 +257,9 @@ void addRenderCommand(CLI::App &app, Action &action) {
         options->common.compile.optimization = optimizationOfWatch;
     }
     checkPictureName(options->output, options->format);
+    if (!options->aovs.empty() && !runtime::isExr(options->output, options->format))
+      throw CLI::ValidationError("--aov", "only EXR files have layers; give a name that ends in "
+                                          ".exr, or `--format=exr`");
     if (options->target == TargetName::Gpu)
       rejectWithoutGpuSupport(*options);
     if (options->target != TargetName::Host)

@@ -23,7 +23,8 @@ struct RenderCommandOptions {
   std::string className; // of that class; empty: the last
   std::string output;
   std::vector<std::string> overrides;
-  std::string engine; // empty: the scene's
+  std::string engine;            // empty: the scene's
+  std::vector<std::string> aovs; // views that become layers of the picture
   std::optional<std::uint32_t> samples, depth, seed;
   std::uint32_t threads = 0;
   std::optional<PictureSize> size;

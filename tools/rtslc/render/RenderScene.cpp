@@ -3,6 +3,7 @@
 #include "RenderCommand.h"
 #include "RenderIdentity.h"
 #include "RenderSummary.h"
+#include "runtime/image/Layers.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
 #include "tools/common/Interruption.h"
@@ -71,14 +72,31 @@ std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &
       readScene(options.scene, overridesOf(options), messages, "render"), options.scene, {}};
 }
 
+const char *nameOfStop() {
+  const char *const signal = interruption();
+  return signal ? signal : "the caller";
+}
+
 std::string unfinishedPassesText(const runtime::PassState &state, std::uint32_t requested,
                                  const runtime::RenderStatistics &statistics, bool isOpenEnded) {
   const bool isEven = statistics.pixels * state.samplesPerPixel == statistics.samples;
-  return fmt::format("stopped by {} after {}{} samples per pixel{}", interruption(),
+  return fmt::format("stopped by {} after {}{} samples per pixel{}", nameOfStop(),
                      state.samplesPerPixel, isOpenEnded ? "" : fmt::format(" of {}", requested),
                      isEven                      ? ""
                      : state.samplesPerPixel > 0 ? "; some pixels have more"
                                                  : "; some pixels have more, the others are black");
+}
+
+/// A distance is one number, the same in all components.
+runtime::Layer layerOf(const std::string &view, runtime::Image image) {
+  if (view != "depth")
+    return {view, {}, std::move(image)};
+  runtime::Image distances = image;
+  distances.channels = 1;
+  distances.pixels.resize(std::size_t(image.width) * image.height);
+  for (std::size_t i = 0; i < distances.pixels.size(); ++i)
+    distances.pixels[i] = image.pixels[i * image.channels];
+  return {view, {"Z"}, std::move(distances)};
 }
 
 /// One picture, from its files to the file that it is written to.
@@ -89,11 +107,12 @@ public:
       : options(options), messages(messages), stop(stop), files(files) {}
 
   bool make() {
-    if (!read() || !compile())
+    if (!read() || !compile() || !compileViews())
       return false;
     const std::uint64_t failedBefore = runtime::failedMachineStacks();
-    const runtime::Image image = render();
-    if (options.watches && summary.statistics.isUnfinished) {
+    const runtime::Image image = render("rendering");
+    const std::vector<runtime::Layer> layers = renderViews();
+    if (options.watches && !summary.unfinished.empty()) {
       runtime::takePrintLog();
       return false;
     }
@@ -107,12 +126,67 @@ public:
           fmt::format(
               "no memory for rays in flight: a thread needs {} bytes; give a smaller `--depth`",
               stackBytes));
-    write(image);
+    write(image, layers);
     describe();
     return true;
   }
 
 private:
+  /// A view of --aov: a picture of its own, with the samples of the main one.
+  struct View {
+    View(const RenderCommandOptions &options, Messages &messages, const std::atomic<bool> *stop)
+        : options(options),
+          picture(std::make_unique<ScenePicture>(this->options, messages, stop, files)) {}
+
+    const RenderCommandOptions options;
+    std::vector<std::string> files;
+    const std::unique_ptr<ScenePicture> picture;
+  };
+
+  /// Before the picture is rendered, for their programs may have mistakes.
+  bool compileViews() {
+    for (const std::string &name : options.aovs) {
+      RenderCommandOptions ofView = options;
+      ofView.engine = name;
+      ofView.aovs.clear();
+      ofView.seconds.reset();
+      ofView.noise = 0;
+      ofView.checkpoint = {};
+      ofView.prints = false;
+      views.push_back(std::make_unique<View>(ofView, messages, stop));
+      if (!views.back()->picture->read() || !views.back()->picture->compile())
+        return false;
+    }
+    return true;
+  }
+
+  /// Those that are complete.
+  std::vector<runtime::Layer> renderViews() {
+    std::vector<runtime::Layer> layers;
+    std::string missing;
+    for (const auto &view : views) {
+      const std::string &name = view->options.engine;
+      ScenePicture &picture = *view->picture;
+      if (!isStopped()) {
+        picture.samples = summary.render.samplesPerPixel;
+        runtime::Image image = picture.render("rendering " + name);
+        if (!picture.summary.statistics.isUnfinished) {
+          layers.push_back(layerOf(name, std::move(image)));
+          continue;
+        }
+      }
+      missing += (missing.empty() ? "`" : ", `") + name + "`";
+    }
+    if (!missing.empty())
+      summary.unfinished += summary.unfinished.empty()
+                                ? fmt::format("stopped by {} before the picture had the layers {}",
+                                              nameOfStop(), missing)
+                                : fmt::format("; the picture has no layers {}", missing);
+    return layers;
+  }
+
+  bool isStopped() const { return stop ? stop->load() : interruption() != nullptr; }
+
   /// Reads all files but meshes, images and buffers.
   bool read() {
     runtime::checkWritable(options.output, options.format);
@@ -167,11 +241,12 @@ private:
     return true;
   }
 
-  runtime::Image render() {
+  runtime::Image render(const std::string &what) {
     runtime::RenderOptions &render = summary.render =
         renderOptions(options, input->description.render);
+    render.samplesPerPixel = samples.value_or(render.samplesPerPixel);
     render.cancel = stop ? stop : catchInterruptions();
-    Progress progress("rendering");
+    Progress progress(what);
     if (!options.quiet)
       render.progress = [&](double share) { progress.update(share); };
     const Clock::time_point begin = Clock::now();
@@ -241,9 +316,12 @@ private:
     return rendering;
   }
 
-  void write(const runtime::Image &image) {
+  void write(const runtime::Image &image, const std::vector<runtime::Layer> &layers) {
     const Clock::time_point begin = Clock::now();
-    runtime::writeImage(options.output, image, options.format);
+    if (layers.empty())
+      runtime::writeImage(options.output, image, options.format);
+    else
+      runtime::writeLayers(options.output, image, layers);
     writeDependencies(options.common.dependencies, options.output, {options.scene}, files);
     summary.times.image = secondsSince(begin);
     if (options.prints && !options.json) // there the lines are part of the document
@@ -281,7 +359,9 @@ private:
   LinkRequest request;
   std::optional<runtime::Scene> scene;
   std::optional<CheckpointFile> checkpoint;
-  Clock::time_point start; // of compiling
+  std::vector<std::unique_ptr<View>> views;
+  std::optional<std::uint32_t> samples; // of a view: per pixel
+  Clock::time_point start;              // of compiling
   PictureSummary summary;
 };
 
