@@ -47,7 +47,7 @@ TEST(Random, WhatTracesInTheIrMayTrace) {
     CompileOptions options;
     options.colorComponents = colorComponents(seed);
     const auto context = driver::makeContext();
-    const auto ir = driver::lowerModule(*module, options, {}, diagnostics, *context);
+    const auto ir = driver::lowerModule(*module, options, {}, nullptr, diagnostics, *context);
     ASSERT_TRUE(linkModule(*ir, *module, diagnostics, FloatingPoint::Strict)) << "seed " << seed;
     for (mlir::func::FuncOp function : continuation::tracingFunctions(*ir)) {
       const auto owner = ir::attr::className.of(function);
