@@ -42,6 +42,8 @@ public:
       if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
         scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration", true));
     });
+    if (description.shutter)
+      scene.setShutter((*description.shutter)[0], (*description.shutter)[1]);
     // Named objects are created in the order of their names, after those that they refer to. With
     // variables, what is used below a node is another object than what is used elsewhere.
     if (!variables.any())
@@ -504,18 +506,26 @@ private:
                 name.place);
   }
 
-  /// Objects with the same file and the same transform share its mesh.
+  /// The mention of the file that an error of loading a mesh is about.
+  static Place placeOfMesh(const GeometryDescription &geometry, const Error &error) {
+    for (const MeshPath &key : geometry.mesh)
+      if (error.place && error.place->file == key.path)
+        return key.name.place;
+    return geometry.mesh[0].name.place;
+  }
+
+  /// Objects with the same files and the same transform share its mesh.
   std::uint32_t mesh(const GeometryDescription &geometry) {
     const std::size_t number = files.numberOf(geometry);
     auto found = meshes.find(number);
     if (found != meshes.end())
       return found->second;
     try {
-      return meshes[number] =
-                 scene.addMesh(files.take(number),
-                               geometry.name.text.empty() ? geometry.meshPath : geometry.name.text);
+      return meshes[number] = scene.addMesh(files.take(number), geometry.name.text.empty()
+                                                                    ? geometry.mesh[0].path
+                                                                    : geometry.name.text);
     } catch (Error &error) {
-      error.place = geometry.mesh.place;
+      error.place = placeOfMesh(geometry, error);
       throw;
     }
   }

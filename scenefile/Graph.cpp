@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <tuple>
 #include <unordered_map>
@@ -19,8 +18,8 @@ namespace rtsl::scene {
 namespace {
 
 using Kind = JsonValue::Kind;
+using runtime::MovingTransform;
 using runtime::Placement;
-using runtime::Transform;
 
 /// An instance takes about 250 bytes of memory.
 constexpr std::uint64_t mostInstances = std::uint64_t(1) << 26;
@@ -39,7 +38,7 @@ struct Edge {
 struct Node {
   std::string name; // for messages
   Place place;
-  Transform transform;
+  MovingTransform transform;
   Place transformPlace; // if it has one
   std::vector<Edge> children;
   std::optional<GeometryDescription> geometry;
@@ -49,6 +48,16 @@ struct Node {
   std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
   bool isReported = false;     // its transform
 };
+
+/// The largest condition number of a transform, at its keys and some times between them.
+double worstCondition(const MovingTransform &transform) {
+  if (!transform.moves())
+    return runtime::invertLinear(transform.still()).condition;
+  double worst = 0;
+  for (const double time : timesToCheck(transform))
+    worst = std::max(worst, runtime::invertLinear(transform.at(time)).condition);
+  return worst;
+}
 
 class GraphReader {
 public:
@@ -291,7 +300,7 @@ private:
       path.push_back({node, 0, way});
       if (!nodes[node].geometry)
         return;
-      if (runtime::invertLinear(way.transform).condition <= runtime::largestCondition) {
+      if (worstCondition(way.transform) <= runtime::largestCondition) {
         place(*nodes[node].geometry, way);
         return;
       }
@@ -338,9 +347,7 @@ private:
     }
   }
 
-  double flatness(std::size_t node) const {
-    return runtime::invertLinear(nodes[node].transform).condition;
-  }
+  double flatness(std::size_t node) const { return worstCondition(nodes[node].transform); }
 
   /// The transforms above the geometry flatten it, or nearly so; `worst` has the one to blame. Said
   /// once.
@@ -374,10 +381,9 @@ private:
     geometry.placements.push_back(way);
   }
 
-  using Key = std::tuple<std::array<std::array<double, 3>, 4>, std::int32_t, std::size_t,
-                         const VariableScope *>;
+  using Key = std::tuple<MovingTransform, std::int32_t, std::size_t, const VariableScope *>;
   static Key keyOf(const InstanceDescription &instance) {
-    return {instance.transform.columns, instance.id, instance.selector, instance.scope};
+    return {instance.transform, instance.id, instance.selector, instance.scope};
   }
 
   void warnOfUnused(const JsonValue *named) {

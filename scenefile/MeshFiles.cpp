@@ -5,15 +5,13 @@
 namespace rtsl::scene {
 
 using runtime::Mesh;
-using runtime::Transform;
 
 namespace {
 
-/// A mesh file with the transform of its objects.
-struct Placement {
-  std::size_t file;
-  const Transform *transform;
-  bool isBarycentric;
+/// A mesh of an object, and the numbers of its files, one for each key.
+struct Use {
+  std::vector<std::size_t> files;
+  const GeometryDescription *geometry;
 };
 
 } // namespace
@@ -21,18 +19,21 @@ struct Placement {
 MeshFiles::MeshFiles(const SceneDescription &description) {
   std::map<std::string, std::size_t> fileNumbers;
   std::vector<const std::string *> paths;
-  std::vector<std::size_t> uses; // placements of each file
-  std::vector<Placement> placements;
+  std::vector<std::size_t> useCounts; // of each file
+  std::vector<Use> uses;
   for (const GeometryDescription &geometry : description.objects) {
     if (geometry.primitive || !numbers.emplace(keyOf(geometry), numbers.size()).second)
       continue;
-    const auto [file, isNew] = fileNumbers.emplace(geometry.meshPath, paths.size());
-    if (isNew) {
-      paths.push_back(&geometry.meshPath);
-      uses.push_back(0);
+    uses.push_back({{}, &geometry});
+    for (const MeshPath &key : geometry.mesh) {
+      const auto [file, isNew] = fileNumbers.emplace(key.path, paths.size());
+      if (isNew) {
+        paths.push_back(&key.path);
+        useCounts.push_back(0);
+      }
+      ++useCounts[file->second];
+      uses.back().files.push_back(file->second);
     }
-    ++uses[file->second];
-    placements.push_back({file->second, &geometry.transform, geometry.isBarycentric});
   }
 
   std::vector<Result> files(paths.size());
@@ -43,18 +44,29 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
       files[i].failure = std::current_exception();
     }
   });
-  results.resize(placements.size());
+  results.resize(uses.size());
   forEachOnThreads(0, results.size(), [&](std::size_t i) {
-    Result &file = files[placements[i].file], &result = results[i];
+    const GeometryDescription &geometry = *uses[i].geometry;
+    Result &result = results[i];
     try {
-      result.failure = file.failure;
-      if (uses[placements[i].file] == 1)
-        result.mesh = std::move(file.mesh);
-      else
-        result.mesh = file.mesh;
-      if (placements[i].isBarycentric)
+      std::vector<Mesh> keys;
+      std::vector<std::string> names;
+      for (const std::size_t number : uses[i].files) {
+        Result &file = files[number];
+        if (file.failure)
+          std::rethrow_exception(file.failure);
+        if (useCounts[number] == 1)
+          keys.push_back(std::move(file.mesh));
+        else
+          keys.push_back(file.mesh);
+        names.push_back(*paths[number]);
+      }
+      result.mesh = keys.size() == 1
+                        ? std::move(keys.front())
+                        : runtime::movingMesh(std::move(keys), geometry.meshTimes, names);
+      if (geometry.isBarycentric)
         result.mesh.uvs.clear();
-      result.mesh.apply(*placements[i].transform);
+      result.mesh.apply(geometry.transform);
     } catch (...) {
       result.failure = std::current_exception();
     }
@@ -62,7 +74,10 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
 }
 
 MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
-  return {geometry.meshPath, geometry.transform.columns, geometry.isBarycentric};
+  std::vector<std::string> paths;
+  for (const MeshPath &key : geometry.mesh)
+    paths.push_back(key.path);
+  return {std::move(paths), geometry.meshTimes, geometry.transform.columns, geometry.isBarycentric};
 }
 
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {

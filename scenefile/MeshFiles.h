@@ -14,7 +14,7 @@
 namespace rtsl::scene {
 
 /// Reads each mesh file of a scene once and applies the transforms of its objects, on all cores.
-/// Objects with the same file and transform share a mesh.
+/// Objects with the same files and transform share a mesh.
 class MeshFiles {
 public:
   explicit MeshFiles(const SceneDescription &description);
@@ -32,7 +32,8 @@ private:
     std::exception_ptr failure;
   };
 
-  using Key = std::tuple<std::string, decltype(runtime::Transform::columns), bool>;
+  using Key = std::tuple<std::vector<std::string>, std::vector<float>,
+                         decltype(runtime::Transform::columns), bool>;
   static Key keyOf(const GeometryDescription &geometry);
 
   std::map<Key, std::size_t> numbers;

@@ -151,7 +151,8 @@ std::vector<std::string> filesOf(const SceneDescription &description) {
       files.push_back(file);
   };
   for (const GeometryDescription &geometry : description.objects)
-    add(geometry.meshPath);
+    for (const MeshPath &key : geometry.mesh)
+      add(key.path);
   for (const auto &image : description.imageValues)
     for (const std::string &file : image.second.files)
       add(file);

@@ -3,6 +3,7 @@
 
 #include "scenefile/Graph.h"
 #include "scenefile/KeyFrames.h"
+#include "scenefile/KeyTimes.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
@@ -16,6 +17,7 @@
 #include <filesystem>
 #include <optional>
 #include <set>
+#include <utility>
 
 namespace rtsl::scene {
 
@@ -362,7 +364,8 @@ private:
     return reference;
   }
 
-  /// An element of `objects`: one instance. The vertices of a mesh are transformed.
+  /// An element of `objects`: one instance. The vertices of a mesh are transformed, unless the
+  /// transform moves.
   GeometryDescription readObjectOfList(const JsonValue &value) {
     expect(value, Kind::Object, "an element of `objects`");
     GeometryDescription geometry = readGeometry(value, "an object");
@@ -376,7 +379,9 @@ private:
     });
     errors.attempt([&] {
       if (const JsonValue *transform = value.find("transform"))
-        (geometry.primitive ? placement.transform : geometry.transform) = readTransform(*transform);
+        placement.transform = readTransform(*transform);
+      if (!geometry.primitive && !placement.transform.moves())
+        geometry.transform = std::exchange(placement.transform, {}).still();
     });
     geometry.placements.push_back(placement);
     return geometry;
@@ -412,9 +417,9 @@ private:
     const JsonValue *count = value.find("count");
     if (!count)
       return;
-    if (geometry.meshPath.empty() && count->kind == Kind::String)
+    if (geometry.mesh.empty() && count->kind == Kind::String)
       geometry.count = count;
-    else if (geometry.meshPath.empty() && readInteger(*count, 1, 0x7fffffff, "`count`"))
+    else if (geometry.mesh.empty() && readInteger(*count, 1, 0x7fffffff, "`count`"))
       geometry.count = count;
     else
       throw Error(ErrorCode::UnknownKey, "`count` is for a `primitive`: a mesh has its triangles",
@@ -433,9 +438,7 @@ private:
     if (primitive)
       geometry.primitive = readObject(*primitive, "`primitive`");
     if (mesh) {
-      expect(*mesh, Kind::String, "`mesh`");
-      geometry.mesh = {mesh->string, mesh->place()};
-      geometry.meshPath = resolve(*mesh);
+      readMesh(*mesh, geometry);
       if (const JsonValue *coordinates = value.find("textureCoordinates")) {
         expect(*coordinates, Kind::String, "`textureCoordinates`");
         if (coordinates->string != "file" && coordinates->string != "barycentric")
@@ -446,6 +449,34 @@ private:
         geometry.isBarycentric = coordinates->string == "barycentric";
       }
     }
+  }
+
+  /// The path of a file, or {"keys": [paths], "times": [...]}.
+  void readMesh(const JsonValue &value, GeometryDescription &geometry) const {
+    const auto add = [&](const JsonValue &path) {
+      geometry.mesh.push_back({{path.string, path.place()}, resolve(path)});
+    };
+    if (value.kind != Kind::Object) {
+      expect(value, Kind::String, "`mesh`");
+      add(value);
+      return;
+    }
+    checkKeys(value, {"keys", "times"}, "`mesh` with keys");
+    geometry.meshTimes = readKeyTimes(value, "a mesh");
+    for (const JsonValue &key : value.find("keys")->elements) {
+      expect(key, Kind::String, "a key of a mesh");
+      add(key);
+    }
+  }
+
+  /// When the shutter opens and closes.
+  void readShutter(const JsonValue &value) {
+    const std::vector<double> times = readNumbers(value, 2, "`shutter`");
+    if (!(0 <= times[0] && times[0] <= times[1] && times[1] <= 1))
+      throw Error(ErrorCode::OutOfRange,
+                  "`shutter` is two times from 0 to 1: when it opens, and when it closes",
+                  value.place());
+    scene.shutter = {float(times[0]), float(times[1])};
   }
 
   /// A number or a list of numbers; the program determines how many.
@@ -463,7 +494,9 @@ private:
 
   void readRender(const JsonValue &value) {
     expect(value, Kind::Object, "`render`");
-    checkKeys(value, {"engine", "size", "spp", "depth", "seed"}, "`render`");
+    checkKeys(value, {"engine", "size", "spp", "depth", "seed", "shutter"}, "`render`");
+    if (const JsonValue *shutter = value.find("shutter"))
+      readShutter(*shutter);
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");

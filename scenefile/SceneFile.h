@@ -79,7 +79,7 @@ struct VariableScope {
 struct SelectorDescription {
   ReferenceDescription object; // of an rt_Selector class
   std::uint32_t children = 0;
-  runtime::Transform toWorld;
+  runtime::MovingTransform toWorld;
   std::size_t above = 0; // 1 + the index of the selector above it; 0: none
   std::uint32_t childOfAbove = 0;
   const VariableScope *scope = nullptr;
@@ -91,16 +91,22 @@ struct InstanceDescription : runtime::Placement {
   std::uint32_t childOfSelector = 0;
 };
 
+/// The file of a mesh.
+struct MeshPath {
+  LocatedName name; // as written
+  std::string path; // resolved
+};
+
 /// A mesh or a primitive with a material, and its instances.
 struct GeometryDescription {
   LocatedName name;                           // for messages; empty text: none
   std::optional<ObjectDescription> primitive; // or
-  LocatedName mesh;                           // path as written
-  std::string meshPath;                       // resolved
+  std::vector<MeshPath> mesh;                 // of a mesh: its keys, or its only file
+  std::vector<float> meshTimes;               // of several keys
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
   ReferenceDescription material;
-  runtime::Transform transform; // of the vertices of a mesh in `objects`
+  runtime::Transform transform; // of the vertices of a mesh in `objects`, unless it moves
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
   std::optional<std::int32_t> id;
   const JsonValue *count = nullptr; // of primitives: a number, or the name of a buffer member
@@ -155,6 +161,7 @@ struct SceneDescription {
   const JsonValue *backgroundColor = nullptr;  // or a color
   const JsonValue *ambient = nullptr;
   RenderSettings render;
+  std::optional<std::array<float, 2>> shutter; // `render.shutter`: when it opens and closes
   std::vector<Warning> warnings;
   std::shared_ptr<const JsonValue> root; // owns all of the above JSON
 };

@@ -1,41 +1,104 @@
 #include "scenefile/TransformReader.h"
 
+#include "scenefile/KeyTimes.h"
 #include "scenefile/Reader.h"
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
 namespace rtsl::scene {
 
+using runtime::MotionFactor;
+using runtime::MovingTransform;
+using runtime::Quaternion;
 using runtime::Transform;
 
 namespace {
 
-Transform readScale(const JsonValue &value) {
-  if (value.kind == JsonValue::Kind::Number) {
-    double s = readNumber(value, "`scale`");
-    return Transform::scale(s, s, s);
-  }
-  std::vector<double> s = readNumbers(value, 3, "`scale`");
-  return Transform::scale(s[0], s[1], s[2]);
+using Vector = std::array<double, 3>;
+
+Vector readVector(const JsonValue &value, const std::string &what) {
+  const std::vector<double> numbers = readNumbers(value, 3, what);
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// {"axis": [x, y, z], "angle": degrees}, or degrees about x, then y, then z.
-Transform readRotation(const JsonValue &value) {
-  if (value.kind == JsonValue::Kind::Array) {
-    std::vector<double> angles = readNumbers(value, 3, "`rotate`");
-    return Transform::rotate({1, 0, 0}, angles[0])
-        .then(Transform::rotate({0, 1, 0}, angles[1]))
-        .then(Transform::rotate({0, 0, 1}, angles[2]));
+/// A rotation, as a map, as an orientation, and about its axis if it was given by one.
+struct Rotation {
+  Transform map;
+  Quaternion orientation{1, 0, 0, 0};
+  std::optional<Vector> axis; // of length 1
+  double degrees = 0;
+};
+
+Rotation aboutAxis(const Vector &axis, double degrees) {
+  const double length = std::hypot(axis[0], axis[1], axis[2]);
+  return {Transform::rotate(axis, degrees), runtime::axisRotation(axis, degrees),
+          Vector{axis[0] / length, axis[1] / length, axis[2] / length}, degrees};
+}
+
+/// Degrees about x, then y, then z.
+Rotation readAngles(const JsonValue &value) {
+  const Vector angles = readVector(value, "`rotate`");
+  Rotation result;
+  int turns = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Vector axis{0, 0, 0};
+    axis[i] = 1;
+    const Rotation one = aboutAxis(axis, angles[i]);
+    result.map = result.map.then(one.map);
+    result.orientation = runtime::product(one.orientation, result.orientation);
+    if (angles[i] != 0) {
+      ++turns;
+      result.axis = axis;
+      result.degrees = angles[i];
+    }
   }
+  if (turns > 1)
+    result.axis.reset();
+  return result;
+}
+
+/// (x, y, z, w), of any length but zero.
+Rotation readQuaternion(const JsonValue &value) {
+  const std::vector<double> q = readNumbers(value, 4, "`quaternion`");
+  const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+  if (length == 0)
+    throw Error(ErrorCode::OutOfRange, "a quaternion of length 0 is no rotation", value.place());
+  Rotation result;
+  result.orientation = {q[3] / length, q[0] / length, q[1] / length, q[2] / length};
+  result.map = runtime::rotationOf(result.orientation);
+  return result;
+}
+
+/// {"axis": [x, y, z], "angle": degrees}, {"quaternion": [x, y, z, w]}, or angles.
+Rotation readRotation(const JsonValue &value) {
+  if (value.kind == JsonValue::Kind::Array)
+    return readAngles(value);
   expect(value, JsonValue::Kind::Object, "`rotate`");
-  checkKeys(value, {"axis", "angle"}, "`rotate`");
+  if (const JsonValue *quaternion = value.find("quaternion")) {
+    checkKeys(value, {"quaternion"}, "`rotate` with a quaternion");
+    return readQuaternion(*quaternion);
+  }
+  checkKeys(value, {"axis", "angle", "quaternion"}, "`rotate`");
   const JsonValue &axisValue = require(value, "axis", "`rotate`");
-  std::vector<double> axis = readNumbers(axisValue, 3, "`axis`");
-  if (axis[0] == 0 && axis[1] == 0 && axis[2] == 0)
+  const Vector axis = readVector(axisValue, "`axis`");
+  if (axis == Vector{0, 0, 0})
     throw Error(ErrorCode::OutOfRange, "the axis of a rotation has no direction",
                 axisValue.place());
-  return Transform::rotate({axis[0], axis[1], axis[2]},
-                           readNumber(require(value, "angle", "`rotate`"), "`angle`"));
+  return aboutAxis(axis, readNumber(require(value, "angle", "`rotate`"), "`angle`"));
+}
+
+Transform readScale(const JsonValue &value) {
+  if (value.kind == JsonValue::Kind::Number) {
+    const double s = readNumber(value, "`scale`");
+    return Transform::scale(s, s, s);
+  }
+  const Vector s = readVector(value, "`scale`");
+  return Transform::scale(s[0], s[1], s[2]);
 }
 
 Transform readMatrix(const JsonValue &value) {
@@ -50,36 +113,128 @@ Transform readMatrix(const JsonValue &value) {
   return transform;
 }
 
-} // namespace
+/// An object with scale, rotate and translate, or with a matrix.
+struct Parts {
+  std::optional<Transform> matrix;
+  Transform scale;
+  Rotation rotation;
+  Transform translation;
 
-Transform readTransform(const JsonValue &value) {
-  Transform transform;
-  if (value.kind == JsonValue::Kind::Array) {
-    for (const JsonValue &element : value.elements)
-      transform = transform.then(readTransform(element));
-    return transform;
+  Transform product() const {
+    return matrix ? *matrix : scale.then(rotation.map).then(translation);
   }
-  expect(value, JsonValue::Kind::Object, "`transform`");
-  checkKeys(value, {"translate", "rotate", "scale", "matrix"}, "`transform`");
+};
+
+Parts readParts(const JsonValue &value) {
+  Parts parts;
   if (const JsonValue *matrix = value.find("matrix")) {
     if (value.members.size() > 1)
       throw Error(ErrorCode::WrongType,
                   "`matrix` cannot be combined with other keys; use a list of transforms",
                   value.place());
-    transform = readMatrix(*matrix);
+    parts.matrix = readMatrix(*matrix);
   }
   if (const JsonValue *scale = value.find("scale"))
-    transform = transform.then(readScale(*scale));
+    parts.scale = readScale(*scale);
   if (const JsonValue *rotate = value.find("rotate"))
-    transform = transform.then(readRotation(*rotate));
+    parts.rotation = readRotation(*rotate);
   if (const JsonValue *translate = value.find("translate")) {
-    std::vector<double> t = readNumbers(*translate, 3, "`translate`");
-    transform = transform.then(Transform::translate(t[0], t[1], t[2]));
+    const Vector t = readVector(*translate, "`translate`");
+    parts.translation = Transform::translate(t[0], t[1], t[2]);
   }
-  if (transform.determinant() == 0)
+  if (parts.product().determinant() == 0)
     throw Error(ErrorCode::OutOfRange, "this transform flattens what it is applied to",
                 value.place());
-  return transform;
+  return parts;
+}
+
+//===----------------------------------------------------------------------===//
+// Keys
+//===----------------------------------------------------------------------===//
+
+/// The factor with these maps at the keys; a constant if they are all the same.
+template <typename MapOf>
+MovingTransform interpolated(const std::vector<Parts> &keys, const std::vector<float> &times,
+                             MapOf mapOf) {
+  MotionFactor factor;
+  factor.times = times;
+  bool moves = false;
+  for (const Parts &key : keys) {
+    factor.maps.push_back(mapOf(key));
+    moves |= factor.maps.back().columns != factor.maps.front().columns;
+  }
+  return moves ? MovingTransform(std::move(factor)) : MovingTransform(factor.maps.front());
+}
+
+/// The axis of all rotations that turn; none if there are several.
+std::optional<Vector> commonAxis(const std::vector<Parts> &keys) {
+  std::optional<Vector> axis;
+  for (const Parts &key : keys) {
+    const Rotation &rotation = key.rotation;
+    const bool turns = rotation.orientation != Quaternion{1, 0, 0, 0};
+    if (!turns && !rotation.axis)
+      continue; // no rotation is one by 0 degrees about any axis
+    if (!rotation.axis || (axis && *axis != *rotation.axis))
+      return std::nullopt;
+    axis = rotation.axis;
+  }
+  return axis;
+}
+
+MovingTransform turning(const std::vector<Parts> &keys, const std::vector<float> &times) {
+  const std::optional<Vector> axis = commonAxis(keys);
+  MotionFactor factor;
+  factor.times = times;
+  bool moves = false;
+  for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
+    const Rotation &from = keys[i].rotation, &to = keys[i + 1].rotation;
+    factor.turns.push_back(axis ? runtime::turnAbout(*axis, from.degrees, to.degrees)
+                                : runtime::turnBetween(from.orientation, to.orientation));
+    moves |= factor.turns.back().angle != 0;
+  }
+  return moves ? MovingTransform(std::move(factor)) : MovingTransform(keys[0].rotation.map);
+}
+
+MovingTransform readKeys(const JsonValue &value) {
+  checkKeys(value, {"keys", "times"}, "a transform with keys");
+  const std::vector<float> times = readKeyTimes(value, "a transform");
+  std::vector<Parts> keys;
+  for (const JsonValue &element : value.find("keys")->elements) {
+    if (element.kind == JsonValue::Kind::Array || element.find("keys"))
+      throw Error(ErrorCode::WrongType,
+                  "a key is one transform, not a list or one with keys of its own", element.place())
+          .note("a list of transforms may have one with keys among others");
+    expect(element, JsonValue::Kind::Object, "a key");
+    checkKeys(element, {"translate", "rotate", "scale", "matrix"}, "a key");
+    keys.push_back(readParts(element));
+    if (keys.back().matrix.has_value() != keys.front().matrix.has_value())
+      throw Error(
+          ErrorCode::WrongType,
+          "either all keys of a transform are matrices or none is: between matrices numbers "
+          "are interpolated, and rotations turn",
+          element.place());
+  }
+  if (keys.front().matrix)
+    return interpolated(keys, times, [](const Parts &key) { return *key.matrix; });
+  return interpolated(keys, times, [](const Parts &key) { return key.scale; })
+      .then(turning(keys, times))
+      .then(interpolated(keys, times, [](const Parts &key) { return key.translation; }));
+}
+
+} // namespace
+
+MovingTransform readTransform(const JsonValue &value) {
+  if (value.kind == JsonValue::Kind::Array) {
+    MovingTransform transform;
+    for (const JsonValue &element : value.elements)
+      transform = transform.then(readTransform(element));
+    return transform;
+  }
+  expect(value, JsonValue::Kind::Object, "`transform`");
+  if (value.find("keys"))
+    return readKeys(value);
+  checkKeys(value, {"translate", "rotate", "scale", "matrix", "keys"}, "`transform`");
+  return readParts(value).product();
 }
 
 } // namespace rtsl::scene

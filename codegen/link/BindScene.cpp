@@ -206,6 +206,10 @@ constexpr GraphPart graphParts[] = {
     {RTSL_HAS_COUNTS, "counts", "some object holds several primitives",
      "each object is one primitive"},
     {RTSL_HAS_SELECTORS, "selectors", "some instance is below one", "the scene has none"},
+    {RTSL_HAS_MOTION, "motion", "some transform has keys", "no transform has keys"},
+    {RTSL_HAS_MESH_KEYS, "mesh keys", "some mesh has several", "no mesh has several"},
+    {RTSL_HAS_SHUTTER, "shutter", "each sample has a time of its own",
+     "nothing moves: the time of all rays is 0"},
 };
 
 } // namespace

@@ -43,6 +43,17 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
  * and the mask of the next instance that is added. Fails if a number is not finite. */
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
+/* The same for an instance that moves: its transform at `count` >= 2 times, which ascend in [0, 1].
+ * Between them the numbers are interpolated linearly. */
+int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *times, uint32_t count,
+                    uint32_t mask);
+/* The same by keys of scale, rotation (a quaternion x, y, z, w, of any length but 0) and translation,
+ * applied in this order. Rotations take the shortest turn from each key to the next. */
+typedef struct RtslPlacementKey {
+  double scale[3], rotation[4], translation[3];
+  float time;
+} RtslPlacementKey;
+int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t count, uint32_t mask);
 /* Sets rt_InstanceId of the next instance that is added, and the `selection` (rtslSceneAddSelector)
  * below which it is; 0: none. */
 int rtslMark(RtslScene *scene, int32_t id, uint32_t selection);
@@ -73,6 +84,9 @@ int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
+/* Samples have times between these two, 0 <= open <= close <= 1. Without it they have times from 0
+ * to 1 if something moves. */
+int rtslSceneSetShutter(RtslScene *scene, float open, float close);
 /* Replaces the camera: its `generate` computes the samples. */
 int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration);
 /* Handles samples with an exception, in shaders compiled with --exceptions. */

@@ -239,12 +239,11 @@ void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
 static void addTriangles(const RtslMesh &mesh, std::uint32_t instance,
                          std::vector<BvhItem> &items) {
   for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
-    Bounds bounds = emptyBounds();
-    for (int corner = 0; corner < 3; ++corner) {
-      const float *p = mesh.positions + 3 * std::size_t(mesh.indices[3 * std::size_t(t) + corner]);
-      extend(bounds, {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}});
-    }
-    items.push_back({bounds, {instance, t}});
+    const RtslBox box = device::boxOfTriangle(mesh, t);
+    BvhItem item{{}, {instance, t}};
+    std::copy_n(box.lower, 3, item.bounds.lower);
+    std::copy_n(box.upper, 3, item.bounds.upper);
+    items.push_back(item);
   }
 }
 

@@ -61,6 +61,12 @@ FlatScene flatten(const Scene &scene) {
   const std::uint64_t meshes =
       flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
   flattener.addAt(offsetof(RtslLaunch, transforms), launch.transforms, launch.transformCount);
+  if (launch.needs & RTSL_HAS_MOTION) {
+    flattener.addAt(offsetof(RtslLaunch, motions), launch.motions, launch.motionCount);
+    flattener.addAt(offsetof(RtslLaunch, motionFactors), launch.motionFactors,
+                    launch.motionFactorCount);
+    flattener.addAt(offsetof(RtslLaunch, motionKeys), launch.motionKeys, launch.motionKeyCount);
+  }
   flattener.addAt(offsetof(RtslLaunch, boxes), launch.boxes, launch.boxCount);
   flattener.addAt(offsetof(RtslLaunch, selections), launch.selections, launch.selectionCount);
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
@@ -72,9 +78,10 @@ FlatScene flatten(const Scene &scene) {
   for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
     const RtslMesh &mesh = launch.meshes[i];
     const std::uint64_t place = meshes + i * sizeof(RtslMesh);
-    const std::size_t vertices = mesh.vertexCount;
-    flattener.addAt(place + offsetof(RtslMesh, positions), mesh.positions, 3 * vertices);
-    flattener.addAt(place + offsetof(RtslMesh, normals), mesh.normals, 3 * vertices);
+    const std::size_t vertices = mesh.vertexCount, ofAllKeys = vertices * mesh.keyCount;
+    flattener.addAt(place + offsetof(RtslMesh, positions), mesh.positions, 3 * ofAllKeys);
+    flattener.addAt(place + offsetof(RtslMesh, normals), mesh.normals, 3 * ofAllKeys);
+    flattener.addAt(place + offsetof(RtslMesh, keyTimes), mesh.keyTimes, mesh.keyCount);
     flattener.addAt(place + offsetof(RtslMesh, uvs), mesh.uvs, 2 * vertices);
     flattener.addAt(place + offsetof(RtslMesh, indices), mesh.indices,
                     3 * std::size_t(mesh.triangleCount));

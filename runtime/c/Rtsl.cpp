@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <exception>
 #include <string>
 #include <utility>
@@ -154,6 +155,71 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
   return guarded(0, [&] {
     scene->placement.transform = finiteTransform(transform);
     scene->placement.mask = mask;
+    return 1;
+  });
+}
+
+/// Throws OutOfRange unless they are the times of keys.
+static std::vector<float> keyTimes(const float *first, std::uint32_t count, std::size_t stride) {
+  if (count < 2)
+    throw rtsl::Error(rtsl::ErrorCode::OutOfRange,
+                      "a transform that moves needs at least two keys");
+  std::vector<float> times;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    float time;
+    std::memcpy(&time, reinterpret_cast<const char *>(first) + i * stride, sizeof time);
+    if (!(time >= 0 && time <= 1) || (i > 0 && !(time > times.back())))
+      throw rtsl::Error(rtsl::ErrorCode::OutOfRange,
+                        "the times of keys ascend, and are between 0 and 1");
+    times.push_back(time);
+  }
+  return times;
+}
+
+int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *times, uint32_t count,
+                    uint32_t mask) {
+  return guarded(0, [&] {
+    runtime::MotionFactor factor;
+    factor.times = keyTimes(times, count, sizeof *times);
+    for (std::uint32_t i = 0; i < count; ++i)
+      factor.maps.push_back(finiteTransform(transforms + 12 * std::size_t(i)));
+    scene->placement.transform = runtime::MovingTransform(std::move(factor));
+    scene->placement.mask = mask;
+    return 1;
+  });
+}
+
+int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t count,
+                     uint32_t mask) {
+  return guarded(0, [&] {
+    runtime::MotionFactor scale, rotation, translation;
+    const std::vector<float> times = keyTimes(&keys->time, count, sizeof *keys);
+    scale.times = rotation.times = translation.times = times;
+    const auto orientation = [](const RtslPlacementKey &key) {
+      const double *q = key.rotation; // x, y, z, w
+      if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
+        throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "a quaternion of length 0 is no rotation");
+      return runtime::Quaternion{q[3], q[0], q[1], q[2]};
+    };
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double *s = keys[i].scale, *t = keys[i].translation;
+      scale.maps.push_back(runtime::Transform::scale(s[0], s[1], s[2]));
+      translation.maps.push_back(runtime::Transform::translate(t[0], t[1], t[2]));
+      if (i + 1 < count)
+        rotation.turns.push_back(
+            runtime::turnBetween(orientation(keys[i]), orientation(keys[i + 1])));
+    }
+    scene->placement.transform = runtime::MovingTransform(std::move(scale))
+                                     .then(runtime::MovingTransform(std::move(rotation)))
+                                     .then(runtime::MovingTransform(std::move(translation)));
+    scene->placement.mask = mask;
+    return 1;
+  });
+}
+
+int rtslSceneSetShutter(RtslScene *scene, float open, float close) {
+  return guarded(0, [&] {
+    scene->scene.setShutter(open, close);
     return 1;
   });
 }

@@ -46,11 +46,11 @@ struct EmbreeContext {
   float limit() const { return visitor ? visitor->limit(visitor->self) : state->nearest; }
 };
 
-/// An RTSL primitive in Embree.
+/// An RTSL primitive in Embree, or a triangle of a mesh that has several keys.
 struct EmbreePrimitive {
-  void (*intersect)(RtslState *, RtslRef);
-  std::uint32_t instance; // in a space of its own: some instance of the object
-  std::uint32_t number;   // of several of one object
+  void (*intersect)(RtslState *, RtslRef); // null: a triangle
+  std::uint32_t instance; // in a space of its own: some instance of the object or mesh
+  std::uint32_t number;   // of several of one object, or of the triangle
 };
 
 /// An instance in Embree that has a space of its own.

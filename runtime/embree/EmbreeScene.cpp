@@ -85,8 +85,12 @@ template <typename Ray>
 bool testPrimitive(const EmbreeContext &context, unsigned number) {
   const EmbreePrimitive &primitive = context.space->primitives[number];
   const RtslLeafItem item = itemOf<Ray>(context, primitive);
-  return device::testPrimitive(*context.state, rayOf<Ray>(context),
-                               context.space->scene->launch.instances[item.instance], item,
+  const RtslLaunch &launch = context.space->scene->launch;
+  const RtslInstance &instance = launch.instances[item.instance];
+  if (!primitive.intersect)
+    return device::testTriangle(*context.state, rayOf<Ray>(context), launch.meshes[instance.mesh],
+                                item.instance, item.primitive);
+  return device::testPrimitive(*context.state, rayOf<Ray>(context), instance, item,
                                primitive.intersect);
 }
 
@@ -140,8 +144,8 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   RtslState &state = *outer.state;
   device::InstanceRay ray;
   if (!device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots}) ||
-      !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Epsilon, outer.limit(),
-                             ray))
+      !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Time, state.Epsilon,
+                             outer.limit(), ray))
     return false;
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);
@@ -237,7 +241,10 @@ void boundBlock(const RTCBoundsFunctionArguments *arguments) {
 
 RtslBox boxOf(const EmbreeSpace &space, const EmbreePrimitive &primitive) {
   const RtslLaunch &launch = space.scene->launch;
-  return device::boxOf(launch, launch.instances[primitive.instance], primitive.number);
+  const RtslInstance &instance = launch.instances[primitive.instance];
+  return primitive.intersect
+             ? device::boxOf(launch, instance, primitive.number)
+             : device::boxOfTriangle(launch.meshes[instance.mesh], primitive.number);
 }
 
 void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
@@ -405,6 +412,17 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
     for (std::uint32_t i = 0; i < scene.primitiveCount(number); ++i)
       space.primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, number, i});
   };
+  // Blocks hold vertices, so triangles that move are items of their own.
+  const auto addMesh = [&](EmbreeSpace &space, std::vector<MeshUse> &meshes, std::uint32_t number,
+                           std::uint32_t asInstance) {
+    const RtslMesh &mesh = launch.meshes[launch.instances[number].mesh];
+    if (!mesh.keyTimes) {
+      meshes.push_back({asInstance, &mesh});
+      return;
+    }
+    for (std::uint32_t i = 0; i < mesh.triangleCount; ++i)
+      space.primitives.push_back({nullptr, number, i});
+  };
   std::vector<MeshUse> inWorld;
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
@@ -417,14 +435,14 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
         inside->isWorld = false;
         std::vector<MeshUse> meshes;
         if (isMesh)
-          meshes.push_back({0, &launch.meshes[instance.mesh]});
+          addMesh(*inside, meshes, i, 0);
         else
           addPrimitives(*inside, i);
         buildSpace(*inside, meshes, threads);
       }
       self->world.instances.push_back({i, inside.get()});
     } else if (isMesh) {
-      inWorld.push_back({i, &launch.meshes[instance.mesh]});
+      addMesh(self->world, inWorld, i, i);
     } else {
       addPrimitives(self->world, i);
     }

@@ -47,6 +47,35 @@ constexpr float largestCoordinate = 1e18f;
 
 } // namespace
 
+Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
+                const std::vector<std::string> &names) {
+  Mesh result = std::move(keys.front());
+  const bool haveNormals = std::all_of(keys.begin() + 1, keys.end(),
+                                       [](const Mesh &mesh) { return !mesh.normals.empty(); });
+  if (!haveNormals)
+    result.normals.clear();
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const Mesh &key = keys[i];
+    if (key.vertexCount() != result.vertexCount())
+      throwBad(names[i], fmt::format("has {} vertices, but the first key of its object, `{}`, has "
+                                     "{}",
+                                     key.vertexCount(), names[0], result.vertexCount()));
+    if (key.indices != result.indices)
+      throwBad(names[i],
+               fmt::format("has other triangles than the first key of its object, `{}`", names[0]));
+  }
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const auto append = [](std::vector<float> &to, const std::vector<float> &values) {
+      to.insert(to.end(), values.begin(), values.end());
+    };
+    append(result.positions, keys[i].positions);
+    if (!result.normals.empty())
+      append(result.normals, keys[i].normals);
+  }
+  result.keyTimes = std::move(times);
+  return result;
+}
+
 void validateMesh(const Mesh &mesh, const std::string &name) {
   if (mesh.positions.size() % 3 != 0 || mesh.indices.size() % 3 != 0)
     throwBad(name, "has an incomplete vertex or triangle");
@@ -55,9 +84,12 @@ void validateMesh(const Mesh &mesh, const std::string &name) {
   std::size_t vertices = mesh.vertexCount();
   if (vertices > 0xffffffffu || mesh.triangleCount() > 0x7fffffffu)
     throwBad(name, "is too large: at most 2^32 vertices and 2^31 triangles");
-  if (!mesh.normals.empty() && mesh.normals.size() != 3 * vertices)
-    throwBad(name,
-             fmt::format("has {} normals for {} vertices", mesh.normals.size() / 3, vertices));
+  if (mesh.positions.size() != 3 * vertices * mesh.keyCount())
+    throwBad(name, fmt::format("has {} positions of vertices for {} keys",
+                               mesh.positions.size() / 3, mesh.keyCount()));
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
+    throwBad(name, fmt::format("has {} normals for {} vertices", mesh.normals.size() / 3,
+                               mesh.positions.size() / 3));
   if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices)
     throwBad(name, fmt::format("has {} texture coordinates for {} vertices", mesh.uvs.size() / 2,
                                vertices));

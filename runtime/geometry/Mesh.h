@@ -10,14 +10,17 @@
 
 namespace rtsl::runtime {
 
-/// An indexed triangle mesh.
+/// An indexed triangle mesh. If it moves, positions and normals are those of all vertices at the
+/// first key, then at the next; between keys they are interpolated linearly.
 struct Mesh {
   std::vector<float> positions;       // 3 a vertex
   std::vector<float> normals;         // 3 a vertex, or empty
   std::vector<float> uvs;             // 2 a vertex, or empty
   std::vector<std::uint32_t> indices; // 3 a triangle
+  std::vector<float> keyTimes;        // ascending, in [0, 1]; empty: it does not move
 
-  std::size_t vertexCount() const { return positions.size() / 3; }
+  std::size_t keyCount() const { return keyTimes.empty() ? 1 : keyTimes.size(); }
+  std::size_t vertexCount() const { return positions.size() / 3 / keyCount(); }
   std::size_t triangleCount() const { return indices.size() / 3; }
 
   /// Transforms the vertices; normals by the inverse transpose. A mirroring transform also reverses
@@ -29,6 +32,12 @@ struct Mesh {
 /// file become one; polygons are triangulated, points and lines left out. Throws Error:
 /// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.
 Mesh loadMesh(const std::string &path);
+
+/// One mesh of several, its keys, at these times: they must have the same triangles and as many
+/// vertices. Texture coordinates are those of the first; normals are kept if all have them. `names`
+/// are for messages. Throws BadMesh.
+Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
+                const std::vector<std::string> &names);
 
 /// Throws BadMesh if the mesh is empty, has a coordinate that is not finite, an index out of range,
 /// or a number of normals or uvs that differs from that of its vertices. `name` is for the message.

@@ -73,12 +73,42 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
 } // namespace
 
 /// Its index; 0 for the identity.
-std::uint32_t Geometry::addTransform(const Transform &transform, const std::string &name,
+std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std::string &name,
                                      const std::optional<rtsl::Place> &where) {
-  if (transform.isIdentity())
+  if (!transform.moves() && transform.still().isIdentity())
     return 0;
   transforms.push_back(roundedTransform(transform, name, where));
+  needs |= RTSL_HAS_TRANSFORMS;
+  if (transform.moves()) {
+    transforms.back().motion = addMotion(transform);
+    needs |= RTSL_HAS_MOTION | RTSL_HAS_SHUTTER;
+  }
   return std::uint32_t(transforms.size() - 1);
+}
+
+/// Its index.
+std::uint32_t Geometry::addMotion(const MovingTransform &transform) {
+  motions.push_back(
+      {std::uint32_t(motionFactors.size()), std::uint32_t(transform.factors().size())});
+  for (const MotionFactor &factor : transform.factors()) {
+    motionFactors.push_back({std::uint32_t(motionKeys.size()), std::uint32_t(factor.times.size()),
+                             factor.isRotation()});
+    for (std::size_t i = 0; i < factor.times.size(); ++i) {
+      RtslMotionKey key{};
+      key.time = factor.times[i];
+      if (!factor.isRotation()) {
+        for (std::size_t column = 0; column < 4; ++column)
+          std::copy_n(factor.maps[i].columns[column].begin(), 3, key.numbers + 3 * column);
+      } else if (i < factor.turns.size()) {
+        const Turn &turn = factor.turns[i];
+        std::copy_n(turn.from.begin(), 4, key.numbers);
+        std::copy_n(turn.across.begin(), 4, key.numbers + 4);
+        key.numbers[8] = turn.angle / (0.5 * 3.14159265358979323846);
+      }
+      motionKeys.push_back(key);
+    }
+  }
+  return std::uint32_t(motions.size() - 1);
 }
 
 RtslInstance Geometry::place(const Placement &placement, const std::string &name,
@@ -106,8 +136,7 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
   added.anyHit = objects.at(instance.material).classInfo->anyHit;
   treeItems += items;
   instanceNames.push_back(std::move(name));
-  needs |= (instance.transform != 0 ? RTSL_HAS_TRANSFORMS : 0) |
-           (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) |
+  needs |= (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) |
            (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
            (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0);
   return std::uint32_t(instances.size() - 1);
@@ -137,7 +166,10 @@ std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, 
   }
   std::copy_n(given.lower, 3, instance.boundMin);
   std::copy_n(given.upper, 3, instance.boundMax);
-  setWorldBounds(instance, given, transforms[instance.transform]);
+  if (instance.transform != 0)
+    setWorldBounds(instance, given, placement.transform);
+  else
+    setWorldBounds(instance, given);
   return addInstance(objects, instance, info.name, instance.transform != 0 ? 1 : count);
 }
 
@@ -181,7 +213,7 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
 }
 
 std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
-                                    std::uint32_t children, const Transform &transform,
+                                    std::uint32_t children, const MovingTransform &transform,
                                     std::uint32_t above) {
   objects.requireRole(selector, "rt_Selector", {"visit"});
   const Objects::Object &info = objects.at(selector);
@@ -190,7 +222,6 @@ std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
                 info.place);
   const auto first = std::uint32_t(selections.size());
   const std::uint32_t space = addTransform(transform, info.name, info.place);
-  needs |= space != 0 ? RTSL_HAS_TRANSFORMS : 0;
   for (std::uint32_t child = 0; child < children; ++child)
     selections.push_back({selector, std::int32_t(child), space, above});
   return first;
@@ -206,6 +237,8 @@ std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
   table.normals = kept.normals.empty() ? nullptr : kept.normals.data();
   table.uvs = kept.uvs.empty() ? nullptr : kept.uvs.data();
   table.indices = kept.indices.data();
+  table.keyTimes = kept.keyTimes.empty() ? nullptr : kept.keyTimes.data();
+  table.keyCount = std::uint32_t(kept.keyCount());
   table.vertexCount = std::uint32_t(kept.vertexCount());
   table.triangleCount = std::uint32_t(kept.triangleCount());
   meshTable.push_back(table);
@@ -227,8 +260,10 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
   RtslInstance instance = place(placement, meshes[mesh]->name, std::nullopt);
   instance.material = material;
   instance.mesh = mesh;
+  if (meshTable[mesh].keyTimes)
+    needs |= RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER;
   if (instance.transform != 0)
-    setWorldBounds(instance, meshBounds(mesh), transforms[instance.transform]);
+    setWorldBounds(instance, meshBounds(mesh), placement.transform);
   return addInstance(objects, instance, meshes[mesh]->name,
                      instance.transform != 0 ? 1 : meshTable[mesh].triangleCount);
 }
@@ -281,6 +316,12 @@ void Geometry::fill(RtslLaunch &launch) const {
   launch.instances = instances.data();
   launch.meshes = meshTable.data();
   launch.transforms = transforms.data();
+  launch.motions = motions.data();
+  launch.motionFactors = motionFactors.data();
+  launch.motionKeys = motionKeys.data();
+  launch.motionCount = std::uint32_t(motions.size());
+  launch.motionFactorCount = std::uint32_t(motionFactors.size());
+  launch.motionKeyCount = std::uint32_t(motionKeys.size());
   launch.boxes = boxes.data();
   launch.boxCount = std::uint32_t(boxes.size());
   launch.selections = selections.data();

@@ -30,7 +30,7 @@ public:
                              std::vector<Warning> &warnings);
   /// Scene::addSelector.
   std::uint32_t addSelector(const Objects &objects, RtslRef selector, std::uint32_t children,
-                            const Transform &transform, std::uint32_t above);
+                            const MovingTransform &transform, std::uint32_t above);
   /// Scene::addMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name);
   /// Scene::addMeshInstance.
@@ -67,8 +67,9 @@ private:
                             std::uint32_t items);
   RtslInstance place(const Placement &placement, const std::string &name,
                      const std::optional<rtsl::Place> &where);
-  std::uint32_t addTransform(const Transform &transform, const std::string &name,
+  std::uint32_t addTransform(const MovingTransform &transform, const std::string &name,
                              const std::optional<rtsl::Place> &where);
+  std::uint32_t addMotion(const MovingTransform &transform);
   const Bounds &meshBounds(std::uint32_t mesh);
 
   /// An object with several primitives.
@@ -85,6 +86,9 @@ private:
   std::vector<std::unique_ptr<NamedMesh>> meshes;
   std::vector<RtslMesh> meshTable; // as long
   std::vector<RtslTransform> transforms{identityTransform()};
+  std::vector<RtslMotion> motions{RtslMotion{}}; // the first is unused
+  std::vector<RtslMotionFactor> motionFactors;
+  std::vector<RtslMotionKey> motionKeys;
   std::vector<RtslBox> boxes;
   std::vector<RtslSelection> selections{RtslSelection{}}; // the first is unused
   std::map<RtslRef, PrimitiveSet> sets;                   // by primitive

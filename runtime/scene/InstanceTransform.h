@@ -3,6 +3,7 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/geometry/Mesh.h"
+#include "runtime/geometry/Motion.h"
 #include "runtime/scene/SceneData.h"
 #include "support/Error.h"
 
@@ -19,14 +20,17 @@ RtslTransform identityTransform();
 
 /// The transform as it is stored, with its inverse. Throws DegenerateGeometry, for the instance of
 /// this name: a number is not finite in single precision, or the condition exceeds
-/// largestCondition.
-RtslTransform roundedTransform(const Transform &transform, const std::string &name,
+/// largestCondition. One that moves is checked at its keys and at some times between them, and
+/// RtslTransform::motion is left at 0.
+RtslTransform roundedTransform(const MovingTransform &transform, const std::string &name,
                                const std::optional<Place> &place);
 
-/// Sets the box for traversal from the bounds in object space.
-void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const RtslTransform &transform);
+/// Sets the box for traversal from the bounds in object space, without a transform.
+void setWorldBounds(RtslInstance &instance, const Bounds &bounds);
+/// The same for an instance with this transform, whatever the time.
+void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const MovingTransform &transform);
 
-/// The smallest box around the vertices that triangles use.
+/// The smallest box around the vertices that triangles use, at all keys.
 Bounds boundsOf(const Mesh &mesh);
 
 } // namespace rtsl::runtime

@@ -109,7 +109,7 @@ std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Pla
 }
 
 std::uint32_t Scene::addSelector(RtslRef selector, std::uint32_t children,
-                                 const Transform &transform, std::uint32_t above) {
+                                 const MovingTransform &transform, std::uint32_t above) {
   return self->geometry.addSelector(self->objects, selector, children, transform, above);
 }
 
@@ -155,6 +155,9 @@ void Scene::setBackground(RtslRef miss) {
 void Scene::setException(RtslRef exception) {
   self->cameraAndLights.setException(self->objects, exception);
 }
+void Scene::setShutter(float open, float close) {
+  self->cameraAndLights.setShutter(open, close);
+}
 void Scene::setBackgroundColor(const std::vector<float> &color) {
   self->cameraAndLights.setBackgroundColor(self->objects, color);
 }
@@ -192,7 +195,7 @@ SceneFacts Scene::facts() const {
   facts.lightCount = self->cameraAndLights.lightCount();
   const float *const ambient = self->cameraAndLights.ambientLight();
   facts.ambient.assign(ambient, ambient + program().colorComponents);
-  facts.needs = self->geometry.sceneNeeds();
+  facts.needs = launch.needs & RTSL_HAS_ALL;
   facts.referenceChain = self->objects.referenceChain();
   return facts;
 }

@@ -60,7 +60,7 @@ public:
   /// Placement::selection of what is below child 0; those of the others follow. `above`: that of
   /// the selector itself.
   std::uint32_t addSelector(RtslRef selector, std::uint32_t children,
-                            const Transform &transform = {}, std::uint32_t above = 0);
+                            const MovingTransform &transform = {}, std::uint32_t above = 0);
 
   /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
   std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
@@ -77,6 +77,9 @@ public:
   void setBackground(RtslRef miss);
   /// What samples are that meet an exception, in programs with RTSL_FEATURE_EXCEPTIONS.
   void setException(RtslRef exception);
+  /// The times of samples are drawn between these two, 0 <= open <= close <= 1. Without it they
+  /// are drawn from all of [0, 1] if something moves, and are 0 if nothing does. Throws OutOfRange.
+  void setShutter(float open, float close);
   /// As many numbers as the program's color has components, red, green and blue, or one for all.
   /// Throws WrongType.
   void setBackgroundColor(const std::vector<float> &color);

@@ -1,7 +1,7 @@
 //===- SceneData.h - plain structs in the interface of scenes -------------===//
 #pragma once
 
-#include "runtime/geometry/Transform.h"
+#include "runtime/geometry/Motion.h"
 #include "runtime/program/Program.h"
 #include "runtime/scene/Value.h"
 
@@ -23,10 +23,10 @@ struct ObjectValues {
 
 /// Where an instance is, and for which rays.
 struct Placement {
-  Transform transform;      // from its object space to world space
-  std::uint32_t mask = ~0u; // rays see it whose mask has a common bit
-  std::uint32_t roots = 1;  // bit r: rays that enter at root r can see it
-  std::int32_t id = 0;      // rt_InstanceId
+  MovingTransform transform; // from its object space to world space
+  std::uint32_t mask = ~0u;  // rays see it whose mask has a common bit
+  std::uint32_t roots = 1;   // bit r: rays that enter at root r can see it
+  std::int32_t id = 0;       // rt_InstanceId
   /// Of Scene::addSelector: rays see it if the selector visits that child. 0: always.
   std::uint32_t selection = 0;
 };

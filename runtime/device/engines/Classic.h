@@ -175,6 +175,12 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
 }
 
+/// The time of a sample, in the launch's shutter. `shift` is the same for all samples of a pixel.
+inline float timeOfSample(const RtslLaunch &launch, uint32_t index, uint32_t shift) {
+  const float share = unitFloat(evenlySpread(index) ^ shift);
+  return fused(share, launch.shutterClose - launch.shutterOpen, launch.shutterOpen);
+}
+
 /// The start of a sample of a pixel. Row 0 is the top of the image, where ScreenCoord.y is near 1.
 inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
@@ -204,7 +210,9 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   }
   if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
-  state.Time = 0;
+  state.Time = needs & RTSL_HAS_SHUTTER
+                   ? timeOfSample(launch, index, hash4(x, y, 0xfffffffeu, launch.seed).x)
+                   : 0;
   state.rayType = 0;
   state.rayMask = 0xffffffffu;
   state.rayRoot = 0;

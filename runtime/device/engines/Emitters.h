@@ -53,12 +53,12 @@ inline uint32_t partsOf(const RtslLaunch &launch, const RtslInstance &instance) 
                                        : 0;
 }
 
-/// The vertices of a triangle of an instance in world space.
+/// The vertices of a triangle of an instance in world space, at a time.
 inline TriangleVertices verticesInWorld(const RtslLaunch &launch, const RtslInstance &instance,
-                                        uint32_t triangle) {
-  TriangleVertices p = triangleVertices(launch.meshes[instance.mesh], triangle);
+                                        uint32_t triangle, float time) {
+  TriangleVertices p = triangleVertices(launch, launch.meshes[instance.mesh], triangle, time);
   if (isTransformed(launch, instance)) {
-    const RtslTransform &transform = transformOf(launch, instance);
+    const TransformAt transform(launch, instance, time);
     p = {pointToWorld(transform, p.v0), pointToWorld(transform, p.v1),
          pointToWorld(transform, p.v2)};
   }
@@ -127,7 +127,7 @@ inline float emitterDensity(const RtslState &hit) {
           ? 1
           : probabilityOf(hit.primitive, chancesOfParts(launch, launch.emitters[first]));
   if (instance.primitive == 0) {
-    const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive));
+    const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive, hit.Time));
     density *= 2 * ofPart / squareRoot(dot(twice, twice));
   } else {
     RtslState state;
@@ -143,7 +143,8 @@ inline float emitterDensity(const RtslState &hit) {
     store(state.GeometricNormal, normal);
     float scale = 1;
     if (isTransformed(launch, instance)) {
-      const RtslTransform &transform = transformOf(launch, instance);
+      const TransformAt atTime(launch, instance, hit.Time);
+      const RtslTransform &transform = atTime;
       store(state.HitPoint, pointToObject(transform, load(hit.HitPoint)));
       const float *m = transform.linear;
       store(state.GeometricNormal,
@@ -178,15 +179,16 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
                             const RtslInstance &instance, uint32_t part, float u, float v) {
   if (instance.primitive == 0) {
     // Uniform on the triangle (Turk, "Generating Random Points in Triangles", 1990).
-    const TriangleVertices p = verticesInWorld(launch, instance, part);
+    const TriangleVertices p = verticesInWorld(launch, instance, part, state.Time);
     const float root = squareRoot(u);
     return p.v0 + (p.v1 - p.v0) * (root * (1 - v)) + (p.v2 - p.v0) * (root * v);
   }
   clearForSample(state, part);
   rtsl_rt_Primitive_generateSample(&state, instance.primitive);
   const Vec3 point = load(state.HitPoint);
-  return isTransformed(launch, instance) ? pointToWorld(transformOf(launch, instance), point)
-                                         : point;
+  return isTransformed(launch, instance)
+             ? pointToWorld(TransformAt(launch, instance, state.Time), point)
+             : point;
 }
 
 /// The light that arrives from an emitter.
@@ -287,7 +289,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   Vec3 normal;
   float area = 1;
   if (instance.primitive == 0) {
-    normal = normalized(doubleArea(verticesInWorld(launch, instance, part)));
+    normal = normalized(doubleArea(verticesInWorld(launch, instance, part, state.Time)));
     const float root = squareRoot(u);
     state.u = root * (1 - v);
     state.v = root * v;
@@ -295,7 +297,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
     normal = load(state.GeometricNormal);
     area = 1 / state.PDF;
     if (isTransformed(launch, instance)) {
-      const RtslTransform &transform = transformOf(launch, instance);
+      const TransformAt transform(launch, instance, state.Time);
       normal = normalToWorld(transform, normal);
       area *= areaScale(transform, normal);
     }

@@ -63,19 +63,47 @@ typedef struct RtslSelection {
 } RtslSelection;
 
 /// The transform of an instance: p -> linear p + translation, from object to world space. Matrices
-/// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double.
+/// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double. If it
+/// moves, these are its values at time 0.
 typedef struct RtslTransform {
   float linear[9], translation[3];
   double inverse[9]; // of `linear`
+  uint32_t motion;   // of RtslLaunch::motions; 0: it does not move
 } RtslTransform;
 
-/// An indexed triangle mesh in object space. `normals` and `uvs` may be null.
+/// A transform that depends on time: a product of factors, of which the first is applied first.
+typedef struct RtslMotion {
+  uint32_t firstFactor, factorCount;
+} RtslMotion;
+
+/// A factor of a motion: an affine map between whose keys the numbers are interpolated linearly, or
+/// a rotation that turns steadily from one key to the next. Before its first key and after its last
+/// one it rests. A single key is a constant; rotations have at least two.
+typedef struct RtslMotionFactor {
+  uint32_t firstKey, keyCount; // of RtslLaunch::motionKeys; times ascend
+  uint32_t isRotation;
+} RtslMotionFactor;
+
+/// A key of a factor. Of an affine map: the columns of the linear part, then the translation. Of a
+/// rotation: the unit quaternion (w, x, y, z) at the key; a unit quaternion q perpendicular to it;
+/// and an angle a in quarter turns. Up to the next key, after a share s of the time, the rotation
+/// is cos(s a) times the first plus sin(s a) times q. It turns by twice the angle.
+typedef struct RtslMotionKey {
+  double numbers[12];
+  float time; // in [0, 1]
+} RtslMotionKey;
+
+/// An indexed triangle mesh in object space. `normals` and `uvs` may be null. If it has several
+/// keys, the positions of all vertices at the first one are followed by those at the next, and so
+/// are the normals; between keys they are interpolated linearly.
 typedef struct RtslMesh {
   const float *positions;  // 3 a vertex
   const float *normals;    // 3 a vertex
   const float *uvs;        // 2 a vertex
   const uint32_t *indices; // 3 a triangle
+  const float *keyTimes;   // ascending, in [0, 1]; null: it has one key, and does not move
   uint32_t vertexCount, triangleCount;
+  uint32_t keyCount;
 } RtslMesh;
 
 /// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node;
@@ -113,6 +141,9 @@ typedef struct RtslLaunch {
   const RtslInstance *instances;
   const RtslMesh *meshes;
   const RtslTransform *transforms; // the first is the identity
+  const RtslMotion *motions;       // the first is unused
+  const RtslMotionFactor *motionFactors;
+  const RtslMotionKey *motionKeys;
   const RtslBox *boxes;
   const RtslSelection *selections; // the first is unused
   const RtslRef *lights;
@@ -124,6 +155,8 @@ typedef struct RtslLaunch {
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, transformCount, lightCount;
   uint32_t boxCount, selectionCount;
+  uint32_t motionCount, motionFactorCount, motionKeyCount;
+  float shutterOpen, shutterClose; // of RTSL_HAS_SHUTTER: the times of samples, in [0, 1]
   uint32_t colorComponents;
   uint32_t maxDepth; // 0: camera rays only
   // the maximum number of references from one object to the next, in a chain
@@ -297,11 +330,16 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_ALL                                                                             \
   (8191u | RTSL_NEEDS_INSTANCE_ID | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
-#define RTSL_HAS_TRANSFORMS 8192u  // some instance has a transform
-#define RTSL_HAS_ROOTS 16384u      // some instance is not below root 0, or below another one
-#define RTSL_HAS_COUNTS 262144u    // some object holds several primitives
-#define RTSL_HAS_SELECTORS 524288u // some instance is below a selector
-#define RTSL_HAS_ALL (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS)
+#define RTSL_HAS_TRANSFORMS 8192u   // some instance has a transform
+#define RTSL_HAS_ROOTS 16384u       // some instance is not below root 0, or below another one
+#define RTSL_HAS_COUNTS 262144u     // some object holds several primitives
+#define RTSL_HAS_SELECTORS 524288u  // some instance is below a selector
+#define RTSL_HAS_MOTION 1048576u    // some transform moves
+#define RTSL_HAS_MESH_KEYS 2097152u // some mesh has several keys
+#define RTSL_HAS_SHUTTER 4194304u   // each sample has a time of its own; otherwise the time is 0
+#define RTSL_HAS_ALL                                                                               \
+  (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
+   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u

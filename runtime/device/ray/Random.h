@@ -127,4 +127,15 @@ inline void pixelSample(uint32_t index, uint32_t shiftX, uint32_t shiftY, float 
   *y = unitFloat(shiftY + index * 2447445414u); // 2^32 / 1.32471795724^2
 }
 
+/// Number `index` of a sequence of fractions of 2^32 of which any 2^n consecutive ones from a
+/// multiple of 2^n lie in different intervals of 2^32 / 2^n: its bits reversed (van der Corput,
+/// 1935). Exclusive or with a constant keeps that property.
+inline uint32_t evenlySpread(uint32_t index) {
+  index = index >> 16 | index << 16;
+  index = (index & 0xff00ff00u) >> 8 | (index & 0x00ff00ffu) << 8;
+  index = (index & 0xf0f0f0f0u) >> 4 | (index & 0x0f0f0f0fu) << 4;
+  index = (index & 0xccccccccu) >> 2 | (index & 0x33333333u) << 2;
+  return (index & 0xaaaaaaaau) >> 1 | (index & 0x55555555u) << 1;
+}
+
 } // namespace rtsl::device

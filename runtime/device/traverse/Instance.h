@@ -17,6 +17,7 @@
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/traverse/Motion.h"
 #include "runtime/device/traverse/Triangle.h"
 
 namespace rtsl::device {
@@ -28,9 +29,26 @@ inline bool hasTransforms(const RtslLaunch &launch) {
 inline bool isTransformed(const RtslLaunch &launch, const RtslInstance &instance) {
   return hasTransforms(launch) && instance.transform != 0;
 }
-inline const RtslTransform &transformOf(const RtslLaunch &launch, const RtslInstance &instance) {
-  return launch.transforms[instance.transform];
-}
+
+/// A transform of the launch, by its index, at a time. One that does not move is not copied.
+class TransformAt {
+public:
+  TransformAt(const RtslLaunch &launch, uint32_t number, float time)
+      : used(launch.transforms + number) {
+    if (!moves(launch, *used))
+      return;
+    moved = transformAt(launch, launch.motions[used->motion], time);
+    used = &moved;
+  }
+  TransformAt(const RtslLaunch &launch, const RtslInstance &instance, float time)
+      : TransformAt(launch, instance.transform, time) {}
+  TransformAt(const TransformAt &) = delete;
+  operator const RtslTransform &() const { return *used; }
+
+private:
+  const RtslTransform *used;
+  RtslTransform moved;
+};
 
 /// A 3x3 matrix of doubles, stored as columns, times a vector.
 inline Vec3 product(const double m[9], double x, double y, double z) {
@@ -103,11 +121,11 @@ struct InstanceRay : TriangleRay {
   Range range; // in the instance's box, widened: hits are moved into it, as in moveIntoBox
 };
 
-/// The ray in the object space of an instance with a transform. False if it cannot hit anything
+/// The ray in the object space of an instance with a transform, at a time. False if it cannot hit anything
 /// there before `limit`: its direction vanishes in object space, or it misses the instance's box,
 /// as it then does in every traversal.
 inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, uint32_t number,
-                          float epsilon, float limit, InstanceRay &entered) {
+                          float time, float epsilon, float limit, InstanceRay &entered) {
   const RtslInstance &instance = instanceAt(launch, number);
   const Range range =
       rangeInBox(instance.lower, instance.upper, world.origin, world.inverse, 0, infinity);
@@ -116,7 +134,7 @@ inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, ui
   const Range widened = range.widened();
   if (widened.near > limit || widened.far < epsilon)
     return false;
-  const RtslTransform &transform = transformOf(launch, instance);
+  const TransformAt transform(launch, instance, time);
   const Vec3 origin = pointToObject(transform, world.origin);
   const Vec3 direction = vectorToObject(transform, world.direction);
   if (!isFinite(origin) || !isFinite(direction) || isZero(direction))
@@ -152,7 +170,7 @@ public:
       : state(state), isActive(hasTransforms(*state.launch) && transform != 0) {
     if (!isActive)
       return;
-    const RtslTransform &toWorld = state.launch->transforms[transform];
+    const TransformAt toWorld(*state.launch, transform, state.Time);
     origin = load(state.RayOrigin);
     direction = load(state.RayDirection);
     setRay(pointToObject(toWorld, origin), vectorToObject(toWorld, direction));
@@ -192,7 +210,8 @@ inline void describeTransforms(RtslState &state, uint32_t number) {
     state.ObjectToWorld[i] = state.WorldToObject[i] = i % 5 == 0 ? 1.0f : 0.0f;
   if (!hasTransforms(*state.launch) || number == 0)
     return;
-  const RtslTransform &transform = state.launch->transforms[number];
+  const TransformAt atTime(*state.launch, number, state.Time);
+  const RtslTransform &transform = atTime;
   const Vec3 origin = pointToObject(transform, {0, 0, 0});
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row) {

@@ -50,9 +50,10 @@ inline void triangleNormals(RtslState &state, const RtslMesh &mesh, const Triang
   Vec3 geometric = normalized(cross(p.v1 - p.v0, p.v2 - p.v0));
   Vec3 shading = geometric;
   if (mesh.normals) {
-    Vec3 sum = load(mesh.normals + 3 * size_t(index[0])) * w +
-               load(mesh.normals + 3 * size_t(index[1])) * u +
-               load(mesh.normals + 3 * size_t(index[2])) * v;
+    const auto normal = [&](int corner) {
+      return vertexAt(*state.launch, mesh, mesh.normals, index[corner], state.Time);
+    };
+    Vec3 sum = normal(0) * w + normal(1) * u + normal(2) * v;
     if (!isZero(sum)) { // normals may cancel, or be 0 in the file
       shading = normalized(sum);
       // The file's normals tell which side is outside; its winding is less often right.
@@ -100,10 +101,11 @@ inline void surfaceToWorld(RtslState &state, const RtslTransform &transform, uin
   }
 }
 
-/// Point, normals and texture coordinates of a mesh at state's hit, in object space.
-inline void describeTriangle(RtslState &state, const RtslMesh &mesh, uint32_t needs) {
+/// Point, normals and texture coordinates of a mesh at state's hit, on the triangle `p`, in object
+/// space.
+inline void describeTriangle(RtslState &state, const RtslMesh &mesh, const TriangleVertices &p,
+                             uint32_t needs) {
   const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
-  TriangleVertices p = triangleVertices(mesh, state.primitive);
   float u = state.u, v = state.v, w = (1.0f - u) - v;
   store(state.HitPoint,
         {interpolated(p.v0.x, p.v1.x, p.v2.x, u, v), interpolated(p.v0.y, p.v1.y, p.v2.y, u, v),
@@ -201,10 +203,10 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
     describeTransforms(state, instance);
   if (instance.primitive == 0) {
     const RtslMesh &mesh = launch.meshes[instance.mesh];
-    describeTriangle(state, mesh, needs);
+    const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
+    describeTriangle(state, mesh, p, needs);
     if (isTransformed(launch, instance))
-      surfaceToWorld(state, transformOf(launch, instance), needs,
-                     extents(triangleVertices(mesh, state.primitive)), 0);
+      surfaceToWorld(state, TransformAt(launch, instance, state.Time), needs, extents(p), 0);
     return;
   }
   {
@@ -213,7 +215,7 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   }
   if (isTransformed(launch, instance)) {
     const Vec3 point = load(state.HitPoint);
-    surfaceToWorld(state, transformOf(launch, instance), needs,
+    surfaceToWorld(state, TransformAt(launch, instance, state.Time), needs,
                    {absolute(point.x), absolute(point.y), absolute(point.z)}, state.hitPointError);
   }
 }

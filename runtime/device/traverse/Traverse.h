@@ -56,10 +56,20 @@ struct TriangleVertices {
   Vec3 v0, v1, v2;
 };
 
+/// Of a mesh that does not move, or at its first key.
 inline TriangleVertices triangleVertices(const RtslMesh &mesh, uint32_t triangle) {
   const uint32_t *index = mesh.indices + 3 * size_t(triangle);
   return {load(mesh.positions + 3 * size_t(index[0])), load(mesh.positions + 3 * size_t(index[1])),
           load(mesh.positions + 3 * size_t(index[2]))};
+}
+inline TriangleVertices triangleVertices(const RtslLaunch &launch, const RtslMesh &mesh,
+                                         uint32_t triangle, float time) {
+  if (!moves(launch, mesh))
+    return triangleVertices(mesh, triangle);
+  const uint32_t *index = mesh.indices + 3 * size_t(triangle);
+  return {vertexAt(mesh, mesh.positions, index[0], time),
+          vertexAt(mesh, mesh.positions, index[1], time),
+          vertexAt(mesh, mesh.positions, index[2], time)};
 }
 
 /// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
@@ -99,7 +109,8 @@ bool testTriangle(RtslState &state, const Ray &ray, const TriangleVertices &vert
 template <typename Ray>
 bool testTriangle(RtslState &state, const Ray &ray, const RtslMesh &mesh, uint32_t instance,
                   uint32_t triangle) {
-  return testTriangle(state, ray, triangleVertices(mesh, triangle), instance, triangle);
+  return testTriangle(state, ray, triangleVertices(*state.launch, mesh, triangle, state.Time),
+                      instance, triangle);
 }
 
 /// The first dimension of the random numbers in `intersect` of a primitive. Beyond those of any
@@ -151,7 +162,7 @@ bool visitInItsSpace(const RtslState &state, const TriangleRay &ray, const RtslL
   if (!hasOwnSpace(launch, instanceAt(launch, item.instance)))
     return visit(item, ray);
   InstanceRay entered;
-  return enterInstance(launch, ray, item.instance, state.Epsilon, limit, entered) &&
+  return enterInstance(launch, ray, item.instance, state.Time, state.Epsilon, limit, entered) &&
          visit(item, entered);
 }
 
@@ -234,7 +245,7 @@ struct LaunchTree {
         return visit(item, ray);
       InstanceRay entered;
       if (!enter(instance) ||
-          !enterInstance(launch, ray, item.instance, state.Epsilon, limit(), entered))
+          !enterInstance(launch, ray, item.instance, state.Time, state.Epsilon, limit(), entered))
         return false;
       return traverseBvh(launch, launch.meshTrees[treeNumber(launch, instance)], entered, tMin,
                          limit, [&](const RtslLeafItem &inside) {

@@ -116,7 +116,7 @@ def objects(layers):
 
 
 def paths():
-    """The path tracer: materials that call their own methods, default classes, surfaces that shine as lights."""
+    """The path tracer: materials that call their own methods, default classes, surfaces that shine as lights, one of which moves."""
     library = pathlib.Path(source, "library/std")
     return {
         "rtsl": 1,
@@ -131,7 +131,8 @@ def paths():
                     sphere([0, 3, 1], 0.5, {"class": "Emitter", "radiance": 20})],
         "nodes": {"lamp": {"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.3}, "material": {"class": "Emitter", "radiance": 30}},
                   "both": {"children": [{"child": "lamp", "transform": {"scale": [1, 2, 0.5], "translate": [3, 2, 1]}},
-                                        {"child": "lamp", "transform": {"translate": [-3, 2, 1]}}]}},
+                                        {"child": "lamp", "transform": {"keys": [
+                                            {"translate": [-3, 2, 1]}, {"scale": [1, 1.5, 1], "rotate": [0, 0, 50], "translate": [-3, 1, 1]}]}}]}},
         "root": "both",
         "lights": [{"class": "PointLight", "position": [2, 4, 4], "intensity": 5}],
         "background": {"class": "UniformSky", "radiance": [0.2, 0.3, 0.4]},

@@ -37,7 +37,7 @@ bool hitFrom(Random &random, const Triangle &target, RtslState &state) {
   RtslMesh mesh{};
   mesh.positions = arrays.positions.data();
   mesh.indices = arrays.indices.data();
-  device::describeTriangle(state, mesh, RTSL_NEEDS_NORMALS);
+  device::describeTriangle(state, mesh, device::triangleVertices(mesh, 0), RTSL_NEEDS_NORMALS);
   return true;
 }
 

@@ -29,6 +29,38 @@ Transform randomTransform(std::mt19937 &random) {
       .then(Transform::translate(moveX, moveY, moveZ));
 }
 
+/// Keys of scale, rotation and translation at random times, in the space of another transform that
+/// may have keys, too.
+MovingTransform randomMotion(std::mt19937 &random) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto factor = [&](auto mapOf) {
+    MotionFactor factor;
+    factor.times = {0.125f, 0.5f, 1};
+    for (std::size_t i = 0; i < factor.times.size(); ++i)
+      factor.maps.push_back(mapOf());
+    return MovingTransform(factor);
+  };
+  MotionFactor rotation;
+  rotation.times = {0, 0.25f, 0.75f};
+  const double x = unit(random), y = unit(random);
+  rotation.turns = {turnAbout({x, y, 0.5}, 10, 500),
+                    turnBetween(axisRotation({x, 1, y}, 100), axisRotation({1, y, x}, -70))};
+  const MovingTransform moves =
+      factor([&] {
+        const double size = std::exp(unit(random));
+        return Transform::scale(size, size * std::exp(unit(random)), -size);
+      })
+          .then(MovingTransform(rotation))
+          .then(factor([&] { return Transform::translate(unit(random), 4 * unit(random), 0); }));
+  const bool isInMatrixKeys = random() % 2;
+  const Transform a = randomTransform(random);
+  Transform b = a;
+  b.columns[3][1] += 3;
+  b.columns[0][0] *= 1.5;
+  return moves.then(isInMatrixKeys ? MovingTransform(MotionFactor{{0.25f, 0.5f}, {a, b}, {}})
+                                   : MovingTransform(a));
+}
+
 Mesh clump(std::mt19937 &random, int triangles) {
   std::uniform_real_distribution<float> unit(-1, 1);
   Mesh mesh;
@@ -43,8 +75,20 @@ Mesh clump(std::mt19937 &random, int triangles) {
   return mesh;
 }
 
-/// Instances of two meshes, one of which is in world space too, of spheres, and of rows of spheres;
-/// some of them below selectors, one of which is below the other.
+/// A clump whose vertices move.
+Mesh movingClump(std::mt19937 &random, int triangles) {
+  std::vector<Mesh> keys(3, clump(random, triangles));
+  for (Mesh &key : keys) {
+    const Mesh other = clump(random, triangles);
+    for (std::size_t i = 0; i < key.positions.size(); ++i)
+      key.positions[i] += 0.5f * other.positions[i];
+  }
+  return movingMesh(std::move(keys), {0.125f, 0.25f, 0.875f}, {"a", "b", "c"});
+}
+
+/// Instances of three meshes, of which two are in world space too, of spheres, and of rows of
+/// spheres; some of them below selectors, one of which is below the other. One mesh moves, and so do
+/// some instances.
 Scene randomScene(unsigned seed, int instances) {
   std::mt19937 random(seed);
   Scene scene(fakeProgram());
@@ -52,18 +96,19 @@ Scene randomScene(unsigned seed, int instances) {
       "Camera",
       members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
   const RtslRef material = scene.addObject("Normal", members({}));
-  const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)),
-                                  scene.addMesh(clump(random, 3))};
+  const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)), scene.addMesh(clump(random, 3)),
+                                  scene.addMesh(movingClump(random, 12))};
   const RtslRef sphere = scene.addObject("Sphere", {vector(0.25, 0, 0), 0.75});
   const RtslRef row = scene.addObject("Sphere", {vector(-1, 0.5, 0), 0.35});
   const RtslRef chooser = scene.addObject("Chooser", members({}));
   const std::uint32_t outer = scene.addSelector(chooser, 2),
                       inner = scene.addSelector(chooser, 2, randomTransform(random), outer + 1);
   scene.addMeshInstance(meshes[0], material);
+  scene.addMeshInstance(meshes[2], material);
   scene.addPrimitive(row, material, {}, 7);
   for (int i = 0; i < instances; ++i) {
     Placement placement;
-    placement.transform = randomTransform(random);
+    placement.transform = i % 4 == 1 ? randomMotion(random) : randomTransform(random);
     placement.mask = i % 4 == 0 ? 1 : 3;
     placement.roots = i % 3 == 0 ? 2 : i % 3 == 1 ? 3 : 1;
     placement.id = i - 20;
@@ -73,7 +118,7 @@ Scene randomScene(unsigned seed, int instances) {
     else if (i % 3 == 2)
       scene.addPrimitive(sphere, material, placement);
     else
-      scene.addMeshInstance(meshes[i % 2], material, placement);
+      scene.addMeshInstance(meshes[i % 9 == 0 ? 2 : i % 2], material, placement);
   }
   return scene;
 }
@@ -115,11 +160,13 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
   launch.host = &embree;
   EXPECT_EQ(launch.needs & RTSL_HAS_ALL, RTSL_HAS_ALL); // and all of them are tested
   std::mt19937 random(5);
-  int hits = 0, hitsOfInstances = 0, hitsOfRows = 0, hitsBelowSelectors = 0;
+  int hits = 0, hitsOfInstances = 0, hitsOfRows = 0, hitsBelowSelectors = 0, hitsInMotion = 0,
+      hitsOfKeys = 0;
   for (int i = 0; i < 6000; ++i) {
     const Ray ray = randomRay(random, 1);
     const float epsilon = i % 3 ? 0 : 0.25f, distance = i % 5 ? INFINITY : 4;
     RtslState brute = makeState(own.deviceLaunch(), ray.o, ray.d, epsilon, distance);
+    brute.Time = i % 11 ? float(random()) * 0x1p-32f : i % 22 ? NAN : 2;
     brute.rayMask = i % 2 ? ~0u : 2;
     brute.rayRoot = i % 7 == 0 ? 1 : 0;
     RtslState ofOwn = brute, ofEmbree = brute, any = brute;
@@ -136,6 +183,8 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
       continue;
     const RtslInstance &hit = launch.instances[brute.instance];
     hitsOfInstances += hit.transform != 0;
+    hitsInMotion += launch.transforms[hit.transform].motion != 0;
+    hitsOfKeys += hit.primitive == 0 && launch.meshes[hit.mesh].keyTimes;
     hitsOfRows += hit.boxCount != 0;
     hitsBelowSelectors += hit.selection != 0;
   }
@@ -143,6 +192,8 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
   EXPECT_GT(hitsOfInstances, 2000);
   EXPECT_GT(hitsOfRows, 200);
   EXPECT_GT(hitsBelowSelectors, 300);
+  EXPECT_GT(hitsInMotion, 300);
+  EXPECT_GT(hitsOfKeys, 300);
 }
 
 TEST(Instances, AreDescribedInWorldSpace) {
@@ -154,14 +205,16 @@ TEST(Instances, AreDescribedInWorldSpace) {
   for (int i = 0; i < 4000; ++i) {
     const Ray ray = randomRay(random, 1);
     RtslState state = makeState(launch, ray.o, ray.d);
+    state.Time = float(random()) * 0x1p-32f;
     if (own.traverse(state, 0) != RTSL_HIT || launch.instances[state.instance].transform == 0)
       continue;
     ++described;
     const RtslInstance &instance = launch.instances[state.instance];
-    const RtslTransform &transform = launch.transforms[instance.transform];
+    const device::TransformAt atTime(launch, instance, state.Time);
+    const RtslTransform &transform = atTime;
     describeHit(state, RTSL_NEEDS_ALL & ~RTSL_NEEDS_HIT_ERRORS, device::LinkedSlots());
     EXPECT_EQ(state.InstanceId,
-              int(state.instance) - 22); // two instances come before those with ids
+              int(state.instance) - 23); // three instances come before those with ids
     const Vec3 normal = device::load(state.GeometricNormal);
     EXPECT_NEAR(device::dot(normal, normal), 1, 1e-6f);
     // The ray is in world space again.
@@ -183,7 +236,7 @@ TEST(Instances, AreDescribedInWorldSpace) {
       continue;
     // The point is as close to the exact plane as its error says, and the normal that of the plane.
     const device::TriangleVertices p =
-        device::triangleVertices(launch.meshes[instance.mesh], state.primitive);
+        device::triangleVertices(launch, launch.meshes[instance.mesh], state.primitive, state.Time);
     long double v[3][3];
     for (int row = 0; row < 3; ++row) {
       v[0][row] = exact(transform, row, p.v0, transform.translation[row]);

@@ -17,6 +17,7 @@ inline RtslState makeState(const RtslLaunch &launch, device::Vec3 o, device::Vec
   RtslState state;
   std::memset(&state, 0x7f, sizeof state); // nothing may rely on cleared memory
   state.launch = &launch;
+  state.Time = 0;
   state.rayMask = ~0u;
   state.rayRoot = 0;
   device::store(state.RayOrigin, o);

@@ -1,0 +1,92 @@
+//===- Motion.h - affine maps that depend on time -------------------------===//
+//
+// Time runs from 0 to 1 while the shutter of a camera may be open. A moving map is a product of
+// factors. An affine factor has a map at each of its keys, between which all twelve numbers are
+// interpolated linearly. A rotation turns about one axis, at a steady speed, from each key to the
+// next: scale, rotation and translation with keys are three factors. Before its first key and after
+// its last one a factor rests.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/geometry/Transform.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace rtsl::runtime {
+
+/// An orientation: a unit quaternion (w, x, y, z).
+using Quaternion = std::array<double, 4>;
+
+Quaternion axisRotation(const std::array<double, 3> &axis, double degrees);
+/// First `a`, then `b`.
+Quaternion product(const Quaternion &b, const Quaternion &a);
+Transform rotationOf(const Quaternion &q);
+
+/// A steady turn from an orientation: after a share s of its time it is cos(s angle) from + sin(s
+/// angle) across. `across` is perpendicular to `from`, and the turn twice the angle, in radians.
+struct Turn {
+  Quaternion from, across;
+  double angle;
+};
+/// The shortest turn between two orientations.
+Turn turnBetween(const Quaternion &from, const Quaternion &to);
+/// By any number of degrees about an axis, of any length but zero.
+Turn turnAbout(const std::array<double, 3> &axis, double fromDegrees, double toDegrees);
+
+struct MotionFactor {
+  std::vector<float> times;    // of the keys, ascending, in [0, 1]; one key: a constant
+  std::vector<Transform> maps; // of an affine factor, at its keys
+  std::vector<Turn> turns;     // of a rotation, from each key but the last one
+
+  bool isRotation() const { return maps.empty(); }
+  Transform at(double time) const;
+};
+
+/// An affine map that may depend on time.
+class MovingTransform {
+public:
+  MovingTransform() = default;
+  MovingTransform(const Transform &still) : atRest(still) {}
+  explicit MovingTransform(MotionFactor factor) : product{std::move(factor)} {}
+
+  bool moves() const { return !product.empty(); }
+  /// If it does not move.
+  const Transform &still() const { return atRest; }
+  /// If it moves: the first one is applied first, and no two neighbours are constant.
+  const std::vector<MotionFactor> &factors() const { return product; }
+
+  Transform at(double time) const;
+  /// The times of all keys of all factors, ascending, each once, with 0 and 1.
+  std::vector<float> keyTimes() const;
+
+  /// First `*this`, then `next`.
+  MovingTransform then(const MovingTransform &next) const;
+
+private:
+  Transform atRest;
+  std::vector<MotionFactor> product;
+};
+
+bool operator==(const MovingTransform &a, const MovingTransform &b);
+/// An order of any kind, for sorted containers.
+bool operator<(const MovingTransform &a, const MovingTransform &b);
+
+/// A box around all places of the box [lower, upper] while the map moves, in double. `size` is a
+/// bound of the coordinates that occur in the computation. An infinite side stays infinite.
+///
+/// Between two times at a distance h, a point that is accelerated by at most a is within h^2 a / 8
+/// of the segment between its places at these times. So the boxes at some times, and the
+/// accelerations in between, bound all places at all times. The acceleration is bounded by the
+/// product rule, from the norms of the factors and of their derivatives.
+struct SweptBox {
+  std::array<double, 3> lower, upper, size;
+};
+SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3]);
+
+/// Its keys and some times between them, at which a map is checked.
+std::vector<double> timesToCheck(const MovingTransform &map);
+
+} // namespace rtsl::runtime
