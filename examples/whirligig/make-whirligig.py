@@ -82,8 +82,8 @@ def scene():
         "materials": materials,
         "nodes": nodes,
         "root": "world",
-        # A frame of 24: the shutter is open for half of its time.
-        "render": {"engine": "path", "size": [480, 360], "spp": 128, "depth": 5, "shutter": [0.125, 0.145833]},
+        # A frame of 24: the shutter is open for a quarter of its time.
+        "render": {"engine": "path", "size": [480, 360], "spp": 128, "depth": 5, "shutter": [0.125, 0.135]},
     }
 
 
@@ -131,7 +131,7 @@ def main():
         frames = []
         for frame in range(count):
             picture = pathlib.Path(folder, f"{frame:04}.png")
-            shutter = [frame / count, (frame + 0.5) / count]
+            shutter = [frame / count, (frame + 0.25) / count]
             subprocess.run([sys.argv[1], "render", HERE / "whirligig.json", "-o", picture, "--size", "240x180", "--spp", "64",
                             "--set", f"render.shutter={shutter}"], check=True)
             frames.append(picture.read_bytes())

@@ -236,10 +236,10 @@ void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
   items.insert(items.end(), tree.items.begin(), tree.items.end());
 }
 
-static void addTriangles(const RtslMesh &mesh, std::uint32_t instance,
+static void addTriangles(const RtslLaunch &launch, const RtslMesh &mesh, std::uint32_t instance,
                          std::vector<BvhItem> &items) {
   for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
-    const RtslBox box = device::boxOfTriangle(mesh, t);
+    const RtslBox box = device::boxOfTriangle(launch, mesh, t);
     BvhItem item{{}, {instance, t}};
     std::copy_n(box.lower, 3, item.bounds.lower);
     std::copy_n(box.upper, 3, item.bounds.upper);
@@ -264,7 +264,7 @@ static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance
 static void addContents(const RtslLaunch &launch, const RtslInstance &instance,
                         std::uint32_t number, std::vector<BvhItem> &items) {
   if (instance.primitive == 0)
-    addTriangles(launch.meshes[instance.mesh], number, items);
+    addTriangles(launch, launch.meshes[instance.mesh], number, items);
   else
     addPrimitives(launch, instance, number, items);
 }

@@ -244,7 +244,7 @@ RtslBox boxOf(const EmbreeSpace &space, const EmbreePrimitive &primitive) {
   const RtslInstance &instance = launch.instances[primitive.instance];
   return primitive.intersect
              ? device::boxOf(launch, instance, primitive.number)
-             : device::boxOfTriangle(launch.meshes[instance.mesh], primitive.number);
+             : device::boxOfTriangle(launch, launch.meshes[instance.mesh], primitive.number);
 }
 
 void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {

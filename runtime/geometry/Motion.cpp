@@ -283,7 +283,8 @@ bool operator<(const MovingTransform &a, const MovingTransform &b) {
   return compare(a, b) < 0;
 }
 
-SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3]) {
+SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3],
+                  float begin, float end) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   SweptBox swept{{inf, inf, inf}, {-inf, -inf, -inf}, {0, 0, 0}};
   double radius = 0;
@@ -295,17 +296,20 @@ SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float 
   }
   if (std::isinf(radius)) // an infinite plane that turns is everywhere
     return {{-inf, -inf, -inf}, {inf, inf, inf}, {inf, inf, inf}};
+  addBox(swept, map.at(begin), lower, upper, 0);
   const std::vector<float> times = map.keyTimes();
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-    const double begin = times[i], end = times[i + 1];
-    const Speeds speeds = speedsOf(map, radius, 0.5 * (begin + end));
+    const double from = std::max(times[i], begin), to = std::min(times[i + 1], end);
+    if (!(from < to))
+      continue;
+    const Speeds speeds = speedsOf(map, radius, 0.5 * (from + to));
     // So many parts that the margin is a small share of the box.
     constexpr double share = 1e-3, mostParts = 64;
-    const double bulge = speeds.second * (end - begin) * (end - begin) / 8;
+    const double bulge = speeds.second * (to - from) * (to - from) / 8;
     const double parts =
         std::clamp(std::ceil(std::sqrt(bulge / (share * speeds.value))), 1.0, mostParts);
     for (double part = 0; part <= parts; ++part)
-      addBox(swept, map.at(begin + (end - begin) * (part / parts)), lower, upper,
+      addBox(swept, map.at(from + (to - from) * (part / parts)), lower, upper,
              bulge / (parts * parts));
   }
   return swept;

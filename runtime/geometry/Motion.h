@@ -39,7 +39,7 @@ Turn turnAbout(const std::array<double, 3> &axis, double fromDegrees, double toD
 struct MotionFactor {
   std::vector<float> times;    // of the keys, ascending, in [0, 1]; one key: a constant
   std::vector<Transform> maps; // of an affine factor, at its keys
-  std::vector<Turn> turns;     // of a rotation, from each key but the last one
+  std::vector<Turn> turns;     // of a rotation: each ends where the next one begins
 
   bool isRotation() const { return maps.empty(); }
   Transform at(double time) const;
@@ -74,7 +74,7 @@ bool operator==(const MovingTransform &a, const MovingTransform &b);
 /// An order of any kind, for sorted containers.
 bool operator<(const MovingTransform &a, const MovingTransform &b);
 
-/// A box around all places of the box [lower, upper] while the map moves, in double. `size` is a
+/// A box around all places of the box [lower, upper] at times from `begin` to `end`, in double. `size` is a
 /// bound of the coordinates that occur in the computation. An infinite side stays infinite.
 ///
 /// Between two times at a distance h, a point that is accelerated by at most a is within h^2 a / 8
@@ -84,7 +84,8 @@ bool operator<(const MovingTransform &a, const MovingTransform &b);
 struct SweptBox {
   std::array<double, 3> lower, upper, size;
 };
-SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3]);
+SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3],
+                  float begin = 0, float end = 1);
 
 /// Its keys and some times between them, at which a map is checked.
 std::vector<double> timesToCheck(const MovingTransform &map);

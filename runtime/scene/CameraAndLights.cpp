@@ -37,18 +37,6 @@ void CameraAndLights::setRayGeneration(const Objects &objects, RtslRef object) {
   rayGeneration = object;
 }
 
-void CameraAndLights::setShutter(float open, float close) {
-  if (!(0 <= open && open <= close && close <= 1))
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("the shutter opens at a time from 0 to 1 and closes at a later one, not "
-                    "at {} and {}",
-                    open, close));
-  hasShutter = true;
-  shutterOpen = open;
-  shutterClose = close;
-}
-
 void CameraAndLights::setBackground(const Objects &objects, RtslRef miss) {
   objects.requireRole(miss, "rt_Miss", ifClassic(objects.program(), "miss"));
   background = miss;
@@ -90,11 +78,6 @@ void CameraAndLights::fill(RtslLaunch &launch) const {
   launch.lightCount = lightCount();
   launch.camera = camera;
   launch.rayGeneration = rayGeneration;
-  if (hasShutter)
-    launch.needs |= RTSL_HAS_SHUTTER;
-  const bool isOpen = launch.needs & RTSL_HAS_SHUTTER; // also if something moves
-  launch.shutterOpen = isOpen ? shutterOpen : 0;
-  launch.shutterClose = isOpen ? shutterClose : 0;
   launch.background = background;
   launch.exception = exception;
   std::copy_n(backgroundColor, RTSL_MAX_COLOR, launch.backgroundColor);

@@ -1,7 +1,7 @@
 //===- CameraAndLights.h - the objects of a scene that are not geometry ---===//
 //
-// The camera or the ray generation, the shutter, lights, the background and the exception, and the
-// constant colors of the background and the ambient light.
+// The camera or the ray generation, lights, the background and the exception, and the constant
+// colors of the background and the ambient light.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,7 +20,6 @@ public:
   void setRayGeneration(const Objects &objects, RtslRef object);
   void setBackground(const Objects &objects, RtslRef miss);
   void setException(const Objects &objects, RtslRef object);
-  void setShutter(float open, float close);
   void setBackgroundColor(const Objects &objects, const std::vector<float> &color);
   void setAmbient(const Objects &objects, const std::vector<float> &color);
 
@@ -41,8 +40,6 @@ public:
 
 private:
   std::vector<RtslRef> lights;
-  bool hasShutter = false;
-  float shutterOpen = 0, shutterClose = 1;
   RtslRef camera = 0, rayGeneration = 0, background = 0, exception = 0;
   float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
 };

@@ -72,6 +72,21 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
 
 } // namespace
 
+void Geometry::setShutter(float open, float close) {
+  if (!(0 <= open && open <= close && close <= 1))
+    throw Error(
+        ErrorCode::OutOfRange,
+        fmt::format("the shutter opens at a time from 0 to 1 and closes at a later one, not "
+                    "at {} and {}",
+                    open, close));
+  if (needs & (RTSL_HAS_MOTION | RTSL_HAS_MESH_KEYS))
+    throw Error(ErrorCode::NotSettable,
+                "the shutter must be set before anything that moves is added");
+  needs |= RTSL_HAS_SHUTTER;
+  shutterOpen = open;
+  shutterClose = close;
+}
+
 /// Its index; 0 for the identity.
 std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std::string &name,
                                      const std::optional<rtsl::Place> &where) {
@@ -167,7 +182,7 @@ std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, 
   std::copy_n(given.lower, 3, instance.boundMin);
   std::copy_n(given.upper, 3, instance.boundMax);
   if (instance.transform != 0)
-    setWorldBounds(instance, given, placement.transform);
+    setWorldBounds(instance, given, placement.transform, shutterOpen, shutterClose);
   else
     setWorldBounds(instance, given);
   return addInstance(objects, instance, info.name, instance.transform != 0 ? 1 : count);
@@ -263,7 +278,7 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
   if (meshTable[mesh].keyTimes)
     needs |= RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER;
   if (instance.transform != 0)
-    setWorldBounds(instance, meshBounds(mesh), placement.transform);
+    setWorldBounds(instance, meshBounds(mesh), placement.transform, shutterOpen, shutterClose);
   return addInstance(objects, instance, meshes[mesh]->name,
                      instance.transform != 0 ? 1 : meshTable[mesh].triangleCount);
 }
@@ -330,6 +345,10 @@ void Geometry::fill(RtslLaunch &launch) const {
   launch.meshCount = std::uint32_t(meshTable.size());
   launch.transformCount = std::uint32_t(transforms.size());
   launch.needs |= needs;
+  if (needs & RTSL_HAS_SHUTTER) {
+    launch.shutterOpen = shutterOpen;
+    launch.shutterClose = shutterClose;
+  }
 }
 
 } // namespace rtsl::runtime

@@ -23,6 +23,8 @@ namespace rtsl::runtime {
 
 class Geometry {
 public:
+  /// Scene::setShutter.
+  void setShutter(float open, float close);
   /// Scene::addPrimitive. `launch` returns the scene's current launch, for `computeBounds`.
   std::uint32_t addPrimitive(const Objects &objects, RtslRef primitive, RtslRef material,
                              const Placement &placement, std::uint32_t count,
@@ -94,6 +96,7 @@ private:
   std::map<RtslRef, PrimitiveSet> sets;                   // by primitive
   std::vector<RtslInstance> instances;
   std::vector<std::string> instanceNames; // as long
+  float shutterOpen = 0, shutterClose = 1;
   std::uint64_t treeItems = 0;
   std::uint32_t needs = 0;
   std::vector<MeshAttribute> attributes;

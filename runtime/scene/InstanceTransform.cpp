@@ -76,8 +76,8 @@ void setWorldBounds(RtslInstance &instance, const Bounds &bounds) {
   }
 }
 
-void setWorldBounds(RtslInstance &instance, const Bounds &bounds,
-                    const MovingTransform &transform) {
+void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const MovingTransform &transform,
+                    float begin, float end) {
   MovingTransform map = transform;
   if (!map.moves()) { // as it is stored
     Transform still = map.still();
@@ -86,7 +86,7 @@ void setWorldBounds(RtslInstance &instance, const Bounds &bounds,
         x = double(float(x));
     map = still;
   }
-  const SweptBox swept = sweptBox(map, bounds.lower, bounds.upper);
+  const SweptBox swept = sweptBox(map, bounds.lower, bounds.upper, begin, end);
   for (std::size_t i = 0; i < 3; ++i) {
     // A moving map is rounded to floats, and the ray that is tested inside is rounded once more than
     // the one that meets this box.

@@ -27,8 +27,9 @@ RtslTransform roundedTransform(const MovingTransform &transform, const std::stri
 
 /// Sets the box for traversal from the bounds in object space, without a transform.
 void setWorldBounds(RtslInstance &instance, const Bounds &bounds);
-/// The same for an instance with this transform, whatever the time.
-void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const MovingTransform &transform);
+/// The same for an instance with this transform, at all times between two.
+void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const MovingTransform &transform,
+                    float begin, float end);
 
 /// The smallest box around the vertices that triangles use, at all keys.
 Bounds boundsOf(const Mesh &mesh);

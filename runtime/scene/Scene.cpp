@@ -100,6 +100,10 @@ std::vector<OutputBuffer> Scene::outputs() const {
 // Geometry
 //===----------------------------------------------------------------------===//
 
+void Scene::setShutter(float open, float close) {
+  self->geometry.setShutter(open, close);
+}
+
 std::uint32_t Scene::addPrimitive(RtslRef primitive, RtslRef material, const Placement &placement,
                                   std::uint32_t count) {
   self->emitters.reset();
@@ -154,9 +158,6 @@ void Scene::setBackground(RtslRef miss) {
 }
 void Scene::setException(RtslRef exception) {
   self->cameraAndLights.setException(self->objects, exception);
-}
-void Scene::setShutter(float open, float close) {
-  self->cameraAndLights.setShutter(open, close);
 }
 void Scene::setBackgroundColor(const std::vector<float> &color) {
   self->cameraAndLights.setBackgroundColor(self->objects, color);

@@ -45,6 +45,12 @@ public:
   RtslRef addObject(const std::string &className, std::vector<Value> arguments,
                     const std::string &name = {});
 
+  /// The times of samples are drawn between these two, 0 <= open <= close <= 1; rays of other times
+  /// see the scene as when it opens or closes. Without it they are drawn from all of [0, 1] if
+  /// something moves, and are 0 if nothing does. Throws OutOfRange, and NotSettable if anything that
+  /// moves has been added: bounds hold for these times alone.
+  void setShutter(float open, float close);
+
   /// Adds an instance of an RTSL primitive to what rays can hit. Its bounds are computed at once:
   /// if they are inverted or not numbers, DegenerateGeometry is thrown; a box without any extent
   /// gives a warning, because no ray can hit it. A transform that is not finite, or so close to
@@ -77,9 +83,6 @@ public:
   void setBackground(RtslRef miss);
   /// What samples are that meet an exception, in programs with RTSL_FEATURE_EXCEPTIONS.
   void setException(RtslRef exception);
-  /// The times of samples are drawn between these two, 0 <= open <= close <= 1. Without it they
-  /// are drawn from all of [0, 1] if something moves, and are 0 if nothing does. Throws OutOfRange.
-  void setShutter(float open, float close);
   /// As many numbers as the program's color has components, red, green and blue, or one for all.
   /// Throws WrongType.
   void setBackgroundColor(const std::vector<float> &color);

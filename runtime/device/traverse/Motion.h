@@ -2,8 +2,9 @@
 //
 // What moves is computed for the time of a ray when the ray reaches it: a transform as a product of
 // its factors, in double, rounded once to the floats of an RtslTransform, so that everything else
-// treats it like one that rests; a vertex of a mesh by interpolation between its keys. Times before
-// the first key, after the last one or not a number are those of the nearest key, the first for NaN.
+// treats it like one that rests; a vertex of a mesh by interpolation between its keys. Before its
+// first key and after its last one everything rests, and rays see nothing outside of the shutter's
+// time.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,6 +14,11 @@
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
+
+/// A ray's time, in the shutter: NaN is when it opens.
+inline float timeInShutter(const RtslLaunch &launch, float time) {
+  return time > launch.shutterOpen ? minimum(time, launch.shutterClose) : launch.shutterOpen;
+}
 
 /// Does some transform of the scene move? Folds to a constant in a compiled program.
 inline bool hasMotion(const RtslLaunch &launch) {
@@ -134,6 +140,7 @@ inline void invert(RtslTransform &transform) {
 
 /// A moving transform at a time.
 inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &motion, float time) {
+  time = timeInShutter(launch, time);
   const RtslMotionFactor *factors = launch.motionFactors + motion.firstFactor;
   AffineMap map = factorAt(launch, factors[0], time);
   for (uint32_t i = 1; i < motion.factorCount; ++i)
@@ -148,7 +155,8 @@ inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &mot
   return transform;
 }
 
-/// The three numbers of a vertex, of positions or normals of a mesh that has several keys.
+/// The three numbers of a vertex, of positions or normals of a mesh that has several keys, at a time
+/// in the shutter.
 inline Vec3 vertexAt(const RtslMesh &mesh, const float *values, uint32_t vertex, float time) {
   const KeyTime at =
       findKey(mesh.keyCount, time, [&mesh](uint32_t key) { return mesh.keyTimes[key]; });
@@ -162,28 +170,45 @@ inline Vec3 vertexAt(const RtslMesh &mesh, const float *values, uint32_t vertex,
 /// The same for any mesh of the launch.
 inline Vec3 vertexAt(const RtslLaunch &launch, const RtslMesh &mesh, const float *values,
                      uint32_t vertex, float time) {
-  return moves(launch, mesh) ? vertexAt(mesh, values, vertex, time)
+  return moves(launch, mesh) ? vertexAt(mesh, values, vertex, timeInShutter(launch, time))
                              : load(values + 3 * size_t(vertex));
 }
 
-/// The smallest box around a triangle at all times: interpolated vertices lie between those at keys.
-inline RtslBox boxOfTriangle(const RtslMesh &mesh, uint32_t triangle) {
+/// A box around a triangle while the shutter is open: around its places when it opens and closes and
+/// at the keys in between, enlarged by the rounding of places in between.
+inline RtslBox boxOfTriangle(const RtslLaunch &launch, const RtslMesh &mesh, uint32_t triangle) {
+  const uint32_t *index = mesh.indices + 3 * size_t(triangle);
   RtslBox box;
   for (int axis = 0; axis < 3; ++axis) {
     box.lower[axis] = __builtin_inff();
     box.upper[axis] = -__builtin_inff();
   }
-  const uint32_t keys = mesh.keyTimes ? mesh.keyCount : 1;
-  for (uint32_t key = 0; key < keys; ++key)
-    for (int corner = 0; corner < 3; ++corner) {
-      const size_t vertex =
-          size_t(key) * mesh.vertexCount + mesh.indices[3 * size_t(triangle) + corner];
-      for (int axis = 0; axis < 3; ++axis) {
-        const float x = mesh.positions[3 * vertex + axis];
-        box.lower[axis] = minimum(box.lower[axis], x);
-        box.upper[axis] = maximum(box.upper[axis], x);
-      }
+  const auto add = [&](Vec3 p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = minimum(box.lower[axis], p[axis]);
+      box.upper[axis] = maximum(box.upper[axis], p[axis]);
     }
+  };
+  if (!mesh.keyTimes) {
+    for (int corner = 0; corner < 3; ++corner)
+      add(load(mesh.positions + 3 * size_t(index[corner])));
+    return box;
+  }
+  float size = 0; // of coordinates at keys
+  for (int corner = 0; corner < 3; ++corner) {
+    add(vertexAt(mesh, mesh.positions, index[corner], launch.shutterOpen));
+    add(vertexAt(mesh, mesh.positions, index[corner], launch.shutterClose));
+    for (uint32_t key = 0; key < mesh.keyCount; ++key) {
+      const Vec3 p = load(mesh.positions + 3 * (size_t(key) * mesh.vertexCount + index[corner]));
+      size = maximum(size, largest(p));
+      if (mesh.keyTimes[key] > launch.shutterOpen && mesh.keyTimes[key] < launch.shutterClose)
+        add(p);
+    }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    box.lower[axis] -= size * 0x1p-22f;
+    box.upper[axis] += size * 0x1p-22f;
+  }
   return box;
 }
 

@@ -66,6 +66,7 @@ inline TriangleVertices triangleVertices(const RtslLaunch &launch, const RtslMes
                                          uint32_t triangle, float time) {
   if (!moves(launch, mesh))
     return triangleVertices(mesh, triangle);
+  time = timeInShutter(launch, time);
   const uint32_t *index = mesh.indices + 3 * size_t(triangle);
   return {vertexAt(mesh, mesh.positions, index[0], time),
           vertexAt(mesh, mesh.positions, index[1], time),

@@ -1,9 +1,11 @@
 #include "FakeProgram.h"
 #include "TraversalRays.h"
 
+#include "runtime/device/engines/Classic.h"
 #include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/Surface.h"
 #include "runtime/embree/HostScene.h"
+#include "runtime/scene/InstanceTransform.h"
 
 #include <gtest/gtest.h>
 
@@ -50,17 +52,19 @@ MovingTransform randomMotion(std::mt19937 &random) {
   for (int i = 0; i < count; ++i) {
     const float middle = 0.25f + 0.5f * float(random()) * 0x1p-32f;
     const double x = unit(random), y = unit(random);
-    if (random() % 2)
+    if (random() % 2) {
+      const double degrees = 400 * unit(random);
       result = result.then(MovingTransform(MotionFactor{
           {0, middle, 1},
           {},
-          {turnAbout({x, y, 1}, 400 * unit(random), 400 * unit(random)),
-           turnBetween(axisRotation({x, 1, y}, 180 * x), axisRotation({1, x, y}, 180 * y))}}));
-    else
+          {turnAbout({x, y, 1}, 400 * unit(random), degrees),
+           turnBetween(axisRotation({x, y, 1}, degrees), axisRotation({1, x, y}, 180 * y))}}));
+    } else {
       result = result.then(MovingTransform(
           MotionFactor{{0.125f, middle, 0.875f},
                        {randomAffine(random), randomAffine(random), randomAffine(random)},
                        {}}));
+    }
     if (random() % 3 == 0)
       result = result.then(randomAffine(random));
   }

@@ -21,7 +21,7 @@ std::string parseError(const std::string &more) {
 /// "x y z" of a translation.
 std::string position(const Placement &placement) {
   std::string text;
-  for (double x : placement.transform.columns[3])
+  for (double x : placement.transform.still().columns[3])
     text += (text.empty() ? "" : " ") + std::to_string(int(x));
   return text;
 }
@@ -41,7 +41,7 @@ TEST(SceneGraph, GivesAnInstanceForEachWayDown) {
   ASSERT_EQ(scene.objects.size(), 3u);
   EXPECT_EQ(scene.roots, std::vector<std::string>{"root"});
   ASSERT_EQ(scene.objects[0].placements.size(), 1u);
-  EXPECT_TRUE(scene.objects[0].placements[0].transform.isIdentity());
+  EXPECT_TRUE(scene.objects[0].placements[0].transform.still().isIdentity());
   EXPECT_EQ(scene.objects[1].name.text, "a");
   std::vector<std::string> positions;
   for (const Placement &placement : scene.objects[1].placements)
@@ -147,7 +147,7 @@ TEST(SceneGraph, HasSelectorsAndVariablesForEachWayDown) {
 "root": "two")");
   ASSERT_EQ(scene.selectors.size(), 2u);
   EXPECT_EQ(scene.selectors[1].children, 2u);
-  EXPECT_EQ(scene.selectors[1].toWorld.columns[3][0], 1);
+  EXPECT_EQ(scene.selectors[1].toWorld.still().columns[3][0], 1);
   EXPECT_EQ(scene.selectors[1].above, 0u);
   ASSERT_EQ(scene.objects.size(), 1u);
   const auto &placements = scene.objects[0].placements;

@@ -51,7 +51,7 @@ TEST(SceneFile, ReadsEverySection) {
   EXPECT_EQ(scene.objects[0].name.text, "ball");
   EXPECT_EQ(scene.objects[0].material.name.text, "glass");
   EXPECT_EQ(scene.objects[0].primitive->members[0].first.text, "radius");
-  EXPECT_EQ(scene.objects[1].meshPath, "dir/teapot.ply");
+  EXPECT_EQ(scene.objects[1].mesh.at(0).path, "dir/teapot.ply");
   EXPECT_EQ(scene.objects[1].transform.columns[3][0], 2);
   EXPECT_EQ(scene.render.width, 100u);
   EXPECT_EQ(scene.render.height, 50u);
@@ -117,7 +117,7 @@ TEST(SceneFile, TransformsOfPrimitivesPlaceThem) {
                  "\"transform\": {\"translate\": [1, 2, 3]}}]"),
       "s.json");
   ASSERT_EQ(scene.objects[0].placements.size(), 1u);
-  EXPECT_EQ(scene.objects[0].placements[0].transform.columns[3][2], 3);
+  EXPECT_EQ(scene.objects[0].placements[0].transform.still().columns[3][2], 3);
   EXPECT_TRUE(scene.objects[0].transform.isIdentity());
 }
 
@@ -164,7 +164,7 @@ TEST(SceneFile, OverridesReachTheDescription) {
   SceneDescription scene =
       parseScene(withCamera("\"objects\": [{\"mesh\": \"a.ply\", \"material\": \"m\"}]"),
                  "dir/s.json", {"objects.0.mesh=b.ply", "render.spp=9"});
-  EXPECT_EQ(scene.objects[0].meshPath, "b.ply"); // as the shell's working directory sees it
+  EXPECT_EQ(scene.objects[0].mesh.at(0).path, "b.ply"); // as the shell's working directory sees it
   EXPECT_EQ(scene.render.samplesPerPixel, 9u);
   EXPECT_EQ(parseError(withCamera("\"ambient\": 1"), {"render.spp=0"}),
             "--set render.spp=0: outOfRange: `spp` must be between 1 and 2147483647, not 0");
