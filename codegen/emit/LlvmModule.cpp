@@ -1,6 +1,7 @@
 //===- LlvmModule.cpp - LLVM IR: translation, linking, optimisation -------===//
 #include "codegen/emit/LlvmModule.h"
 
+#include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 
@@ -286,6 +287,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   addScalarization(builder);
   if (module.getFunction("rtsl_run_state"))
     readLaunchAsVariable(module);
+  if (options.optimization > 0)
+    foldConstantFunctions(module, functions);
   if (options.isMegakernel && options.optimization > 0 && joinCalls(module))
     addJoining(builder);
 

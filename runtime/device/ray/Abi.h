@@ -69,6 +69,7 @@ typedef struct RtslTransform {
   float linear[9], translation[3];
   double inverse[9]; // of `linear`
   uint32_t motion;   // of RtslLaunch::motions; 0: it does not move
+  uint32_t unused;   // 0: all bytes of a scene are defined
 } RtslTransform;
 
 /// A transform that depends on time: a product of factors, of which the first is applied first.
@@ -91,6 +92,7 @@ typedef struct RtslMotionFactor {
 typedef struct RtslMotionKey {
   double numbers[12];
   float time; // in [0, 1]
+  uint32_t unused;
 } RtslMotionKey;
 
 /// An indexed triangle mesh in object space. `normals` and `uvs` may be null. If it has several
@@ -103,7 +105,7 @@ typedef struct RtslMesh {
   const uint32_t *indices; // 3 a triangle
   const float *keyTimes;   // ascending, in [0, 1]; null: it has one key, and does not move
   uint32_t vertexCount, triangleCount;
-  uint32_t keyCount;
+  uint32_t keyCount, unused;
 } RtslMesh;
 
 /// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node;
@@ -163,6 +165,7 @@ typedef struct RtslLaunch {
   uint32_t referenceChain;
   uint32_t width, height;
   uint32_t seed;
+  uint32_t needs;           // RTSL_NEEDS_*: what the classes of the scene read
   const RtslBvhNode *nodes; // device traversal; null if the host's own is used
   const RtslLeafItem *leafItems;
   // by mesh: the tree of a mesh that has instances with transforms, in its object space; then those
@@ -174,8 +177,7 @@ typedef struct RtslLaunch {
   const float *partChances;
   uint32_t emitterCount, partChanceCount;
   uint32_t rootIsLeaf,
-      nodeCount;  // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
-  uint32_t needs; // RTSL_NEEDS_*: what the classes of the scene read
+      nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
   const void *host; // the host's own (for example its Embree scene); never read by device code
   struct RtslStatus
       *status; // of the job or the rendering that runs the launch; null while a scene is built
