@@ -525,7 +525,8 @@ private:
                                                                     ? geometry.mesh[0].path
                                                                     : geometry.name.text);
     } catch (Error &error) {
-      error.place = placeOfMesh(geometry, error);
+      if (geometry.part.empty() || !error.place || error.place->line == 0) // else it is in the part
+        error.place = placeOfMesh(geometry, error);
       throw;
     }
   }

@@ -1,8 +1,10 @@
 #include "scenefile/Graph.h"
 
 #include "runtime/scene/InstanceTransform.h"
+#include "scenefile/NodeLights.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
+#include "scenefile/gltf/File.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>
@@ -42,6 +44,7 @@ struct Node {
   Place transformPlace; // if it has one
   std::vector<Edge> children;
   std::optional<GeometryDescription> geometry;
+  std::shared_ptr<ObjectDescription> light;
   std::optional<ReferenceDescription> selector; // among the children
   std::optional<std::int32_t> id;
   VariableDefinitions variables;
@@ -105,7 +108,7 @@ private:
     // All names first: nodes may mention each other in any order.
     for (const auto &[key, member] : value.members) {
       numbers.emplace(key.text, nodes.size());
-      nodes.push_back(newNode(key.text, value.place(key)));
+      nodes.push_back(newNode(key.text, member.place(key)));
     }
     for (std::size_t i = 0; i < value.members.size(); ++i)
       attempt([&] { readNode(value.members[i].second, i, "a node"); });
@@ -122,10 +125,13 @@ private:
   void readNode(const JsonValue &value, std::size_t number, const char *what) {
     expect(value, Kind::Object, what);
     const JsonValue *children = value.find("children"), *child = value.find("child");
+    const JsonValue *light = value.find("light");
     const bool isGeometry = value.find("mesh") || value.find("primitive");
-    if (int(isGeometry) + int(children != nullptr) + int(child != nullptr) != 1)
+    if (int(isGeometry) + int(light != nullptr) + int(children != nullptr) +
+            int(child != nullptr) !=
+        1)
       throw Error(ErrorCode::MissingKey,
-                  fmt::format("{} has either a `mesh` or a `primitive`, or a `child`, or a list of "
+                  fmt::format("{} has one of `mesh`, `primitive`, `light`, `model`, `child` and "
                               "`children`",
                               what),
                   value.place());
@@ -135,10 +141,13 @@ private:
         geometry.name = {nodes[number].name, nodes[number].place};
       nodes[number].geometry = std::move(geometry);
     } else {
-      checkKeys(value, {"child", "children", "selector", "transform", "id", "variables"}, what);
+      checkKeys(value, {"child", "children", "light", "selector", "transform", "id", "variables"},
+                what);
       if (const JsonValue *id = value.find("id"))
         nodes[number].id = readId(*id);
     }
+    if (light)
+      nodes[number].light = readLight(*light);
     if (const JsonValue *selector = value.find("selector")) {
       if (!children)
         throw Error(ErrorCode::UnknownKey, "a `selector` chooses among `children`: it needs a list",
@@ -163,6 +172,13 @@ private:
         attempt([&] { edges.push_back(readEdge(element)); });
     }
     nodes[number].children = std::move(edges);
+  }
+
+  std::shared_ptr<ObjectDescription> readLight(const JsonValue &value) const {
+    expect(value, Kind::Object, "`light`");
+    std::shared_ptr<ObjectDescription> light = readers.reference(value, "`light`").object;
+    requirePlaceable(light->className);
+    return light;
   }
 
   /// A name, or a node in place.
@@ -272,7 +288,7 @@ private:
   void countInstances() {
     for (std::size_t number : order) {
       Node &node = nodes[number];
-      node.instances = node.geometry ? 1 : 0;
+      node.instances = node.geometry || node.light ? 1 : 0;
       for (const Edge &child : node.children)
         node.instances = std::min(node.instances + nodes[child.node].instances, mostInstances + 1);
     }
@@ -298,6 +314,8 @@ private:
     const auto enter = [&](std::size_t node, InstanceDescription way) {
       addToWay(nodes[node], way);
       path.push_back({node, 0, way});
+      if (nodes[node].light)
+        placeLight(*nodes[node].light, way.transform);
       if (!nodes[node].geometry)
         return;
       if (worstCondition(way.transform) <= runtime::largestCondition) {
@@ -325,6 +343,10 @@ private:
         way.childOfSelector = std::uint32_t(step.next);
       enter(nodes[step.node].children[step.next++].node, way);
     }
+  }
+
+  void placeLight(const ObjectDescription &light, const runtime::MovingTransform &way) {
+    errors.attempt([&] { scene.lights.push_back(placedLight(light, way, scene)); });
   }
 
   /// What the node says of all that is below it.
@@ -397,7 +419,7 @@ private:
         for (const Edge &child : nodes[*number].children)
           isUsed[child.node] = true;
     for (std::size_t i = 0; i < named->members.size(); ++i)
-      if (!isUsed[i])
+      if (!isUsed[i] && !gltf::isModel(nodes[i].place.file))
         scene.warnings.push_back(
             {fmt::format("the node `{}` is not part of the scene: no root leads to it",
                          nodes[i].name),

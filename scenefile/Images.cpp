@@ -1,7 +1,9 @@
 #include "scenefile/Images.h"
 
+#include "scenefile/Models.h"
 #include "scenefile/Reader.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/gltf/Textures.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/WorkerThreads.h"
@@ -71,13 +73,15 @@ public:
                   {"class", "raw", "size", "format", "channels", "wrap", "filter", "anisotropy"},
                   "a raw image");
       else
-        checkKeys(image, {"class", "file", "slices", "colorSpace", "wrap", "filter", "anisotropy"},
+        checkKeys(image,
+                  {"class", "file", "part", "slices", "colorSpace", "wrap", "filter", "anisotropy"},
                   "an image");
     });
     if (isRaw)
       readRaw();
     else
       readFiles();
+    key("part", [&](const JsonValue &value) { readPart(value); });
     key("colorSpace", [&](const JsonValue &value) {
       description.colorSpace = choose(value, colorSpaces, "`colorSpace`");
     });
@@ -112,6 +116,13 @@ private:
       for (const JsonValue &slice : slices.elements)
         errors.attempt([&] { addFile(slice, "a slice"); });
     });
+  }
+
+  void readPart(const JsonValue &value) {
+    description.part = expect(value, Kind::String, "`part`").string;
+    const JsonValue *file = image.find("file");
+    if (!file || file->kind != Kind::String || !gltf::isModel(file->string))
+      throw Error(ErrorCode::UnknownKey, "`part` names an image in a glTF file", value.place());
   }
 
   void readRaw() {
@@ -169,16 +180,19 @@ private:
 std::string identity(const ImageDescription &image, const std::string &className) {
   const runtime::Texels &shape = image.shape;
   const runtime::Sampling &sampling = image.sampling;
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {}", className, image.isRaw,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", className, image.isRaw,
                      int(shape.format), shape.width, shape.height, shape.depth, shape.channels,
                      int(image.colorSpace), int(sampling.filter), int(sampling.wrap[0]),
-                     int(sampling.wrap[1]), int(sampling.wrap[2]), sampling.anisotropy,
+                     int(sampling.wrap[1]), int(sampling.wrap[2]), sampling.anisotropy, image.part,
                      fmt::join(image.files, "\n"));
 }
 
-runtime::Texels load(const ImageDescription &image) {
+runtime::Texels load(const ImageDescription &image, const SceneDescription &scene) {
   if (image.isRaw)
     return runtime::readRawTexels(image.files.front(), image.shape);
+  if (!image.part.empty())
+    return runtime::texelsOf(
+        {gltf::readImage(scene.models->open(image.files.front()), image.part, image.colorSpace)});
   std::vector<runtime::Pixels> slices;
   for (const std::string &file : image.files) {
     slices.push_back(runtime::readPixels(file, image.colorSpace));
@@ -249,7 +263,7 @@ ImageFiles::ImageFiles(const SceneDescription &description,
   forEachOnThreads(0, images.size(), [&](std::size_t i) {
     Result &result = results[i];
     try {
-      result.texels = load(*images[i].first);
+      result.texels = load(*images[i].first, description);
       result.notFinite = runtime::dropNotFinite(result.texels);
       if (images[i].second)
         runtime::addLevels(result.texels);

@@ -24,6 +24,7 @@ struct SceneDescription;
 
 struct ImageDescription {
   std::vector<std::string> files; // one, or the slices of a sampler3D; resolved
+  std::string part;               // of a glTF file, as "images.0"
   bool isRaw = false;             // texels of this shape, without a file format
   runtime::Texels shape;
   runtime::ColorSpace colorSpace = runtime::ColorSpace::ByFile;

@@ -38,6 +38,7 @@ struct JsonValue {
   bool fromOverride = false; // came from --set
 
   Place place() const { return {*file, line, column, length}; }
+  /// Of a key in the same file: of this object, or the one whose value this is.
   Place place(const JsonKey &key) const { return {*file, key.line, key.column, key.length}; }
   const JsonValue *find(const std::string &key) const;
   JsonValue *find(const std::string &key);

@@ -1,5 +1,7 @@
 #include "scenefile/MeshFiles.h"
 
+#include "scenefile/Models.h"
+#include "scenefile/gltf/Mesh.h"
 #include "support/WorkerThreads.h"
 
 namespace rtsl::scene {
@@ -14,34 +16,43 @@ struct Use {
   const GeometryDescription *geometry;
 };
 
+/// A file, or a part of one, and what it holds.
+struct File {
+  std::string path;
+  std::string part; // of a glTF file; empty: all of it
+  std::size_t uses = 0;
+  Mesh mesh = {};
+  std::exception_ptr failure = nullptr;
+};
+
 } // namespace
 
 MeshFiles::MeshFiles(const SceneDescription &description) {
-  std::map<std::string, std::size_t> fileNumbers;
-  std::vector<const std::string *> paths;
-  std::vector<std::size_t> useCounts; // of each file
+  std::map<std::pair<std::string, std::string>, std::size_t> fileNumbers; // by path and part
+  std::vector<File> files;
   std::vector<Use> uses;
   for (const GeometryDescription &geometry : description.objects) {
     if (geometry.primitive || !numbers.emplace(keyOf(geometry), numbers.size()).second)
       continue;
     uses.push_back({{}, &geometry});
     for (const MeshPath &key : geometry.mesh) {
-      const auto [file, isNew] = fileNumbers.emplace(key.path, paths.size());
-      if (isNew) {
-        paths.push_back(&key.path);
-        useCounts.push_back(0);
-      }
-      ++useCounts[file->second];
+      const auto [file, isNew] =
+          fileNumbers.emplace(std::pair(key.path, geometry.part), files.size());
+      if (isNew)
+        files.push_back({key.path, geometry.part});
+      ++files[file->second].uses;
       uses.back().files.push_back(file->second);
     }
   }
 
-  std::vector<Result> files(paths.size());
   forEachOnThreads(0, files.size(), [&](std::size_t i) {
+    File &file = files[i];
     try {
-      files[i].mesh = runtime::loadMesh(*paths[i]);
+      file.mesh = file.part.empty()
+                      ? runtime::loadMesh(file.path)
+                      : gltf::readMesh(description.models->open(file.path), file.part);
     } catch (...) {
-      files[i].failure = std::current_exception();
+      file.failure = std::current_exception();
     }
   });
   results.resize(uses.size());
@@ -52,14 +63,14 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
       std::vector<Mesh> keys;
       std::vector<std::string> names;
       for (const std::size_t number : uses[i].files) {
-        Result &file = files[number];
+        File &file = files[number];
         if (file.failure)
           std::rethrow_exception(file.failure);
-        if (useCounts[number] == 1)
+        if (file.uses == 1)
           keys.push_back(std::move(file.mesh));
         else
           keys.push_back(file.mesh);
-        names.push_back(*paths[number]);
+        names.push_back(file.path);
       }
       result.mesh = keys.size() == 1
                         ? std::move(keys.front())
@@ -77,7 +88,8 @@ MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
   std::vector<std::string> paths;
   for (const MeshPath &key : geometry.mesh)
     paths.push_back(key.path);
-  return {std::move(paths), geometry.meshTimes, geometry.transform.columns, geometry.isBarycentric};
+  return {std::move(paths), geometry.part, geometry.meshTimes, geometry.transform.columns,
+          geometry.isBarycentric};
 }
 
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {

@@ -13,8 +13,8 @@
 
 namespace rtsl::scene {
 
-/// Reads each mesh file of a scene once and applies the transforms of its objects, on all cores.
-/// Objects with the same files and transform share a mesh.
+/// Reads each mesh file of a scene, and each part of a glTF file, once and applies the transforms
+/// of its objects, on all cores. Objects with the same files and transform share a mesh.
 class MeshFiles {
 public:
   explicit MeshFiles(const SceneDescription &description);
@@ -22,7 +22,7 @@ public:
   /// The number of an object's mesh.
   std::size_t numberOf(const GeometryDescription &geometry) const;
 
-  /// A mesh, which can be taken once. Throws the errors of runtime::loadMesh.
+  /// A mesh, which can be taken once. Throws the errors of runtime::loadMesh and gltf::readMesh.
   runtime::Mesh take(std::size_t number);
 
 private:
@@ -32,7 +32,7 @@ private:
     std::exception_ptr failure;
   };
 
-  using Key = std::tuple<std::vector<std::string>, std::vector<float>,
+  using Key = std::tuple<std::vector<std::string>, std::string, std::vector<float>,
                          decltype(runtime::Transform::columns), bool>;
   static Key keyOf(const GeometryDescription &geometry);
 

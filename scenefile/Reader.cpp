@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace rtsl::scene {
 
@@ -71,6 +72,13 @@ std::int32_t readId(const JsonValue &value) {
         fmt::format("`id` is a whole number from -2147483648 to 2147483647, not {}", number),
         value.place());
   return std::int32_t(number);
+}
+
+std::string resolvePath(const JsonValue &value, const std::string &sceneFile) {
+  const std::filesystem::path path(value.string);
+  if (path.is_absolute() || value.fromOverride)
+    return value.string;
+  return (std::filesystem::path(sceneFile).parent_path() / path).lexically_normal().string();
 }
 
 std::vector<double> readNumbers(const JsonValue &value, std::size_t count,

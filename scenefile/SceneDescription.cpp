@@ -1,6 +1,8 @@
 //===- SceneDescription.cpp - what a description contains -----------------===//
 #include "scenefile/SceneFile.h"
 
+#include "scenefile/Models.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -158,6 +160,9 @@ std::vector<std::string> filesOf(const SceneDescription &description) {
       add(file);
   for (const auto &buffer : description.bufferValues)
     add(buffer.second.file);
+  if (description.models)
+    for (const std::string &file : description.models->files())
+      add(file);
   return files;
 }
 

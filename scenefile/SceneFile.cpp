@@ -5,8 +5,10 @@
 #include "scenefile/KeyFrames.h"
 #include "scenefile/KeyTimes.h"
 #include "scenefile/LibraryEngines.h"
+#include "scenefile/Models.h"
 #include "scenefile/Reader.h"
 #include "scenefile/TransformReader.h"
+#include "scenefile/gltf/Mesh.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
@@ -14,7 +16,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <utility>
@@ -27,7 +28,9 @@ using Kind = JsonValue::Kind;
 
 class SceneReader {
 public:
-  SceneReader(const JsonValue &root, SceneDescription &scene) : root(root), scene(scene) {}
+  /// `errors` has those that were found before.
+  SceneReader(const JsonValue &root, SceneDescription &scene, ErrorCollector errors)
+      : root(root), scene(scene), errors(std::move(errors)) {}
 
   void read() {
     expect(root, Kind::Object, "a scene");
@@ -192,14 +195,7 @@ private:
     scene.imports.push_back(std::move(import));
   }
 
-  /// Paths are relative to the folder of the scene file; those from the command line, to the
-  /// working directory.
-  std::string resolve(const JsonValue &value) const {
-    std::filesystem::path path(value.string);
-    if (path.is_absolute() || value.fromOverride)
-      return value.string;
-    return (std::filesystem::path(scene.file).parent_path() / path).lexically_normal().string();
-  }
+  std::string resolve(const JsonValue &value) const { return resolvePath(value, scene.file); }
 
   ObjectDescription readObject(const JsonValue &value, const std::string &what) const {
     expect(value, Kind::Object, what);
@@ -269,8 +265,11 @@ private:
   void readFilesIn(const JsonValue &value) {
     if (isImage(value)) {
       errors.attempt([&] {
-        scene.imageValues.emplace(
-            &value, readImage(value, [&](const JsonValue &path) { return resolve(path); }));
+        ImageDescription image =
+            readImage(value, [&](const JsonValue &path) { return resolve(path); });
+        if (!image.part.empty())
+          modelsOf(scene).open(image.files.front(), value.find("file")->place());
+        scene.imageValues.emplace(&value, std::move(image));
       });
       return;
     }
@@ -330,7 +329,7 @@ private:
       expect(value, Kind::Object, fmt::format("`{}`", section));
       for (const auto &[key, member] : value.members)
         errors.attempt([&, &key = key, &member = member] {
-          refuseTakenName(key.text, value.place(key));
+          refuseTakenName(key.text, member.place(key));
           objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
         });
     });
@@ -390,8 +389,8 @@ private:
   GeometryDescription readGeometry(const JsonValue &value, const std::string &what) {
     errors.attempt([&] {
       checkKeys(value,
-                {"name", "primitive", "mesh", "material", "transform", "mask", "id", "count",
-                 "textureCoordinates", "variables"},
+                {"name", "primitive", "mesh", "part", "material", "transform", "mask", "id",
+                 "count", "textureCoordinates", "variables"},
                 what);
     });
     GeometryDescription geometry;
@@ -439,6 +438,8 @@ private:
       geometry.primitive = readObject(*primitive, "`primitive`");
     if (mesh) {
       readMesh(*mesh, geometry);
+      if (const JsonValue *part = value.find("part"))
+        readPart(*part, geometry);
       if (const JsonValue *coordinates = value.find("textureCoordinates")) {
         expect(*coordinates, Kind::String, "`textureCoordinates`");
         if (coordinates->string != "file" && coordinates->string != "barycentric")
@@ -477,6 +478,13 @@ private:
                   "`shutter` is two times from 0 to 1: when it opens, and when it closes",
                   value.place());
     scene.shutter = {float(times[0]), float(times[1])};
+  }
+
+  void readPart(const JsonValue &part, GeometryDescription &geometry) const {
+    expect(part, Kind::String, "`part`");
+    for (const MeshPath &key : geometry.mesh)
+      gltf::primitiveOf(modelsOf(scene).open(key.path, key.name.place), part.string, part.place());
+    geometry.part = part.string;
   }
 
   /// A number or a list of numbers; the program determines how many.
@@ -598,7 +606,9 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
   SceneDescription scene;
   scene.file = path;
   scene.root = root;
-  SceneReader(*root, scene).read();
+  ErrorCollector errors;
+  expandModels(*root, scene, errors);
+  SceneReader(*root, scene, std::move(errors)).read();
   return scene;
 }
 

@@ -56,6 +56,8 @@ struct ReferenceDescription {
   const LocatedName &shownName() const { return object ? object->className : name; }
 };
 
+class ModelFiles;
+
 /// The value of a variable, and where it is defined.
 using VariableDefinition = std::pair<Place, const JsonValue *>;
 using VariableDefinitions = std::map<std::string, VariableDefinition>;
@@ -103,6 +105,7 @@ struct GeometryDescription {
   std::optional<ObjectDescription> primitive; // or
   std::vector<MeshPath> mesh;                 // of a mesh: its keys, or its only file
   std::vector<float> meshTimes;               // of several keys
+  std::string part; // of a glTF file, as "meshes.0.primitives.1"; empty: all meshes of the file
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
   ReferenceDescription material;
@@ -163,7 +166,9 @@ struct SceneDescription {
   RenderSettings render;
   std::optional<std::array<float, 2>> shutter; // `render.shutter`: when it opens and closes
   std::vector<Warning> warnings;
-  std::shared_ptr<const JsonValue> root; // owns all of the above JSON
+  std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
+  std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
+  std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
 };
 
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.

@@ -59,6 +59,9 @@ TEXTURES = {
     "Solid": {}, "Checker": {"scale": 4}, "Brick": {}, "Noise": {"kind": 3, "scale": 2}, "Marble": MARBLE, "Wood": {}, "Gradient": {},
     "TransformedPattern": {"pattern": {"class": "Checker", "scale": 4}, "rotation": 30}, "Triplanar": {"pattern": {"class": "Checker", "scale": 2}}}
 TEXTURES["ImageTexture"] = {"image": {"file": str(ROOT / "examples/cornell/picture.png"), "wrap": "mirror"}, "repeats": [4, 2]}
+TEXTURES["ImageChannel"] = {"image": {**TEXTURES["ImageTexture"]["image"], "colorSpace": "linear"}, "channel": 1}
+TEXTURES["Threshold"] = {"pattern": {"class": "Noise", "scale": 4}}
+NORMALS = {"file": str(ROOT / "examples/gltf/still-life.gltf"), "part": "images.1", "colorSpace": "linear"}
 BACKGROUNDS = {"EnvironmentMap": {"image": {"file": str(ROOT / "docs/library/PanoramaCamera.png"), "wrap": ["repeat", "clamp"]}},
                "GradientSky": {}, "DaylightSky": {}, "UniformSky": {"radiance": [0.6, 0.7, 0.9]}}
 
@@ -84,6 +87,9 @@ def scenes():
     for name, members in TEXTURES.items():
         form = {"class": "Box", "low": [-0.8, -1, -0.8], "high": [0.8, 0.6, 0.8]}
         yield name, scene([FLOOR, {"primitive": form, "material": {"class": "Lambert", "albedo": {"class": name, **members}}}])
+    bumps = {f"slope{side}": {"class": "TransformedPattern", "pattern": {"class": "ImageSlope", "image": NORMALS, "axis": axis}, "scale": [3, 1]}
+             for axis, side in enumerate("UV")}
+    yield "ImageSlope", scene([FLOOR, {"primitive": TORUS, "material": {"class": "NormalMap", "material": {"class": "Lambert"}, **bumps}}])
     walls = [{"primitive": {"class": "Parallelogram", "constructor": [corner, side1, side2]},
               "material": {"class": "Lambert", "reflectance": reflectance}} for corner, side1, side2, reflectance in (
                   ([-1.6, -1, -1.5], [3.2, 0, 0], [0, 2.4, 0], [0.7] * 3), ([-1.6, -1, 2], [0, 0, -3.5], [0, 2.4, 0], [0.6, 0.1, 0.08]),

@@ -77,12 +77,14 @@ void decode16(Pixels &pixels) {
   pixels.bytes = std::move(floats);
 }
 
-/// Reads a file by OpenImageIO. `isEncoded`: it has, or implies, colors in sRGB.
-Pixels readByOpenImageIO(const std::string &path, bool &isEncoded) {
+/// Reads a file by OpenImageIO, or these bytes of one. `isEncoded`: it has, or implies, colors in
+/// sRGB.
+Pixels readByOpenImageIO(const std::string &path, const std::string *bytes, bool &isEncoded) {
   static const ReadImageFile read = openReader();
   Pixels pixels;
   ImageFile file;
-  read(path.c_str(), mostImageBytes, allocateBytes, &pixels.bytes, &file);
+  read(path.c_str(), bytes ? bytes->data() : nullptr, bytes ? bytes->size() : 0, mostImageBytes,
+       allocateBytes, &pixels.bytes, &file);
   switch (file.problem) {
   case ImageFile::Problem::None:
     break;
@@ -113,23 +115,17 @@ Pixels readByOpenImageIO(const std::string &path, bool &isEncoded) {
   return pixels;
 }
 
-} // namespace
+const std::string pngSignature = "\x89PNG";
 
-Pixels readPixels(const std::string &path, ColorSpace space) {
-  requireReadable(path);
-  const std::string signature = "\x89PNG";
-  std::string start(signature.size(), '\0');
-  std::ifstream(path, std::ios::binary).read(start.data(), std::streamsize(start.size()));
-  bool isEncoded = true;
-  Pixels pixels = start == signature ? decodePngPixels(readFile(path), path)
-                                     : readByOpenImageIO(path, isEncoded);
+/// Gives pixels the color space that is asked for.
+Pixels inSpace(Pixels pixels, ColorSpace space, bool isEncoded, const std::string &name) {
   const bool isFloat =
       pixels.format == TexelFormat::Float16 || pixels.format == TexelFormat::Float32;
   if (space == ColorSpace::Srgb && isFloat)
     throw Error(ErrorCode::NotSupported,
                 fmt::format("`{}` has colors in floating point, which are linear: sRGB is for 8 "
                             "and 16 bits",
-                            path));
+                            name));
   if (space != ColorSpace::ByFile)
     isEncoded = space == ColorSpace::Srgb;
   if (isEncoded && pixels.format == TexelFormat::Unorm8)
@@ -137,6 +133,26 @@ Pixels readPixels(const std::string &path, ColorSpace space) {
   else if (isEncoded && pixels.format == TexelFormat::Unorm16)
     decode16(pixels);
   return pixels;
+}
+
+} // namespace
+
+Pixels readPixels(const std::string &path, ColorSpace space) {
+  requireReadable(path);
+  std::string start(pngSignature.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), std::streamsize(start.size()));
+  bool isEncoded = true;
+  Pixels pixels = start == pngSignature ? decodePngPixels(readFile(path), path)
+                                        : readByOpenImageIO(path, nullptr, isEncoded);
+  return inSpace(std::move(pixels), space, isEncoded, path);
+}
+
+Pixels decodePixels(const std::string &bytes, const std::string &name, ColorSpace space) {
+  bool isEncoded = true;
+  Pixels pixels = bytes.compare(0, pngSignature.size(), pngSignature) == 0
+                      ? decodePngPixels(bytes, name)
+                      : readByOpenImageIO(name, &bytes, isEncoded);
+  return inSpace(std::move(pixels), space, isEncoded, name);
 }
 
 } // namespace rtsl::runtime

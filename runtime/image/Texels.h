@@ -48,6 +48,9 @@ struct Pixels {
 /// float. Throws FileNotFound,
 /// FileUnreadable, BadImage, OutOfRange.
 Pixels readPixels(const std::string &path, ColorSpace space);
+/// The same for the bytes of a file in memory, in a format that OpenImageIO reads from there: PNG,
+/// JPEG and some others. `name` is for messages.
+Pixels decodePixels(const std::string &bytes, const std::string &name, ColorSpace space);
 
 /// The slices of an image, of equal size and kind, from front to back. Three channels get an alpha
 /// of 1, two without alpha a third one of 0, too; of more than four the first four are taken.

@@ -1,11 +1,13 @@
 #include "runtime/image/openimageio/ImageReader.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string>
 
 namespace rtsl::runtime {
 
@@ -35,11 +37,15 @@ OIIO::TypeDesc typeFor(const OIIO::ImageSpec &spec) {
   }
 }
 
-void read(const char *path, std::uint64_t mostBytes, void *(*allocate)(void *, std::uint64_t),
-          void *context, ImageFile &file) {
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1); // colors as the file has them
-  const auto input = OIIO::ImageInput::open(path, &config);
+/// A name for bytes in memory: OpenImageIO chooses a reader by its ending.
+std::string nameOf(const void *bytes, std::uint64_t size) {
+  constexpr unsigned char jpeg[] = {0xff, 0xd8, 0xff};
+  const bool isJpeg = size > sizeof jpeg && std::memcmp(bytes, jpeg, sizeof jpeg) == 0;
+  return isJpeg ? "bytes.jpg" : "bytes";
+}
+
+void read(OIIO::ImageInput *input, std::uint64_t mostBytes,
+          void *(*allocate)(void *, std::uint64_t), void *context, ImageFile &file) {
   if (!input)
     return fail(file, ImageFile::Problem::Bad, OIIO::geterror());
   const OIIO::ImageSpec &spec = input->spec();
@@ -72,13 +78,19 @@ void read(const char *path, std::uint64_t mostBytes, void *(*allocate)(void *, s
 } // namespace rtsl::runtime
 
 extern "C" __attribute__((visibility("default"))) void
-rtslReadImageFile(const char *path, std::uint64_t mostBytes,
+rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::uint64_t mostBytes,
                   void *(*allocate)(void *, std::uint64_t), void *context,
                   rtsl::runtime::ImageFile *file) {
   using rtsl::runtime::ImageFile;
   *file = {};
   try {
-    rtsl::runtime::read(path, mostBytes, allocate, context, *file);
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1); // colors as the file has them
+    OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
+    const auto input =
+        bytes ? OIIO::ImageInput::open(rtsl::runtime::nameOf(bytes, size), &config, &memory)
+              : OIIO::ImageInput::open(path, &config);
+    rtsl::runtime::read(input.get(), mostBytes, allocate, context, *file);
   } catch (const std::bad_alloc &) {
     file->problem = ImageFile::Problem::NoMemory;
   } catch (const std::exception &error) {

@@ -87,8 +87,8 @@ TEST(SceneGraph, TellsAllMistakes) {
             "s.json:4:21+3: unknownName: no node is named `bee`\n"
             "s.json:4:27+1: wrongType: a child is the name of a node or a node in its place, not a "
             "number\n"
-            "s.json:5:6+1: missingKey: a node has either a `mesh` or a `primitive`, or a `child`, "
-            "or a list of `children`\n"
+            "s.json:5:6+1: missingKey: a node has one of `mesh`, `primitive`, `light`, `model`, "
+            "`child` and `children`\n"
             "s.json:6:49+4: unknownKey: a node has no key `mask`\n"
             "s.json:7:10+1: unknownName: no node is named `f`");
 }

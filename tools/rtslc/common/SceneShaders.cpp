@@ -6,6 +6,7 @@
 #include "frontend/preprocessor/FileSearch.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/SceneParts.h"
+#include "scenefile/gltf/File.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 
 namespace rtsl::tool {
 
@@ -39,7 +41,7 @@ bool hasEnding(const std::string &file, const std::string &ending) {
 } // namespace
 
 bool isScene(const std::string &file) {
-  return hasEnding(file, ".json");
+  return hasEnding(file, ".json") || scene::gltf::isModel(file);
 }
 
 /// Rejects passes, unless the command runs or checks them.
@@ -54,11 +56,22 @@ static scene::SceneDescription requireOneLaunch(scene::SceneDescription descript
   return description;
 }
 
+/// The scene of library/models around a glTF file.
+static scene::SceneDescription sceneOfModel(const std::string &file,
+                                            const std::vector<std::string> &overrides) {
+  const std::string path = '"' + std::regex_replace(file, std::regex(R"(["\\])"), R"(\$&)") + '"';
+  std::vector<std::string> all{"camera.model=" + path, "objects.0.model=" + path};
+  all.insert(all.end(), overrides.begin(), overrides.end());
+  return scene::readSceneFile(libraryFolder() + "/models/scene.json", all);
+}
+
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command) {
   if (hasEnding(file, ".rtsl"))
     refuseShaders(file, command);
+  if (scene::gltf::isModel(file))
+    return requireOneLaunch(sceneOfModel(file, overrides), command);
   if (file == "-") {
     const char *const name = "<stdin>";
     const std::string text = readFile(file);

@@ -133,8 +133,8 @@ void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   CLI::App *command = app.add_subcommand("check", "check RTSL files and scenes for mistakes");
   command
       ->add_option("FILE", options->files,
-                   "RTSL files, which are checked together; scenes (.json), each with its "
-                   "shaders; - is standard input")
+                   "RTSL files, which are checked together; scenes (.json) and glTF models, each "
+                   "with its shaders; - is standard input")
       ->required();
   command->add_flag("--fix", options->fix, "apply unambiguous fixes to the files");
   addSetOption(*command, options->overrides);

@@ -177,9 +177,10 @@ void addRenderCommand(CLI::App &app, Action &action) {
   auto options = std::make_shared<RenderCommandOptions>();
   CLI::App *command = app.add_subcommand(renderSummary.command, renderSummary.text);
   command
-      ->add_option("FILE", options->scene,
-                   "a scene (.json), or RTSL (.rtsl), of which one class is shown in a standard "
-                   "scene; - is a scene on standard input")
+      ->add_option(
+          "FILE", options->scene,
+          "a scene (.json); a glTF model (.gltf, .glb) or RTSL (.rtsl), of which one class "
+          "is shown, in a standard scene; - is a scene on standard input")
       ->required();
   command
       ->add_option("--class", options->className,
@@ -233,6 +234,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command->footer("examples:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 "
                   "--size 1920x1080\n"
                   "  rtslc render examples/cornell/room.json -o normals.png --engine normals\n"
+                  "  rtslc render examples/gltf/still-life.gltf -o picture.png --set "
+                  "camera.name=Plan\n"
                   "  rtslc render Clay.rtsl -o clay.png --set Clay.polish=0.2");
   command->callback([options, command, &action] {
     for (const auto &[name, isGiven] :

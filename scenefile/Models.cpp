@@ -1,0 +1,222 @@
+#include "scenefile/Models.h"
+
+#include "scenefile/Reader.h"
+#include "scenefile/TransformReader.h"
+#include "scenefile/gltf/Model.h"
+#include "scenefile/gltf/Nodes.h"
+#include "scenefile/gltf/Parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace rtsl::scene {
+
+using Kind = JsonValue::Kind;
+
+const gltf::File &ModelFiles::open(const std::string &path, const std::optional<Place> &place) {
+  const std::lock_guard lock(mutex);
+  auto found = opened.find(path);
+  if (found == opened.end()) {
+    try {
+      found = opened.emplace(path, std::make_unique<gltf::File>(path)).first;
+    } catch (Error &error) {
+      if (place && (!error.place || error.place->line == 0))
+        error.place = place;
+      throw;
+    }
+  }
+  return *found->second;
+}
+
+std::vector<std::string> ModelFiles::files() const {
+  const std::lock_guard lock(mutex);
+  std::vector<std::string> all;
+  for (const auto &one : opened)
+    for (std::string &file : one.second->files())
+      all.push_back(std::move(file));
+  return all;
+}
+
+ModelFiles &modelsOf(SceneDescription &scene) {
+  if (!scene.models)
+    scene.models = std::make_shared<ModelFiles>();
+  return *scene.models;
+}
+
+namespace {
+
+class Expansion {
+public:
+  Expansion(JsonValue &root, SceneDescription &scene, ErrorCollector &errors)
+      : root(root), scene(scene), errors(errors) {}
+
+  void run() {
+    if (JsonValue *nodes = root.find("nodes"))
+      for (auto &node : nodes->members)
+        expandNode(node.second);
+    if (JsonValue *node = root.find("root"))
+      expandNode(*node);
+    if (JsonValue *roots = root.find("roots"))
+      for (auto &node : roots->members)
+        expandNode(node.second);
+    moveObjects();
+    if (JsonValue *camera = root.find("camera"))
+      if (camera->find("model"))
+        expandCamera(*camera);
+    for (auto &[key, model] : models)
+      addMembers(model);
+    for (const std::string &module : modules)
+      scene.imports.push_back({{module, root.place()}, ""});
+  }
+
+private:
+  /// A node, and those in place below it.
+  void expandNode(JsonValue &node) {
+    if (node.find("model"))
+      return expandMention(node);
+    if (JsonValue *child = node.find("child"))
+      expandNode(*child);
+    if (JsonValue *children = node.find("children"))
+      for (JsonValue &child : children->elements)
+        expandNode(child);
+  }
+
+  /// {"model": file, ...} becomes {"child": node, ...}.
+  void expandMention(JsonValue &mention) {
+    for (auto &[key, value] : mention.members)
+      if (key.text == "model") {
+        key.text = "child";
+        JsonValue name = value;
+        name.kind = Kind::String;
+        name.string = unreadable;
+        errors.attempt([&, &path = value] { name.string = nodeOf(path); });
+        if (name.string == unreadable)
+          addStandIn(value);
+        value = std::move(name);
+      }
+  }
+
+  /// The name of the node that shows a file.
+  std::string nodeOf(const JsonValue &path) {
+    expect(path, Kind::String, "`model`");
+    const std::string file = resolvePath(path, scene.file);
+    const auto known = models.find(file);
+    if (known != models.end())
+      return known->second.root;
+    gltf::Model failed;
+    failed.root = unreadable;
+    gltf::Model &model = models.emplace(file, failed).first->second;
+    const gltf::File &opened = modelsOf(scene).open(file, path.place());
+    model = gltf::modelOf(opened, freeName(path.string), {path.string, path.fromOverride}, path);
+    modules.insert(model.modules.begin(), model.modules.end());
+    std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(scene.warnings));
+    return model.root;
+  }
+
+  /// A name that no node of the author's has.
+  std::string freeName(std::string name) const {
+    const JsonValue *nodes = root.find("nodes");
+    while (nodes && nodes->find(name))
+      name += "'";
+    return name;
+  }
+
+  /// Models among `objects` become children of the (first) root.
+  void moveObjects() {
+    JsonValue *objects = root.find("objects");
+    if (!objects)
+      return;
+    std::vector<JsonValue> moved, kept;
+    for (JsonValue &object : objects->elements)
+      (object.find("model") ? moved : kept).push_back(std::move(object));
+    objects->elements = std::move(kept);
+    if (moved.empty())
+      return;
+    for (JsonValue &mention : moved)
+      expandMention(mention);
+    JsonValue *several = root.find("roots"), *top = root.find("root");
+    if (several && !several->members.empty())
+      top = &several->members.front().second;
+    if (top)
+      moved.insert(moved.begin(), *top);
+    JsonValue children = gltf::valueAt(moved.front(), Kind::Array);
+    children.elements = std::move(moved);
+    JsonValue node = gltf::object(children, {{"children", children}});
+    if (top)
+      *top = std::move(node);
+    else
+      root.members.emplace_back(JsonKey{"root", 0, 0, 0}, std::move(node));
+  }
+
+  /// {"model": file, "name": ..., "transform": ...} becomes a camera of the library.
+  void expandCamera(JsonValue &mention) {
+    JsonValue camera = gltf::objectOf(mention, "PerspectiveCamera"); // if there are mistakes
+    errors.attempt([&] { camera = cameraOf(mention); });
+    mention = std::move(camera);
+  }
+
+  JsonValue cameraOf(const JsonValue &mention) {
+    checkKeys(mention, {"model", "name", "transform"}, "the camera of a model");
+    const JsonValue &path = expect(*mention.find("model"), Kind::String, "`model`");
+    const std::string file = resolvePath(path, scene.file);
+    std::string name;
+    if (const JsonValue *found = mention.find("name"))
+      name = expect(*found, Kind::String, "`name`").string;
+    runtime::Transform transform;
+    if (const JsonValue *found = mention.find("transform")) {
+      const runtime::MovingTransform read = readTransform(*found);
+      if (read.moves())
+        throw Error(ErrorCode::NotSupported, "a camera does not move, but its transform has keys",
+                    found->place());
+      transform = read.still();
+    }
+    const gltf::File &opened = modelsOf(scene).open(file, path.place());
+    try {
+      return gltf::cameraOf(opened, name, transform, path, modules);
+    } catch (const Error &error) {
+      throw gltf::named(error, file);
+    }
+  }
+
+  /// A node in place of that of a file with mistakes, so that there are no others.
+  void addStandIn(const JsonValue &path) {
+    gltf::Model &model = models[unreadable];
+    if (model.nodes.empty())
+      model.nodes.emplace_back(JsonKey{unreadable, 0, 0, 0},
+                               gltf::object(path, {{"light", gltf::objectOf(path, "PointLight")}}));
+  }
+
+  /// Adds what a model has to sections of the scene.
+  void addMembers(gltf::Model &model) {
+    add("materials", model.materials);
+    add("nodes", model.nodes);
+  }
+
+  void add(const char *section, gltf::Model::Members &members) {
+    if (members.empty())
+      return;
+    if (!root.find(section))
+      root.members.emplace_back(JsonKey{section, 0, 0, 0}, gltf::valueAt(root, Kind::Object));
+    JsonValue &object = *root.find(section);
+    std::move(members.begin(), members.end(), std::back_inserter(object.members));
+  }
+
+  /// Stands for the node of a file with mistakes, which are reported.
+  static constexpr const char *unreadable = "\x01";
+
+  JsonValue &root;
+  SceneDescription &scene;
+  ErrorCollector &errors;
+  std::map<std::string, gltf::Model> models; // by file; and `unreadable`
+  gltf::Modules modules;
+};
+
+} // namespace
+
+void expandModels(JsonValue &root, SceneDescription &scene, ErrorCollector &errors) {
+  Expansion(root, scene, errors).run();
+}
+
+} // namespace rtsl::scene

@@ -1,0 +1,106 @@
+#include "scenefile/NodeLights.h"
+
+#include "scenefile/Reader.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace rtsl::scene {
+
+using runtime::Transform;
+
+namespace {
+
+/// A member of the type vec3, and its default.
+struct SpatialMember {
+  const char *name;
+  bool isPoint; // or a direction
+  std::array<double, 3> otherwise;
+};
+
+/// What this file knows of library/std/lights.
+struct PlaceableLight {
+  const char *className;
+  std::vector<SpatialMember> members;
+};
+
+const std::vector<PlaceableLight> &placeableLights() {
+  static const std::vector<PlaceableLight> lights = {
+      {"DistantLight", {{"direction", false, {0, 1, 0}}}},
+      {"PointLight", {{"position", true, {0, 0, 0}}}},
+      {"RectangleLight",
+       {{"corner", true, {0, 0, 0}}, {"side1", false, {1, 0, 0}}, {"side2", false, {0, 0, 1}}}},
+      {"SpotLight", {{"position", true, {0, 0, 0}}, {"direction", false, {0, -1, 0}}}}};
+  return lights;
+}
+
+JsonValue moved(const Place &place, const std::vector<double> &value, const Transform &toWorld,
+                bool isPoint) {
+  JsonValue result;
+  result.kind = JsonValue::Kind::Array;
+  result.file = std::make_shared<const std::string>(place.file);
+  result.line = place.line;
+  result.column = place.column;
+  result.length = place.length;
+  for (std::size_t row = 0; row < 3; ++row) {
+    JsonValue number = result;
+    number.elements.clear();
+    number.kind = JsonValue::Kind::Number;
+    number.number = isPoint ? toWorld.columns[3][row] : 0;
+    for (std::size_t column = 0; column < 3; ++column)
+      number.number += toWorld.columns[column][row] * value[column];
+    result.elements.push_back(std::move(number));
+  }
+  return result;
+}
+
+} // namespace
+
+void requirePlaceable(const LocatedName &className) {
+  std::vector<std::string> names;
+  for (const PlaceableLight &light : placeableLights()) {
+    if (className.text == light.className)
+      return;
+    names.emplace_back(light.className);
+  }
+  throw Error(ErrorCode::NotSupported,
+              fmt::format("a `{}` cannot be in a node, only in `lights`; a node may have a `{}`",
+                          className.text, fmt::join(names, "`, `")),
+              className.place);
+}
+
+ObjectDescription placedLight(const ObjectDescription &light, const runtime::MovingTransform &way,
+                              SceneDescription &scene) {
+  if (way.moves())
+    throw Error(ErrorCode::NotSupported,
+                "a light in a node does not move, but the transform of its node, or of one above "
+                "it, has keys",
+                light.place);
+  const Transform &toWorld = way.still();
+  const auto &known = placeableLights();
+  const auto &kind = *std::find_if(known.begin(), known.end(), [&](const PlaceableLight &one) {
+    return light.className.text == one.className;
+  });
+  ObjectDescription placed = light;
+  for (const SpatialMember &member : kind.members) {
+    auto found = std::find_if(placed.members.begin(), placed.members.end(),
+                              [&](const auto &own) { return own.first.text == member.name; });
+    if (found == placed.members.end()) {
+      placed.members.push_back({{member.name, light.place}, nullptr});
+      found = placed.members.end() - 1;
+    }
+    const Place place = found->second ? found->second->place() : light.place;
+    const std::vector<double> value =
+        found->second ? readNumbers(*found->second, 3, fmt::format("`{}`", member.name))
+                      : std::vector<double>(member.otherwise.begin(), member.otherwise.end());
+    scene.placedValues.push_back(
+        std::make_shared<JsonValue>(moved(place, value, toWorld, member.isPoint)));
+    found->second = scene.placedValues.back().get();
+  }
+  return placed;
+}
+
+} // namespace rtsl::scene

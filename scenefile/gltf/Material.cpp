@@ -1,0 +1,244 @@
+#include "scenefile/gltf/Material.h"
+
+#include "scenefile/Reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::scene::gltf {
+
+using Kind = JsonValue::Kind;
+
+namespace {
+
+/// The range of `index` of Principled.
+constexpr double lowestIndex = 1.01, highestIndex = 2;
+
+class MaterialReader {
+public:
+  MaterialReader(const File &file, std::size_t index, const Mention &mention, Modules &modules,
+                 std::vector<Warning> &warnings)
+      : json(file.list("materials")[index]), what(fmt::format("`materials.{}`", index)),
+        textures(file, mention, modules, warnings), modules(modules), warnings(warnings) {}
+
+  JsonValue read() {
+    readBase();
+    if (extension(json, "KHR_materials_unlit"))
+      return covered(unlit());
+    JsonValue material = made(json, "materials.Principled");
+    set(material, "baseColor", baseColor);
+    setMap(material, "baseColorMap", baseMap, Use::Color);
+    set(material, "metallic", factor(*metallicRoughness, "metallicFactor", 1, 1));
+    set(material, "roughness", factor(*metallicRoughness, "roughnessFactor", 1, 1));
+    const JsonValue *map = metallicRoughness->find("metallicRoughnessTexture");
+    setMap(material, "metallicMap", map, Use::Blue);
+    setMap(material, "roughnessMap", map, Use::Green);
+    setExtensions(material);
+    setEmission(material);
+    return covered(withNormals(std::move(material)));
+  }
+
+private:
+  JsonValue made(const JsonValue &source, const char *name) {
+    return libraryObject(source, name, modules);
+  }
+
+  std::string of(const char *key) const { return fmt::format("`{}` of {}", key, what); }
+
+  /// A number in [0, most], or its default.
+  JsonValue factor(const JsonValue &object, const char *key, double otherwise, double most) const {
+    const JsonValue *found = object.find(key);
+    if (!found)
+      return number(object, otherwise);
+    const double value = readNumber(*found, of(key));
+    if (value < 0 || value > most)
+      throw Error(ErrorCode::OutOfRange,
+                  fmt::format("{} must be between 0 and {:g}, not {:g}", of(key), most, value),
+                  found->place());
+    return number(*found, value);
+  }
+
+  /// Three numbers in [0, 1], or their default.
+  std::vector<double> color(const JsonValue &object, const char *key, double otherwise) const {
+    const JsonValue *found = object.find(key);
+    if (!found)
+      return std::vector<double>(3, otherwise);
+    std::vector<double> values = readNumbers(*found, 3, of(key));
+    refuseOutside(values, key, *found);
+    return values;
+  }
+
+  void refuseOutside(const std::vector<double> &values, const char *key,
+                     const JsonValue &place) const {
+    if (std::any_of(values.begin(), values.end(), [](double x) { return x < 0 || x > 1; }))
+      throw Error(ErrorCode::OutOfRange, fmt::format("the numbers of {} are from 0 to 1", of(key)),
+                  place.place());
+  }
+
+  void setMap(JsonValue &object, const char *member, const JsonValue *info, Use use) {
+    if (info)
+      set(object, member, textures.texture(*info, fmt::format("a texture of {}", what), use));
+  }
+
+  void readBase() {
+    metallicRoughness = json.find("pbrMetallicRoughness");
+    if (metallicRoughness)
+      expect(*metallicRoughness, Kind::Object, of("pbrMetallicRoughness"));
+    else
+      metallicRoughness = &nothing;
+    nothing = valueAt(json, Kind::Object);
+    std::vector<double> values{1, 1, 1, 1};
+    const JsonValue *found = metallicRoughness->find("baseColorFactor");
+    if (found) {
+      values = readNumbers(*found, 4, of("baseColorFactor"));
+      refuseOutside(values, "baseColorFactor", *found);
+    }
+    alpha = values[3];
+    values.resize(3);
+    baseColor = numbers(found ? *found : json, values);
+    baseMap = metallicRoughness->find("baseColorTexture");
+  }
+
+  /// The color itself, whatever the light.
+  JsonValue unlit() {
+    JsonValue material = made(json, "materials.Emitter");
+    set(material, "radiance", baseColor);
+    setMap(material, "radianceMap", baseMap, Use::Color);
+    set(material, "isTwoSided", truth(json, true));
+    return material;
+  }
+
+  void setExtensions(JsonValue &material) {
+    if (const JsonValue *ior = extension(json, "KHR_materials_ior"))
+      setIndex(material, *ior);
+    if (const JsonValue *glass = extension(json, "KHR_materials_transmission")) {
+      set(material, "transmission", factor(*glass, "transmissionFactor", 0, 1));
+      setMap(material, "transmissionMap", glass->find("transmissionTexture"), Use::Red);
+    }
+    if (const JsonValue *coat = extension(json, "KHR_materials_clearcoat")) {
+      set(material, "clearcoat", factor(*coat, "clearcoatFactor", 0, 1));
+      setMap(material, "clearcoatMap", coat->find("clearcoatTexture"), Use::Red);
+      set(material, "clearcoatRoughness", factor(*coat, "clearcoatRoughnessFactor", 0, 1));
+      setMap(material, "clearcoatRoughnessMap", coat->find("clearcoatRoughnessTexture"),
+             Use::Green);
+      warnOfMap(*coat, "clearcoatNormalTexture");
+    }
+    if (const JsonValue *sheen = extension(json, "KHR_materials_sheen")) {
+      set(material, "sheenColor", numbers(*sheen, color(*sheen, "sheenColorFactor", 0)));
+      set(material, "sheenRoughness", factor(*sheen, "sheenRoughnessFactor", 0, 1));
+      warnOfMap(*sheen, "sheenColorTexture");
+      warnOfMap(*sheen, "sheenRoughnessTexture");
+    }
+  }
+
+  void setIndex(JsonValue &material, const JsonValue &ior) {
+    const JsonValue *found = ior.find("ior");
+    const double wanted = found ? readNumber(*found, of("ior")) : 1.5;
+    const double index = std::clamp(wanted, lowestIndex, highestIndex);
+    if (index != wanted)
+      warnings.push_back(
+          {fmt::format("{} is {:g}; {:g} is used", of("ior"), wanted, index), found->place()});
+    set(material, "index", number(ior, index));
+  }
+
+  void setEmission(JsonValue &material) {
+    std::vector<double> emissive = color(json, "emissiveFactor", 0);
+    if (const JsonValue *bright = extension(json, "KHR_materials_emissive_strength"))
+      if (const JsonValue *found = bright->find("emissiveStrength")) {
+        const double strength = readNumber(*found, of("emissiveStrength"));
+        if (strength < 0)
+          throw Error(ErrorCode::OutOfRange,
+                      fmt::format("{} is {:g}, below 0", of("emissiveStrength"), strength),
+                      found->place());
+        for (double &one : emissive)
+          one *= strength;
+      }
+    if (std::all_of(emissive.begin(), emissive.end(), [](double x) { return x == 0; }))
+      return;
+    const JsonValue *factor = json.find("emissiveFactor");
+    set(material, "emissive", numbers(factor ? *factor : json, emissive));
+    setMap(material, "emissiveMap", json.find("emissiveTexture"), Use::Color);
+  }
+
+  JsonValue withNormals(JsonValue material) {
+    const JsonValue *info = json.find("normalTexture");
+    if (!info)
+      return material;
+    expect(*info, Kind::Object, of("normalTexture"));
+    JsonValue wrapper = made(*info, "materials.NormalMap");
+    setMap(wrapper, "slopeU", info, Use::SlopeU);
+    setMap(wrapper, "slopeV", info, Use::SlopeV);
+    if (const JsonValue *scale = info->find("scale"))
+      set(wrapper, "strength", number(*scale, readNumber(*scale, of("scale"))));
+    set(wrapper, "material", std::move(material));
+    return wrapper;
+  }
+
+  /// With the holes of alpha.
+  JsonValue covered(JsonValue material) {
+    const JsonValue *mode = json.find("alphaMode");
+    if (!mode)
+      return material;
+    expect(*mode, Kind::String, of("alphaMode"));
+    if (mode->string == "OPAQUE")
+      return material;
+    if (mode->string != "BLEND" && mode->string != "MASK")
+      throw Error(
+          ErrorCode::OutOfRange,
+          fmt::format("{} is `OPAQUE`, `MASK` or `BLEND`, not `{}`", of("alphaMode"), mode->string),
+          mode->place());
+    JsonValue wrapper = made(*mode, "materials.Cutout");
+    if (mode->string == "BLEND") {
+      set(wrapper, "opacity", number(baseColor, alpha));
+      setMap(wrapper, "opacityMap", baseMap, Use::Alpha);
+    } else {
+      const JsonValue *cutoff = json.find("alphaCutoff");
+      const double edge = cutoff ? readNumber(*cutoff, of("alphaCutoff")) : 0.5;
+      if (baseMap && alpha > 0) {
+        JsonValue threshold = made(*mode, "textures.Threshold");
+        set(threshold, "edge", number(*mode, edge / alpha));
+        setMap(threshold, "pattern", baseMap, Use::Alpha);
+        set(wrapper, "opacityMap", std::move(threshold));
+      } else {
+        set(wrapper, "opacity", number(*mode, alpha >= edge ? 1 : 0));
+      }
+    }
+    set(wrapper, "material", std::move(material));
+    return wrapper;
+  }
+
+  void warnOfMap(const JsonValue &object, const char *key) {
+    if (const JsonValue *map = object.find(key))
+      warnings.push_back(
+          {fmt::format("{} is not supported, and is left out", of(key)), map->place()});
+  }
+
+  const JsonValue &json;
+  const std::string what;
+  Textures textures;
+  Modules &modules;
+  std::vector<Warning> &warnings;
+  JsonValue nothing; // a `pbrMetallicRoughness` that is left out
+  const JsonValue *metallicRoughness = nullptr;
+  JsonValue baseColor;
+  double alpha = 1;
+  const JsonValue *baseMap = nullptr;
+};
+
+} // namespace
+
+JsonValue materialOf(const File &file, std::size_t index, const Mention &mention, Modules &modules,
+                     std::vector<Warning> &warnings) {
+  return MaterialReader(file, index, mention, modules, warnings).read();
+}
+
+JsonValue defaultMaterial(const JsonValue &source, Modules &modules) {
+  JsonValue material = libraryObject(source, "materials.Principled", modules);
+  set(material, "baseColor", numbers(source, {1, 1, 1}));
+  set(material, "metallic", number(source, 1));
+  set(material, "roughness", number(source, 1));
+  return material;
+}
+
+} // namespace rtsl::scene::gltf

@@ -1,0 +1,16 @@
+//===- Material.h - materials of a glTF file ------------------------------===//
+#pragma once
+
+#include "scenefile/gltf/Textures.h"
+
+namespace rtsl::scene::gltf {
+
+/// The object of a scene that is material number `index`: a Principled of the standard library,
+/// wrapped for its normals and its holes; or an Emitter, if it is unlit.
+JsonValue materialOf(const File &file, std::size_t index, const Mention &mention, Modules &modules,
+                     std::vector<Warning> &warnings);
+
+/// The material of primitives that have none. `source` is for its position.
+JsonValue defaultMaterial(const JsonValue &source, Modules &modules);
+
+} // namespace rtsl::scene::gltf

@@ -1,0 +1,172 @@
+#include "scenefile/gltf/Mesh.h"
+
+#include "scenefile/Reader.h"
+#include "scenefile/gltf/Accessor.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <numeric>
+#include <optional>
+
+namespace rtsl::scene::gltf {
+
+using Kind = JsonValue::Kind;
+
+namespace {
+
+constexpr std::uint32_t triangles = 4, triangleStrip = 5; // and 6, a fan
+
+std::uint32_t modeOf(const JsonValue &primitive, const std::string &part) {
+  const JsonValue *mode = primitive.find("mode");
+  return mode ? readInteger(*mode, 0, 6, fmt::format("`mode` of `{}`", part)) : triangles;
+}
+
+/// The accessors of a primitive, checked.
+struct Vertices {
+  Accessor positions;
+  std::optional<Accessor> normals, uvs, indices;
+
+  Vertices(const File &file, const JsonValue &primitive, const std::string &part)
+      : positions(file, require(attributes(primitive, part), "POSITION", named(part)),
+                  fmt::format("`POSITION` of `{}`", part)),
+        normals(attribute(file, primitive, part, "NORMAL", "VEC3")),
+        uvs(attribute(file, primitive, part, "TEXCOORD_0", "VEC2")) {
+    positions.require("VEC3");
+    if (const JsonValue *number = primitive.find("indices")) {
+      indices.emplace(file, *number, fmt::format("`indices` of `{}`", part));
+      indices->require("SCALAR");
+    }
+  }
+
+  static std::string named(const std::string &part) {
+    return fmt::format("`attributes` of `{}`", part);
+  }
+
+  static const JsonValue &attributes(const JsonValue &primitive, const std::string &part) {
+    return expect(require(primitive, "attributes", fmt::format("`{}`", part)), Kind::Object,
+                  named(part));
+  }
+
+  std::optional<Accessor> attribute(const File &file, const JsonValue &primitive,
+                                    const std::string &part, const char *name,
+                                    const char *type) const {
+    const JsonValue *number = attributes(primitive, part).find(name);
+    if (!number)
+      return std::nullopt;
+    std::optional<Accessor> accessor(std::in_place, file, *number,
+                                     fmt::format("`{}` of `{}`", name, part));
+    accessor->require(type);
+    if (accessor->count() != positions.count())
+      throw Error(ErrorCode::BadMesh,
+                  fmt::format("`{}` has {} elements of `{}`, and {} of `POSITION`", part,
+                              accessor->count(), name, positions.count()),
+                  number->place());
+    return accessor;
+  }
+};
+
+/// The vertices of triangles, from those of a strip or a fan.
+std::vector<std::uint32_t> trianglesOf(const std::vector<std::uint32_t> &vertices,
+                                       std::uint32_t mode) {
+  if (mode == triangles)
+    return {vertices.begin(), vertices.end() - std::ptrdiff_t(vertices.size() % 3)};
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 2; i < vertices.size(); ++i) {
+    const std::size_t odd = i % 2; // of a strip, every other triangle is turned
+    if (mode == triangleStrip)
+      result.insert(result.end(), {vertices[i - 2], vertices[i - 1 + odd], vertices[i - odd]});
+    else
+      result.insert(result.end(), {vertices[i - 1], vertices[i], vertices[0]});
+  }
+  return result;
+}
+
+/// A number from 0 on in decimal digits, or nothing.
+std::optional<std::size_t> wholeNumber(std::string_view text) {
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size())
+    return std::nullopt;
+  return number;
+}
+
+} // namespace
+
+std::string partOfPrimitive(std::size_t mesh, std::size_t primitive) {
+  return fmt::format("meshes.{}.primitives.{}", mesh, primitive);
+}
+
+const JsonValue &primitiveOf(const File &file, const std::string &part, const Place &place) {
+  const std::string_view start = "meshes.", middle = ".primitives.";
+  const std::string_view text = part;
+  const std::size_t at = text.find(middle);
+  if (text.substr(0, start.size()) == start && at != std::string_view::npos) {
+    const auto mesh = wholeNumber(text.substr(start.size(), at - start.size()));
+    const auto primitive = wholeNumber(text.substr(at + middle.size()));
+    const auto &meshes = file.list("meshes");
+    const JsonValue *primitives =
+        mesh && *mesh < meshes.size() ? meshes[*mesh].find("primitives") : nullptr;
+    if (primitives && primitive && *primitive < primitives->elements.size())
+      return expect(primitives->elements[*primitive], Kind::Object, fmt::format("`{}`", part));
+  }
+  throw Error(ErrorCode::UnknownName,
+              fmt::format("`{}` has no `{}`: a mesh of it is `meshes.0.primitives.0`, for example",
+                          file.path(), part),
+              place);
+}
+
+bool hasTriangles(const JsonValue &primitive, const std::string &part) {
+  return modeOf(primitive, part) >= triangles;
+}
+
+void checkPrimitive(const File &file, const JsonValue &primitive, const std::string &part) {
+  modeOf(primitive, part);
+  Vertices(file, primitive, part);
+}
+
+std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part) {
+  std::vector<Warning> warnings;
+  if (!hasTriangles(primitive, part))
+    warnings.push_back(
+        {fmt::format("`{}` has points or lines, which are left out", part), primitive.place()});
+  if (const JsonValue *targets = primitive.find("targets"))
+    warnings.push_back(
+        {fmt::format("the morph targets of `{}` are left out", part), targets->place()});
+  if (const JsonValue *colors = Vertices::attributes(primitive, part).find("COLOR_0"))
+    warnings.push_back(
+        {fmt::format("the colors of vertices, `COLOR_0` of `{}`, are left out", part),
+         colors->place()});
+  return warnings;
+}
+
+runtime::Mesh readMesh(const File &file, const std::string &part) {
+  try {
+    const JsonValue &primitive = primitiveOf(file, part, Place{file.path()});
+    const std::uint32_t mode = modeOf(primitive, part);
+    const Vertices vertices(file, primitive, part);
+    runtime::Mesh mesh;
+    mesh.positions = vertices.positions.floats();
+    if (vertices.normals)
+      mesh.normals = vertices.normals->floats();
+    if (vertices.uvs) {
+      mesh.uvs = vertices.uvs->floats();
+      for (std::size_t i = 1; i < mesh.uvs.size(); i += 2)
+        mesh.uvs[i] = 1 - mesh.uvs[i];
+    }
+    std::vector<std::uint32_t> indices;
+    if (vertices.indices) {
+      indices = vertices.indices->integers();
+    } else {
+      indices.resize(vertices.positions.count());
+      std::iota(indices.begin(), indices.end(), 0u);
+    }
+    mesh.indices = trianglesOf(indices, mode);
+    runtime::validateMesh(mesh, fmt::format("{}/{}", file.path(), part));
+    return mesh;
+  } catch (const Error &error) {
+    throw named(error, file.path());
+  }
+}
+
+} // namespace rtsl::scene::gltf

@@ -1,0 +1,28 @@
+//===- Mesh.h - the triangles of a glTF file ------------------------------===//
+#pragma once
+
+#include "runtime/geometry/Mesh.h"
+#include "scenefile/gltf/File.h"
+
+namespace rtsl::scene::gltf {
+
+/// `meshes.M.primitives.P`.
+std::string partOfPrimitive(std::size_t mesh, std::size_t primitive);
+
+/// The primitive that a part names. Throws UnknownName. `place` is that of the name.
+const JsonValue &primitiveOf(const File &file, const std::string &part, const Place &place);
+
+/// Whether it has triangles: points and lines are not seen.
+bool hasTriangles(const JsonValue &primitive, const std::string &part);
+
+/// Checks a primitive as far as it can be without the bytes of buffers.
+void checkPrimitive(const File &file, const JsonValue &primitive, const std::string &part);
+
+/// What of a primitive is left out, by name.
+std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part);
+
+/// Reads a primitive. Texture coordinates are turned from glTF's, which begin at the upper left
+/// corner of an image, to ours. Throws BadMesh, BadBuffer.
+runtime::Mesh readMesh(const File &file, const std::string &part);
+
+} // namespace rtsl::scene::gltf

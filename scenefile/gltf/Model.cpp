@@ -1,0 +1,185 @@
+#include "scenefile/gltf/Model.h"
+
+#include "scenefile/Reader.h"
+#include "scenefile/gltf/Material.h"
+#include "scenefile/gltf/Mesh.h"
+#include "scenefile/gltf/Nodes.h"
+#include "support/ErrorCollector.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+namespace rtsl::scene::gltf {
+
+using Kind = JsonValue::Kind;
+
+namespace {
+
+class ModelMaker {
+public:
+  ModelMaker(const File &file, const std::string &name, const Mention &mention,
+             const JsonValue &source)
+      : file(file), name(name), mention(mention), source(source) {}
+
+  Model make() {
+    model.root = name;
+    std::vector<Node> nodes;
+    errors.attempt([&] { nodes = nodesOf(file); });
+    std::vector<std::vector<JsonValue>> children(nodes.size() + 1); // by 1 + the node; of the root
+    // Children come after their parents.
+    for (std::size_t i = nodes.size(); i-- > 0;)
+      errors.attempt([&] { addNode(nodes[i], children[i + 1], children[nodes[i].parent]); });
+    errors.throwIfAny();
+    if (children[0].empty())
+      throw Error(ErrorCode::IncompleteScene,
+                  fmt::format("the scene of `{}` has no triangles and no lights", file.path()),
+                  source.place());
+    addChildren(name, source, std::move(children[0]), nullptr);
+    model.warnings.insert(model.warnings.end(), file.warnings().begin(), file.warnings().end());
+    return std::move(model);
+  }
+
+private:
+  static void add(Model::Members &members, const std::string &key, JsonValue value) {
+    JsonKey named{key, value.line, value.column, value.length};
+    members.emplace_back(std::move(named), std::move(value));
+  }
+
+  /// A node of these children, which were found from the last to the first.
+  void addChildren(const std::string &key, const JsonValue &from, std::vector<JsonValue> children,
+                   const runtime::Transform *transform) {
+    JsonValue node = valueAt(from, Kind::Object);
+    set(node, "children", list(from, {children.rbegin(), children.rend()}));
+    if (transform && !transform->isIdentity()) {
+      std::vector<double> matrix;
+      for (std::size_t column = 0; column < 4; ++column) {
+        for (const double x : transform->columns[column])
+          matrix.push_back(x);
+        matrix.push_back(column == 3 ? 1 : 0);
+      }
+      set(node, "transform", object(from, {{"matrix", numbers(from, matrix)}}));
+    }
+    add(model.nodes, key, std::move(node));
+  }
+
+  /// Adds the node, if it shows something, and its mention to `siblings`.
+  void addNode(const Node &node, std::vector<JsonValue> &children,
+               std::vector<JsonValue> &siblings) {
+    const JsonValue &json = *node.json;
+    if (node.transform.determinant() == 0)
+      return warn(json, fmt::format("{} is flattened by its transform, and left out", node.what));
+    if (const JsonValue *skin = json.find("skin"))
+      warn(*skin, fmt::format("the skin of {} is left out: it keeps its shape", node.what));
+    if (const JsonValue *punctual = extension(json, "KHR_lights_punctual")) {
+      JsonValue light = lightOf(file, require(*punctual, "light", node.what), node.what,
+                                model.modules, model.warnings);
+      children.push_back(object(*punctual, {{"light", std::move(light)}}));
+    }
+    if (const JsonValue *mesh = json.find("mesh"))
+      addMesh(*mesh, node, children);
+    if (children.empty())
+      return;
+    const std::string key = name + "/" + nodeLabels.of(node.index);
+    siblings.push_back(text(json, key));
+    addChildren(key, json, std::move(children), &node.transform);
+  }
+
+  /// Each mesh is one node, which all nodes that show it share.
+  void addMesh(const JsonValue &number, const Node &node, std::vector<JsonValue> &children) {
+    const std::size_t index = file.index("meshes", number, "`mesh` of " + node.what);
+    const auto [known, isNew] = meshes.emplace(index, std::string());
+    if (isNew) {
+      const std::string key = fmt::format("{}/meshes/{}", name, meshLabels.of(index));
+      std::vector<JsonValue> primitives = primitivesOf(index);
+      if (!primitives.empty()) {
+        addChildren(key, file.list("meshes")[index], std::move(primitives), nullptr);
+        known->second = key;
+      }
+    }
+    if (!known->second.empty())
+      children.push_back(text(number, known->second));
+  }
+
+  std::vector<JsonValue> primitivesOf(std::size_t index) {
+    const JsonValue &mesh = file.list("meshes")[index];
+    const std::string what = fmt::format("`meshes.{}`", index);
+    const JsonValue &primitives =
+        expect(require(mesh, "primitives", what), Kind::Array, "`primitives` of " + what);
+    std::vector<JsonValue> made;
+    for (std::size_t i = primitives.elements.size(); i-- > 0;)
+      errors.attempt([&] {
+        const std::string part = partOfPrimitive(index, i);
+        const JsonValue &primitive = primitiveOf(file, part, mesh.place());
+        checkPrimitive(file, primitive, part);
+        for (Warning &warning : warningsOf(primitive, part))
+          model.warnings.push_back(std::move(warning));
+        if (!hasTriangles(primitive, part))
+          return;
+        JsonValue path = text(primitive, mention.path);
+        path.fromOverride = mention.isFromOverride;
+        made.push_back(object(primitive, {{"name", text(primitive, nameOf(mesh, index, i))},
+                                          {"mesh", std::move(path)},
+                                          {"part", text(primitive, part)},
+                                          {"material", materialOf(primitive, part)}}));
+      });
+    return made;
+  }
+
+  std::string nameOf(const JsonValue &mesh, std::size_t index, std::size_t primitive) const {
+    const std::string label = name + "/" + meshLabels.of(index);
+    return mesh.find("primitives")->elements.size() == 1 ? label
+                                                         : fmt::format("{}.{}", label, primitive);
+  }
+
+  /// The name of a primitive's material, which is made once.
+  JsonValue materialOf(const JsonValue &primitive, const std::string &part) {
+    const JsonValue *number = primitive.find("material");
+    if (!number) {
+      const std::string key = name + "/default material";
+      if (!hasDefault)
+        add(model.materials, key, defaultMaterial(source, model.modules));
+      hasDefault = true;
+      return text(primitive, key);
+    }
+    const std::size_t index =
+        file.index("materials", *number, fmt::format("`material` of `{}`", part));
+    const std::string key = name + "/" + materialLabels.of(index);
+    if (materials.insert(index).second)
+      errors.attempt([&] {
+        add(model.materials, key,
+            gltf::materialOf(file, index, mention, model.modules, model.warnings));
+      });
+    return text(*number, key);
+  }
+
+  void warn(const JsonValue &where, std::string message) {
+    model.warnings.push_back({std::move(message), where.place()});
+  }
+
+  const File &file;
+  const std::string &name;
+  const Mention &mention;
+  const JsonValue &source;
+  Model model;
+  const Labels nodeLabels{file, "nodes"}, meshLabels{file, "meshes"},
+      materialLabels{file, "materials"};
+  std::map<std::size_t, std::string> meshes; // names of their nodes; empty: without triangles
+  std::set<std::size_t> materials;           // made
+  bool hasDefault = false;
+  ErrorCollector errors;
+};
+
+} // namespace
+
+Model modelOf(const File &file, const std::string &name, const Mention &mention,
+              const JsonValue &source) {
+  try {
+    return ModelMaker(file, name, mention, source).make();
+  } catch (const Error &error) {
+    throw named(error, file.path());
+  }
+}
+
+} // namespace rtsl::scene::gltf
