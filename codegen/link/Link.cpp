@@ -46,6 +46,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::emptyReferences(context);
   linking::findUsedObjects(context);
   linking::deriveHitErrors(context);
+  if (!request.hasCounts && !request.keep.has(Item::Graph))
+    ir::attr::singlePrimitives.set(ir);
   linking::resolveSlots(context);
   linking::dropUnreached(context);
   linking::noteClasses(context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
@@ -22,8 +23,11 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart
   state.isEasy = start.isEasy;
   if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
     state.hitAnswer = RTSL_ACCEPT;
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS)
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS) {
     state.leaves = start.leaves;
+    if (hasCounts(*state.launch))
+      state.leavesPrimitive = start.leavesPrimitive;
+  }
   state.instance = RTSL_NO_HIT;
   state.primitive = RTSL_NO_HIT;
 }

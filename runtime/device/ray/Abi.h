@@ -250,11 +250,12 @@ typedef struct RtslState {
   // The hit so far (committed), and what is being tested (candidate).
   uint32_t instance, primitive; // of the hit so far; RTSL_NO_HIT: none
   uint32_t candidateInstance, candidatePrimitive;
-  float u, v;          // barycentrics of vertices 1 and 2 of a triangle hit
-  float hitPointError; // bound of the distance of HitPoint from the surface that was hit
-  float hitError;      // bound of the error of HitDistance on a primitive; below 0: not known
-  uint32_t leaves;     // the instance whose surface the ray starts on; RTSL_NO_HIT: none
-  uint32_t isEasy;     // 1: every traversal is known to handle the ray (isEasySpawn in Spawn.h)
+  float u, v;               // barycentrics of vertices 1 and 2 of a triangle hit
+  float hitPointError;      // bound of the distance of HitPoint from the surface that was hit
+  float hitError;           // bound of the error of HitDistance on a primitive; below 0: not known
+  uint32_t leaves;          // the instance whose surface the ray starts on; RTSL_NO_HIT: none
+  uint32_t leavesPrimitive; // and which of its primitives, if objects may hold several
+  uint32_t isEasy; // 1: every traversal is known to handle the ray (isEasySpawn in Spawn.h)
 
   // What the ray carries (docs/language.md, "Tracing and light").
   void *payload; // the struct of the ray's type; undefined if rayType is 0

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
@@ -102,25 +103,33 @@ struct RayStart {
   float epsilon;   // in units of its direction
   uint32_t isEasy; // result of isEasySpawn
   uint32_t leaves; // RtslState::leaves
+  uint32_t leavesPrimitive;
 };
+
+/// RtslState::leavesPrimitive of rays that leave the hit of `parent`. Its `primitive` is not kept
+/// while it waits for a ray.
+inline uint32_t leftPrimitive(const RtslState &parent) {
+  return hasCounts(*parent.launch) ? uint32_t(parent.PrimitiveIndex) : 0;
+}
 
 /// The hit that determines how rays start that leave it.
 struct LeftHit {
   uint32_t instance; // RTSL_NO_HIT: there is none
+  uint32_t primitive;
   Vec3 point, normal;
   float error; // bound of the distance of the point from the surface
 };
 
 inline LeftHit leftHit(const RtslState &parent) {
-  return {parent.instance, load(parent.HitPoint), load(parent.GeometricNormal),
-          parent.hitPointError};
+  return {parent.instance, leftPrimitive(parent), load(parent.HitPoint),
+          load(parent.GeometricNormal), parent.hitPointError};
 }
 
 /// startOf for origins that are not the hit point. It is passed values, so that a state in
 /// registers stays there.
 __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
                                                                Vec3 direction) {
-  RayStart start = {0, 0, RTSL_NO_HIT};
+  RayStart start = {0, 0, RTSL_NO_HIT, hit.primitive};
   float foreign = foreignPointUnits * roundingUnit * largest(origin);
   float length = largest(direction);
   if (!(length > 0 && length < infinity))
@@ -148,7 +157,7 @@ __attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, 
                                                        Vec3 direction) {
   if (isEasySpawn(parent, origin, direction))
     return {epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction), 1,
-            parent.instance};
+            parent.instance, leftPrimitive(parent)};
   return startElsewhere(leftHit(parent), origin, direction);
 }
 

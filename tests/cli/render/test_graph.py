@@ -122,6 +122,41 @@ class Counts(GraphCase):
             second, _ = self.render(scene(apart, root="root"), f"--traversal={traversal}")
             self.assert_same_bits(first, second)
 
+    def test_a_ray_that_leaves_a_primitive_meets_its_neighbours(self):
+        """Their t is known to 0.1 only: within that, a ray must not meet the ball that it leaves, but must meet others, however they
+        are grouped. Two rays leave each hit, so that the second one starts after another ray was traced."""
+        self.write("Rough.rtsl", """
+            class RoughBalls : Balls {
+              void intersect() {
+                vec4 ball = balls[rt_PrimitiveIndex];
+                vec3 o = rt_RayOrigin - ball.xyz;
+                float a = dot(rt_RayDirection, rt_RayDirection), b = dot(o, rt_RayDirection) / a;
+                float d = ball.w * ball.w - dot(o - b * rt_RayDirection, o - b * rt_RayDirection);
+                if (d < 0.0) return;
+                if (!hit(-b - sqrt(d / a), 0.1)) hit(-b + sqrt(d / a), 0.1);
+              }
+            };
+            class HowNear : rt_Material {
+              vec3 away() { return rt_GeometricNormal + 0.9 * vec3(rand() - 0.5, rand() - 0.5, rand() - 0.5); }
+              void shade() {
+                rt_SampleColor = rt_Depth > 0 ? color(rt_HitDistance)
+                                              : trace(rt_HitPoint, away()) + trace(rt_HitPoint, 2.0 * away());
+              }
+            };
+            """)
+        balls = [[0, 0, 0, 1], [1.9, 0, 0, 1], [0, 1.9, 0, 1], [0.95, -1.8, 0, 1]]
+
+        def picture(groups, *options):
+            objects = [{"primitive": {"class": "RoughBalls", "balls": group}, "count": len(group), "material": "near"}
+                       for group in groups]
+            return self.render({"rtsl": 1, "import": ["Graph.rtsl", "Rough.rtsl"], "camera": {"class": "Look"}, "objects": objects,
+                                "materials": {"near": {"class": "HowNear"}}, "render": {"size": [48, 36], "spp": 4, "depth": 1}},
+                               *options)[0]
+
+        apart = picture([[ball] for ball in balls])
+        for options in ((), ("--trace=split",), ("--traversal=device",), ("--target=host-megakernel",)):
+            self.assert_same_bits(picture([balls], *options), apart, options)
+
     def test_the_count_may_be_that_of_a_buffer(self):
         numbers = {"all": balls(*CLUSTER)}
         named = copy.deepcopy(numbers)

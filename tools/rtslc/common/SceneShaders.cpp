@@ -105,13 +105,17 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
     names.push_back(lastPart(name));
   for (const auto &one : module.classes)
     names.push_back(one->name);
+  LibraryNames library;
   for (const scene::LocatedName &mention : scene::classMentions(description)) {
     if (module.findClass(mention.text))
       continue;
     const SourceRange range = messages.rangeOf(mention.place);
     Diagnostic &diagnostic = messages.diagnostics.report(
         Code::sceneUnknownClass, range, fmt::format("no class is named `{}`", mention.text));
-    if (const std::string near = closestName(mention.text, names); !near.empty())
+    if (const std::string module = library.moduleThatDefines(mention.text); !module.empty())
+      diagnostic.note(fmt::format("it is in the standard library: add \"{}\" to `import`",
+                                  module.substr(0, module.rfind('.'))));
+    else if (const std::string near = closestName(mention.text, names); !near.empty())
       diagnostic.fix(range, near);
   }
 }
@@ -172,7 +176,9 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;
+  request.hasCounts = false;
   for (const scene::GeometryDescription &geometry : description.objects) {
+    request.hasCounts |= geometry.count != nullptr;
     const scene::ObjectDescription *material = geometry.material.object.get();
     if (!material)
       if (auto named = description.materials.find(geometry.material.name.text);

@@ -89,10 +89,13 @@ Fields fieldsAt(mlir::Value address) {
 
 /// The fields that the runtime reads of a ray that sends another one: Classic.h, Programs.h and
 /// Spawn.h.
-Fields readsOfSending() {
-  return Fields::of({device::keptRandomKey, device::keptDimension, device::keptDepth,
-                     device::keptInstance, device::keptHitPointError, device::keptHitPoint,
-                     device::keptGeometricNormal});
+Fields readsOfSending(mlir::ModuleOp module) {
+  Fields fields = Fields::of({device::keptRandomKey, device::keptDimension, device::keptDepth,
+                              device::keptInstance, device::keptHitPointError, device::keptHitPoint,
+                              device::keptGeometricNormal});
+  if (!ir::attr::singlePrimitives.isOn(module))
+    fields.add(Fields::of({device::keptPrimitiveIndex}));
+  return fields;
 }
 
 llvm::StringRef symbolOf(FuncOp function) {
@@ -140,11 +143,11 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
   Fields fields;
   llvm::TypeSwitch<mlir::Operation *>(op)
       .Case([&](ir::SpawnOp) {
-        fields = readsOfSending();
+        fields = readsOfSending(module);
         fields.add(inherited);
       })
       .Case([&](ir::SpawnPayloadOp spawn) {
-        fields = readsOfSending();
+        fields = readsOfSending(module);
         if (!spawn.getTime())
           fields.add(Fields::of({device::keptTime}));
         if (!spawn.getMask())
@@ -155,7 +158,7 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
       .Case(
           [&](ir::RandOp) { fields = Fields::of({device::keptRandomKey, device::keptDimension}); })
       .Case([&](ir::IlluminateOp) {
-        fields = readsOfSending();
+        fields = readsOfSending(module);
         fields.add(inherited);
         fields.add(ofFunction(illumination));
       })
