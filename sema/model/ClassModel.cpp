@@ -65,7 +65,8 @@ static RootModel primitiveModel() {
 
 static RootModel textureModel() {
   const StateSet sees = everyRay | textureCoordinates | surfaceDerivatives | textureDerivatives |
-                        StateSet{S::TextureColor, S::FloatTextureValue, S::du, S::dv};
+                        StateSet{S::TextureColor, S::FloatTextureValue, S::du,
+                                 S::dv,           S::ObjectToWorld,     S::WorldToObject};
   return {"rt_Texture",
           sees,
           {{"lookup", sees, {S::TextureColor, S::FloatTextureValue}, {A::Lookup, A::Random}}},

@@ -51,6 +51,8 @@ struct Arrival {
 /// writes.
 inline Arrival arriveAtBackground(RtslState &state) {
   clearCoordinates(state, rtsl_needs(state.launch));
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_TRANSFORMS)
+    describeTransforms(state, 0); // textures that `miss` looks up may read them
   return {Arrival::Background, state.launch->background};
 }
 
@@ -233,7 +235,7 @@ inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
                         uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
   aimCamera(state, launch);
-  setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT}, infinity);
+  setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT, 0}, infinity);
 }
 
 /// One sample of one pixel: the color that arrives along its ray.

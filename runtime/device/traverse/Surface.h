@@ -125,7 +125,7 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, const Trian
     float t = fused(uv0[1], w, fused(uv1[1], u, uv2[1] * v));
     state.TextureUV[0] = s;
     state.TextureUV[1] = t;
-    setVector(state.TextureUVW, s, t, 0);
+    store(state.TextureUVW, load(state.HitPoint));
     if (needs & RTSL_NEEDS_DERIVATIVES)
       triangleDerivatives(state, p, uv0, uv1, uv2);
   }
