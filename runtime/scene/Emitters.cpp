@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -113,10 +114,11 @@ private:
     return sum / points;
   }
 
-  /// 0 if it is not known.
+  /// 0 if it is not known. More than the largest float counts as that: the brightest surface is
+  /// worth finding.
   double power(std::uint32_t number, std::uint32_t part, std::uint32_t sample) const {
     const float one = objects.program().emittedPower(&launch, number, part, sample);
-    return one > 0 && std::isfinite(one) ? double(one) : 0;
+    return one > 0 ? std::min(one, std::numeric_limits<float>::max()) : 0;
   }
 
   const Objects &objects;

@@ -306,17 +306,17 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   const Vec3 toEye = normal * (sample & 1 ? -1.0f : 1.0f);
   const uint32_t components = rtsl_color_components(&launch);
   setDefaults(state, components);
-  setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT}, 1);
+  setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT, 0}, 1);
   state.instance = number;
   state.primitive = part;
   for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
     state.attributes[i] = 0; // nothing was intersected
   describeHit(state);
   rtsl_rt_Material_emission(&state, instance.material);
-  float sum = 0;
+  float mean = 0;
   for (uint32_t i = 0; i < components; ++i)
-    sum += state.EmissionColor[i];
-  return sum / float(components) * area;
+    mean += state.EmissionColor[i] / float(components);
+  return mean * area;
 }
 
 } // namespace rtsl::device

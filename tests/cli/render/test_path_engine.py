@@ -279,8 +279,18 @@ class BadInput(PathCase):
         self.assertEqual(json.loads(out)["samplesNotFinite"], 0)
         self.assert_gray(0.5, 0.01)
 
+    def test_the_brightest_lamp_is_found(self):
+        """Its power is more than a float can hold; light is proportional to the radiance, sample by sample."""
+        means = []
+        for glow in (1.0, 2.0 ** 127):
+            self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": glow})],
+                       camera="Under", spp=4)
+            means.append(self.mean()[0] / glow)
+        self.assertGreater(means[0], 0.001)
+        self.assertAlmostEqual(means[1], means[0], delta=1e-4 * means[0])
+
     def test_lamps_that_are_too_bright(self):
-        """Infinite power chooses no lamp; the samples that meet it are left out, and counted."""
+        """Samples that are not finite are left out, and counted."""
         self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": 3e38})],
                    camera="Under", background=1.0, spp=64)
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-all")
