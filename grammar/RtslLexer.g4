@@ -49,10 +49,6 @@ RETURN   : 'return' ;
 TRUE     : 'true' ;
 FALSE    : 'false' ;
 
-// Keywords of GLSL that RTSL does not have: tokens of their own for better messages.
-PRECISION           : 'precision' ;
-PRECISION_QUALIFIER : 'highp' | 'mediump' | 'lowp' ;
-
 // --- Literals -------------------------------------------------------------------------------------------------------
 
 // 42, 052, 0x2A, each with an optional u.

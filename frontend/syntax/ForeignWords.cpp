@@ -180,17 +180,22 @@ std::size_t ForeignWords::wordsOfType(std::size_t index) const {
 // Qualifiers and attributes
 //===----------------------------------------------------------------------===//
 
+/// `highp vec3 n`, `precision mediump float;`. Elsewhere these are ordinary names.
 std::size_t ForeignWords::skipPrecision(std::size_t index) {
-  if (typeAt(index) == RtslLexer::PRECISION_QUALIFIER) {
+  const auto isQualifier = [&](std::size_t word) {
+    const std::string_view text = textOf(at(word));
+    return text == "highp" || text == "mediump" || text == "lowp";
+  };
+  if (isQualifier(index) && isDeclarationStart() && typeAt(index + 1) == RtslLexer::IDENTIFIER &&
+      typeAt(index + 2) == RtslLexer::IDENTIFIER) {
     diagnostics.report(Code::precisionQualifier, rangeOf(at(index)))
         .fix(removal(index, 1), "", true);
     return 1;
   }
-  if (typeAt(index) != RtslLexer::PRECISION)
+  if (textOf(at(index)) != "precision" || !isStatementStart() || !isQualifier(index + 1))
     return 0;
-  std::size_t count = 1;
-  while (count < 4 && typeAt(index + count) != RtslLexer::SEMICOLON &&
-         typeAt(index + count) != Token::endOfFile)
+  std::size_t count = 2;
+  if (typeAt(index + count) == RtslLexer::IDENTIFIER)
     ++count;
   if (typeAt(index + count) == RtslLexer::SEMICOLON)
     ++count;
@@ -274,8 +279,7 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
     return behind - index;
   }
   // Two names in a row are a type and what it declares; the first of three is a qualifier.
-  if ((next != RtslLexer::IDENTIFIER && !isQualifier(next) &&
-       next != RtslLexer::PRECISION_QUALIFIER) ||
+  if ((next != RtslLexer::IDENTIFIER && !isQualifier(next)) ||
       typeAt(index + 2) != RtslLexer::IDENTIFIER)
     return 0;
   for (const ForeignQualifier &foreign : foreignQualifiers) {

@@ -46,8 +46,7 @@ std::string_view spellingOf(unsigned bracket) {
 }
 
 bool isKeyword(unsigned type) {
-  return (type >= RtslLexer::IMPORT && type <= RtslLexer::FALSE) || type == RtslLexer::PRECISION ||
-         type == RtslLexer::PRECISION_QUALIFIER;
+  return type >= RtslLexer::IMPORT && type <= RtslLexer::FALSE;
 }
 
 bool isOperator(unsigned type) {

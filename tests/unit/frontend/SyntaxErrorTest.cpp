@@ -293,6 +293,17 @@ TEST(Words, PrecisionQualifiersAreToBeRemoved) {
             "\n");
 }
 
+TEST(Words, PrecisionIsANameElsewhere) {
+  EXPECT_EQ(messages("class A { public float precision = 0.1; public vec2 lowp; float highp; };\n"
+                     "struct S { float precision; };\n"
+                     "float mediump(float precision, S s) {\n"
+                     "  precision = s.precision;\n"
+                     "  float lowp = mediump(precision, s), highp = precision;\n"
+                     "  return lowp * highp;\n"
+                     "}\n"),
+            "");
+}
+
 TEST(Words, Directives) { // those that the preprocessor left
   EXPECT_EQ(messages("void f() { } #define A 1\nvoid g() { }\n"),
             "E0141 1:14-1:15 `#` starts a directive only at the start of a line\n");
