@@ -130,7 +130,7 @@ private:
             {key.text,
              convert(value, classInfo ? typeOf(classInfo->parameters, key.text) : nullptr,
                      fmt::format("parameter `{}` of `{}`", key.text, object.className.text)),
-             value.fromOverride ? value.place() : object.constructor->place(key)});
+             object.constructor->place(key)});
       values.constructor = std::move(arguments);
     }
     ErrorCollector ofMembers;
@@ -501,8 +501,8 @@ private:
     if (classInfo.root == root)
       return;
     throw Error(ErrorCode::WrongClass,
-                fmt::format("`{}` is a `{}`, a `{}`, where {} is needed", name.text, classInfo.name,
-                            classInfo.root, what),
+                fmt::format("`{}` is a `{}`, an `{}`, where {} is needed", name.text,
+                            classInfo.name, classInfo.root, what),
                 name.place);
   }
 

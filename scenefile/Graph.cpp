@@ -451,7 +451,7 @@ VariableDefinitions readVariables(const JsonValue &value) {
   expect(value, Kind::Object, "`variables`");
   VariableDefinitions variables;
   for (const auto &[key, member] : value.members)
-    variables[key.text] = {member.fromOverride ? member.place() : value.place(key), &member};
+    variables[key.text] = {value.place(key), &member};
   return variables;
 }
 

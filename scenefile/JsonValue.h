@@ -17,6 +17,7 @@ struct JsonValue;
 struct JsonKey {
   std::string text;
   std::uint32_t line = 0, column = 0, length = 0;
+  std::shared_ptr<const std::string> file; // null: that of its object
 };
 
 struct JsonValue {
@@ -31,15 +32,17 @@ struct JsonValue {
   // Object, in the order of the file; keys are unique
   std::vector<std::pair<JsonKey, JsonValue>> members;
 
-  // Its beginning: a string inside its quotes, an array or object at its bracket (length 1). Line 0
-  // for an override.
+  // Its beginning: a string inside its quotes, an array or object at its bracket (length 1). The
+  // file of an override is its text on the command line, "--set path.to.key=value".
   std::shared_ptr<const std::string> file;
   std::uint32_t line = 0, column = 0, length = 0;
   bool fromOverride = false; // came from --set
 
   Place place() const { return {*file, line, column, length}; }
-  /// Of a key in the same file: of this object, or the one whose value this is.
-  Place place(const JsonKey &key) const { return {*file, key.line, key.column, key.length}; }
+  /// Of a key of this object, or of the object whose value this is.
+  Place place(const JsonKey &key) const {
+    return {key.file ? *key.file : *file, key.line, key.column, key.length};
+  }
   const JsonValue *find(const std::string &key) const;
   JsonValue *find(const std::string &key);
 };

@@ -11,40 +11,63 @@ namespace rtsl::scene {
 
 namespace {
 
-/// Marks a value and its parts as given on the command line.
-void mark(JsonValue &value, const std::shared_ptr<const std::string> &origin) {
+/// What messages show of an override is the option and its text.
+const std::string option = "--set ";
+
+/// The column of what is `offset` characters into the text of an override.
+std::uint32_t columnOf(std::size_t offset) {
+  return static_cast<std::uint32_t>(option.size() + offset + 1);
+}
+
+/// Marks a value and its parts as given on the command line, `offset` characters into its text.
+void mark(JsonValue &value, const std::shared_ptr<const std::string> &origin, std::size_t offset) {
+  const auto move = [&](std::uint32_t line, std::uint32_t &column) {
+    if (line == 1)
+      column += columnOf(offset) - 1;
+  };
   value.file = origin;
-  value.line = value.column = value.length = 0;
+  move(value.line, value.column);
   value.fromOverride = true;
   for (JsonValue &element : value.elements)
-    mark(element, origin);
+    mark(element, origin, offset);
   for (auto &member : value.members) {
-    member.first.line = member.first.column = member.first.length = 0;
-    mark(member.second, origin);
+    move(member.first.line, member.first.column);
+    mark(member.second, origin, offset);
   }
 }
 
-JsonValue parseValue(const std::string &text, const std::string &origin) {
+JsonValue parseValue(const std::string &text, const std::string &origin, std::size_t offset) {
   try {
     return parseJson(text, origin);
   } catch (const Error &error) {
     // Text that begins like JSON must be JSON, and a number must be in range.
     if (error.code == ErrorCode::OutOfRange ||
-        (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"')))
-      throw Error(ErrorCode::BadOverride, error.what(), Place{origin});
+        (!text.empty() && (text[0] == '{' || text[0] == '[' || text[0] == '"'))) {
+      Place place = error.place.value_or(Place{origin});
+      if (place.line == 1)
+        place.column += columnOf(offset) - 1;
+      throw Error(ErrorCode::BadOverride, error.what(), place);
+    }
   }
   JsonValue value;
   value.kind = JsonValue::Kind::String;
   value.string = text;
+  value.line = value.column = 1;
+  value.length = static_cast<std::uint32_t>(text.size());
   return value;
 }
 
-std::vector<std::string> splitPath(const std::string &path) {
-  std::vector<std::string> parts;
+struct PathPart {
+  std::string text;
+  std::size_t offset; // in the text of the override
+};
+
+std::vector<PathPart> splitPath(const std::string &path) {
+  std::vector<PathPart> parts;
   std::size_t start = 0;
   for (;;) {
     std::size_t dot = path.find('.', start);
-    parts.push_back(path.substr(start, dot - start));
+    parts.push_back({path.substr(start, dot - start), start});
     if (dot == std::string::npos)
       return parts;
     start = dot + 1;
@@ -61,62 +84,77 @@ std::vector<std::string> keysOf(const JsonValue &object) {
 class Walk {
 public:
   Walk(const std::string &text, JsonValue &root)
-      : origin(std::make_shared<const std::string>("--set " + text)), root(root) {}
+      : origin(std::make_shared<const std::string>(option + text)), root(root) {}
 
   void apply(const std::string &text) {
     std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-      fail("an override is written `path.to.key=value`");
-    std::vector<std::string> path = splitPath(text.substr(0, equals));
-    JsonValue value = parseValue(text.substr(equals + 1), *origin);
-    mark(value, origin);
+      throw Error(ErrorCode::BadOverride, "an override is written `path.to.key=value`",
+                  placeOf({text, 0}));
+    const std::vector<PathPart> path = splitPath(text.substr(0, equals));
+    JsonValue value = parseValue(text.substr(equals + 1), *origin, equals + 1);
+    mark(value, origin, equals + 1);
     JsonValue *place = &root;
     for (std::size_t i = 0; i < path.size(); ++i) {
       place = &step(*place, path[i], i + 1 == path.size(), i == 0);
-      walked += (i ? "." : "") + path[i];
+      walked += (i ? "." : "") + path[i].text;
     }
     *place = std::move(value);
   }
 
 private:
-  [[noreturn]] void fail(const std::string &message) const {
-    throw Error(ErrorCode::BadOverride, message, Place{*origin});
+  Place placeOf(const PathPart &part) const {
+    return {*origin, 1, columnOf(part.offset), static_cast<std::uint32_t>(part.text.size())};
   }
 
-  JsonValue &step(JsonValue &from, const std::string &part, bool last, bool first) {
-    if (part.empty())
-      fail("the path of an override has an empty part");
+  JsonValue &step(JsonValue &from, const PathPart &part, bool last, bool first) {
+    const Place place = placeOf(part);
+    if (part.text.empty())
+      throw Error(ErrorCode::BadOverride, "the path of an override has an empty part", place);
     if (from.kind == JsonValue::Kind::Array)
       return element(from, part, last);
     if (from.kind != JsonValue::Kind::Object)
-      fail(fmt::format("`{}` is {}: it has no `{}` in it", walked, describe(from.kind), part));
-    if (JsonValue *found = from.find(part))
+      throw Error(
+          ErrorCode::BadOverride,
+          fmt::format("`{}` is {}: it has no `{}` in it", walked, describe(from.kind), part.text),
+          place);
+    if (JsonValue *found = from.find(part.text))
       return *found;
     // A section of the file may be missing; deeper down a missing name is more likely a mistake.
     if (!last && !first) {
-      std::string message = fmt::format("`{}` has no `{}`", walked, part);
-      if (const std::string near = closestName(part, keysOf(from)); !near.empty())
-        message += fmt::format("; did you mean `{}`?", near);
-      fail(message);
+      Error error(ErrorCode::BadOverride, fmt::format("`{}` has no `{}`", walked, part.text),
+                  place);
+      if (const std::string near = closestName(part.text, keysOf(from)); !near.empty())
+        error.fix(near);
+      throw error;
     }
     JsonValue added;
     added.kind = JsonValue::Kind::Object;
     added.file = origin;
+    added.line = place.line;
+    added.column = place.column;
+    added.length = place.length;
     added.fromOverride = true;
-    from.members.emplace_back(JsonKey{part, 0, 0, 0}, std::move(added));
+    from.members.emplace_back(JsonKey{part.text, place.line, place.column, place.length, origin},
+                              std::move(added));
     return from.members.back().second;
   }
 
-  JsonValue &element(JsonValue &list, const std::string &part, bool last) {
+  JsonValue &element(JsonValue &list, const PathPart &part, bool last) {
+    const char *begin = part.text.data(), *behind = begin + part.text.size();
     std::size_t index = 0;
-    auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-    if (error != std::errc() || end != part.data() + part.size())
-      fail(fmt::format("`{}` is a list: `{}` is not an index", walked, part));
+    auto [end, error] = std::from_chars(begin, behind, index);
+    if (error != std::errc() || end != behind)
+      throw Error(ErrorCode::BadOverride,
+                  fmt::format("`{}` is a list: `{}` is not an index", walked, part.text),
+                  placeOf(part));
     if (last && index == list.elements.size())
       list.elements.emplace_back();
     if (index >= list.elements.size())
-      fail(fmt::format("`{}` has {} element{}: index {} is out of range", walked,
-                       list.elements.size(), list.elements.size() == 1 ? "" : "s", index));
+      throw Error(ErrorCode::BadOverride,
+                  fmt::format("`{}` has {} element{}: index {} is out of range", walked,
+                              list.elements.size(), list.elements.size() == 1 ? "" : "s", index),
+                  placeOf(part));
     return list.elements[index];
   }
 

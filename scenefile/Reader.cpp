@@ -29,7 +29,7 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
     if (std::find(names.begin(), names.end(), key) != names.end())
       continue;
     Error error(ErrorCode::UnknownKey, fmt::format("{} has no key `{}`", what, key),
-                member.second.fromOverride ? member.second.place() : object.place(member.first));
+                object.place(member.first));
     if (const std::string near = closestName(key, names); !near.empty())
       error.fix(near);
     errors.add(std::move(error));

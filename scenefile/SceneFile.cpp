@@ -224,8 +224,7 @@ private:
         object.constructor = &member;
         continue;
       }
-      object.members.push_back(
-          {{key.text, member.fromOverride ? member.place() : value.place(key)}, &member});
+      object.members.push_back({{key.text, value.place(key)}, &member});
     }
     return object;
   }

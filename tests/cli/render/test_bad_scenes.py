@@ -50,6 +50,19 @@ class BadScenes(Case):
         self.assert_message(self.render(), "E0803", "a scene for the engine `programs` needs a `rayGeneration`")
         self.assert_message(self.render("--set", "render.engine=wavefront"), "E0808", "no engine `wavefront`")
 
+    def test_overrides_are_shown_where_they_are_wrong(self):
+        self.glass_scene()
+        for text, code, begin, length in (
+                ("objects.7.material=glass", "E0809", 15, 1), ("textures.cheks.scale=8", "E0809", 16, 5),
+                ("render.spp=many", "E0804", 18, 4), ("rendr.spp=4", "E0802", 7, 5), ("objects.1.material=gless", "E0806", 26, 5),
+                ('background={"class": "Sky", "horizont": 1}', "E0812", 36, 8)):
+            message, = self.render("--set", text)
+            place = message["range"]
+            self.assertEqual((message["code"], place["file"], place["begin"]), (code, "command line", {**place["begin"], "line": 1, "column": begin}))
+            self.assertEqual(place["end"]["column"] - begin, length, text)
+        _, error = self.run_rtslc("check", "scene.json", "--set", "render.spp=many", status=1)
+        self.assertIn("1 | --set render.spp=many\n  |                  ^^^^\n", error)
+
     def test_unknown_member(self):
         self.glass_scene(background={"class": "Sky", "horizont": [1, 1, 1]})
         self.assert_message(self.render(), "E0812", "horizont", line=self.line_of('"horizont"'))

@@ -184,10 +184,11 @@ TEST(BuildScene, ClassesInTheWrongPlace) {
   EXPECT_EQ(
       buildError("\"lights\": [{\"class\": \"Mirror\"}]"),
       "s.json:2:23+6: wrongClass: `Mirror (lights.0)` is a `Mirror`, where a `rt_Light` is needed");
-  EXPECT_EQ(buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}}, "
-                       "\"objects\": [\n{\"primitive\": {\"class\": \"Sphere\", \"constructor\": "
-                       "[[0,0,0],1]}, \"material\": \"sky\"}]"),
-            "s.json:3:77+3: wrongClass: `sky` is a `Sky`, a `rt_Miss`, where a material is needed");
+  EXPECT_EQ(
+      buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}}, "
+                 "\"objects\": [\n{\"primitive\": {\"class\": \"Sphere\", \"constructor\": "
+                 "[[0,0,0],1]}, \"material\": \"sky\"}]"),
+      "s.json:3:77+3: wrongClass: `sky` is a `Sky`, an `rt_Miss`, where a material is needed");
   EXPECT_EQ(buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}},\n" +
                        everything("\"other\": \"sky\"")),
             "s.json:4:11+3: wrongClass: member `other` of `e` takes a `rt_Material`, not a `Sky`");

@@ -167,9 +167,9 @@ TEST(SceneFile, OverridesReachTheDescription) {
   EXPECT_EQ(scene.objects[0].mesh.at(0).path, "b.ply"); // as the shell's working directory sees it
   EXPECT_EQ(scene.render.samplesPerPixel, 9u);
   EXPECT_EQ(parseError(withCamera("\"ambient\": 1"), {"render.spp=0"}),
-            "--set render.spp=0: outOfRange: `spp` must be between 1 and 2147483647, not 0");
+            "--set render.spp=0:1:18+1: outOfRange: `spp` must be between 1 and 2147483647, not 0");
   EXPECT_EQ(parseError(withCamera("\"ambient\": 1"), {"rendr.spp=1"}),
-            "--set rendr.spp=1: unknownKey: a scene has no key `rendr` (fix `render`)");
+            "--set rendr.spp=1:1:7+5: unknownKey: a scene has no key `rendr` (fix `render`)");
 }
 
 TEST(SceneFile, MissingFile) {

@@ -98,16 +98,27 @@ Messages::Messages(const CommonOptions &options) : options(options) {
   diagnostics.warnings = options.warnings;
 }
 
+FileId Messages::fileOf(const std::string &name) {
+  if (name.rfind("--set ", 0) == 0) {
+    FileId &shown = overrides[name];
+    if (!shown)
+      shown = sources.add("command line", name);
+    return shown;
+  }
+  FileId file = sources.find(name);
+  std::string whyNot;
+  if (!file)
+    file = sources.addFile(name, whyNot).value_or(0);
+  if (!file) // it is gone or unreadable: the name still helps
+    file = sources.add(name, "");
+  return file;
+}
+
 SourceRange Messages::rangeOf(const Place &place) {
   if (place.line ==
       0) // a file as a whole: the message names it, and it may be a device or a gigabyte
     return {};
-  FileId file = sources.find(place.file);
-  std::string whyNot;
-  if (!file)
-    file = sources.addFile(place.file, whyNot).value_or(0);
-  if (!file) // it is gone or unreadable: the name still helps
-    file = sources.add(place.file, "");
+  const FileId file = fileOf(place.file);
   const std::uint32_t begin = sources.offset(file, {place.line, place.column});
   return {file, begin, begin + place.length};
 }

@@ -5,6 +5,9 @@
 #include "frontend/diagnostics/Diagnostics.h"
 #include "support/Error.h"
 
+#include <map>
+#include <string>
+
 namespace rtsl::tool {
 
 /// The sources and messages of one run. Prints the messages once, on request or on destruction.
@@ -28,7 +31,11 @@ public:
   ExitStatus status() const { return diagnostics.hasErrors() ? Diagnosed : Fine; }
 
 private:
+  /// A file, or an override: "--set path.to.key=value".
+  FileId fileOf(const std::string &name);
+
   const CommonOptions &options;
+  std::map<std::string, FileId> overrides;
   bool printed = false;
 };
 
