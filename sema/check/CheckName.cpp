@@ -4,7 +4,11 @@
 #include "sema/fold/ConstantFold.h"
 #include "sema/typed/Analysis.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <cctype>
 
 namespace rtsl {
 
@@ -104,7 +108,7 @@ ExprPtr FunctionChecker::checkName(const ast::NameExpr &expr, Access access) {
     diagnostics.report(Code::notAValue, expr.range, expr.name, "a function");
     return errorExpr(expr.range);
   }
-  if (const Symbol *symbol = program.findSymbol(expr.name)) {
+  if (const Symbol *symbol = program.findSymbol(expr.name, expr.range)) {
     if (symbol->kind == Symbol::Kind::Constant) {
       if (const typed::Variable *constant = program.constant(expr.name, expr.range))
         return variableAccess(constant, expr.range, access);
@@ -164,6 +168,25 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
   }
 }
 
+/// Those of the names that contain the word or are contained in it: authors remember a part.
+static std::vector<std::string> namesAround(std::string word,
+                                            const std::vector<std::string> &names) {
+  const auto lower = [](std::string &text) {
+    for (char &c : text)
+      c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  };
+  lower(word);
+  std::vector<std::string> found;
+  for (const std::string &name : names) {
+    std::string other = name.substr(3); // without rt_
+    lower(other);
+    if ((word.size() > 1 && other.find(word) != std::string::npos) ||
+        (other.size() > 2 && word.find(other) != std::string::npos))
+      found.push_back(name);
+  }
+  return found;
+}
+
 ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, Access access) {
   typed::StateVariable variable;
   if (!findStateVariable(name.substr(3), variable)) {
@@ -172,9 +195,14 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
       return errorExpr(range);
     }
     Diagnostic &diagnostic = diagnostics.report(Code::unknownState, range, name);
-    const std::string closest = closestName(name, whatMayStandHere(stateVariableNames()));
-    if (!closest.empty())
+    const std::vector<std::string> names = whatMayStandHere(stateVariableNames());
+    const std::vector<std::string> around = namesAround(name.substr(3), names);
+    if (const std::string closest = closestName(name, names); !closest.empty())
       diagnostic.fix(range, closest);
+    else if (around.size() == 1)
+      diagnostic.fix(range, around.front());
+    else if (!around.empty())
+      diagnostic.note(fmt::format("there are `{}`", fmt::join(around, "`, `")));
     return errorExpr(range);
   }
   if (access != Access::Read && !recordState(Use::Kind::WriteState, variable, range))

@@ -111,6 +111,25 @@ TEST(Hints, WhatCannotStandThereIsNotSuggested) {
             "");
 }
 
+TEST(Hints, AuthorsRememberAPartOfAName) {
+  const auto shade = [](const std::string &value) {
+    return "class A : rt_Material { void shade() { rt_SampleColor = color(" + value + "); } };";
+  };
+  EXPECT_EQ(hints(shade("rt_Normal.x")), "there are `rt_GeometricNormal`, `rt_ShadingNormal`\n");
+  EXPECT_EQ(hints(shade("rt_UV.x")), "there are `rt_TextureUV`, `rt_TextureUVW`\n");
+  EXPECT_EQ(hints(shade("rt_RayDir.x")), "there are `rt_RayDirection`, `rt_InverseRayDirection`\n");
+  expectFix(shade("rt_Inverse.x"), shade("rt_InverseRayDirection.x"));
+  EXPECT_EQ(hints(shade("rt_Whatever.x")), "");
+}
+
+TEST(Hints, ACallWithTooManyArgumentsShowsAllCandidates) {
+  EXPECT_EQ(hints("vec3 f(vec3 a) { return reflect(a, a, 1.0); }"),
+            "candidate: `float reflect(float, float)`\n"
+            "candidate: `vec2 reflect(vec2, vec2)`\n"
+            "candidate: `vec3 reflect(vec3, vec3)`\n"
+            "candidate: `vec4 reflect(vec4, vec4)`\n");
+}
+
 /// The text after every fix of every message, sure or not.
 std::string withAllFixes(const Checked &checked, const std::string &text) {
   std::vector<Fix> fixes;
