@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <system_error>
 
 namespace rtsl {
@@ -15,6 +16,11 @@ namespace rtsl {
 /// Whether a canonical path is that of a file of the library.
 static bool isInLibrary(const std::string &path) {
   return path.rfind(libraryFolder() + "/", 0) == 0;
+}
+
+/// Whether it is that of an engine. Scenes import these, not authors.
+static bool isEngine(const std::string &path) {
+  return path.rfind(libraryFolder() + "/std/engines/", 0) == 0;
 }
 
 /// The built-in types that are classes of the library, such as `sampler2D`, need no import.
@@ -59,8 +65,40 @@ const ast::TranslationUnit *SourceLoader::load(const std::string &path, SourceRa
     if (!isOurs)
       addWords(text, words);
     importBuiltInClasses(text, *unit);
+    if (isEngine(key))
+      renameTaken(path, unit);
+    unit->isOfLibrary = isOurs;
   }
   return unit.get();
+}
+
+/// The names of a file that all files see.
+static std::set<std::string> namesAtFileLevel(const ast::TranslationUnit &unit) {
+  std::set<std::string> names;
+  const auto add = [&](const auto &declarations) {
+    for (const auto &declaration : declarations)
+      names.insert(declaration.name.text);
+  };
+  add(unit.structs);
+  add(unit.constants);
+  add(unit.functions);
+  add(unit.classes);
+  return names;
+}
+
+void SourceLoader::renameTaken(const std::string &path,
+                               std::unique_ptr<ast::TranslationUnit> &engine) {
+  std::set<std::string> names = namesAtFileLevel(*engine);
+  names.erase(std::filesystem::path(path).stem().string()); // the class that scenes mention
+  PreprocessorOptions renaming = libraryOptions;
+  for (const auto &[key, unit] : units)
+    if (unit && !isInLibrary(key))
+      for (const std::string &taken : namesAtFileLevel(*unit))
+        if (names.erase(taken))
+          renaming.macros.push_back({taken, renamed(taken)});
+  if (renaming.macros.size() > libraryOptions.macros.size())
+    if (const std::optional<PreprocessedFile> again = preprocessFile(path, {}, renaming))
+      engine = parseFile(*again);
 }
 
 std::unique_ptr<ast::TranslationUnit>
@@ -120,6 +158,8 @@ const ast::TranslationUnit *SourceLoader::loadModule(const std::string &name,
     return nullptr;
   }
   if (!module.file.empty()) {
+    if (isEngine(module.file))
+      loadImports(false); // its names depend on those of the author's files
     offered.push_back(name);
     return load(module.file, importer);
   }

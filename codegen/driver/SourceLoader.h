@@ -65,6 +65,9 @@ private:
   static std::string original(const std::string &name);
   void addFile(const std::string &path);
   void loadImports(bool withModules);
+  /// Parses the file of an engine again if the author's files have names that it has, too: in it
+  /// they become others.
+  void renameTaken(const std::string &path, std::unique_ptr<ast::TranslationUnit> &engine);
   /// The unit of a file, which is empty if it cannot be parsed.
   std::unique_ptr<ast::TranslationUnit> parseFile(const PreprocessedFile &preprocessed);
   std::optional<PreprocessedFile> preprocessFile(const std::string &path, SourceRange importer,

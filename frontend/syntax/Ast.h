@@ -333,6 +333,7 @@ struct ImportDecl {
 /// One file. Each list is in source order; the ranges give the order between them.
 struct TranslationUnit {
   FileId file = 0;
+  bool isOfLibrary = false; // the standard library; set by whoever reads the file
   std::string comment; // at the beginning of the file
   std::vector<ImportDecl> imports;
   std::vector<StructDecl> structs;

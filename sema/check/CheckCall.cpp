@@ -74,13 +74,13 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
     if (!methods.empty())
       return checkUserCall(expr, methods, nullptr);
   }
-  if (!facts && program.namesFunction(scope, name)) {
+  if (!facts && program.namesFunction(scope, name, expr.callee.range)) {
     diagnostics.report(Code::useOutsideFunction, expr.callee.range, name);
     return errorExpr(expr.range);
   }
   if (const Type *type = types.named(name))
     return checkConstruct(type, expr.callee.range, expr.args, expr.range);
-  if (const Symbol *symbol = program.findSymbol(name)) {
+  if (const Symbol *symbol = program.findSymbol(name, expr.callee.range)) {
     if (symbol->kind == Symbol::Kind::Struct) {
       const typed::Struct *structure = program.structure(name, expr.callee.range);
       const Type *type = structure ? types.structure(structure) : types.error;
@@ -91,8 +91,7 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
                             expr.callee.range, expr.args, expr.range);
     if (symbol->kind == Symbol::Kind::Constant)
       return notAFunction("a constant", symbol->range);
-    const std::vector<typed::Function *> &overloads = program.functions.at(name);
-    return checkUserCall(expr, {overloads.begin(), overloads.end()}, nullptr);
+    return checkUserCall(expr, program.findFunctions(name, expr.callee.range), nullptr);
   }
   if (rootModel(name))
     return checkConstruct(types.reference(name), expr.callee.range, expr.args, expr.range);
@@ -210,8 +209,9 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
   for (std::size_t i = 0; !ambiguous && i != candidates.size(); ++i)
     if (candidates[i].parameters.size() == args.size())
       shown.push_back(static_cast<int>(i));
-  for (std::size_t i = 0; shown.empty() && i != candidates.size(); ++i)
-    shown.push_back(static_cast<int>(i));
+  if (shown.empty()) // all of them
+    for (std::size_t i = 0; i != candidates.size(); ++i)
+      shown.push_back(static_cast<int>(i));
   constexpr std::size_t maxShown = 8;
   for (std::size_t i = 0; i != std::min(shown.size(), maxShown); ++i) {
     const auto candidate = static_cast<std::size_t>(shown[i]);

@@ -162,7 +162,8 @@ bool FunctionChecker::isDeduced(const ast::VariableDecl &declaration) const {
   const std::string &type = declaration.type.name.text;
   return (type == "auto" || type == "let" || type == "var") && declaration.init &&
          declaration.init->kind != ast::ExprKind::InitializerList &&
-         declaration.type.dimensions.empty() && !program.findSymbol(type);
+         declaration.type.dimensions.empty() &&
+         !program.findSymbol(type, declaration.type.name.range);
 }
 
 /// The type can be deduced, and is suggested as a fix.

@@ -16,7 +16,7 @@ static const Type *typeOfName(const ast::Name &name, Program &program) {
     return keyword;
   if (rootModel(name.text))
     return program.types.reference(name.text);
-  if (const Symbol *symbol = program.findSymbol(name.text)) {
+  if (const Symbol *symbol = program.findSymbol(name.text, name.range)) {
     if (symbol->kind == Symbol::Kind::Struct) {
       const typed::Struct *structure = program.structure(name.text, name.range);
       return structure ? program.types.structure(structure) : program.types.error;

@@ -131,7 +131,7 @@ void Program::linkBase(ClassScope &scope) {
     scope.definition->base = found->second->definition;
     return;
   }
-  if (const Symbol *symbol = findSymbol(base.text)) {
+  if (const Symbol *symbol = findSymbol(base.text, base.range)) {
     diagnostics.report(Code::notAClass, base.range, base.text).label(symbol->range, "defined here");
     return;
   }

@@ -10,9 +10,26 @@
 
 namespace rtsl {
 
-const Symbol *Program::findSymbol(const std::string &name) const {
+const Symbol *Program::findSymbol(const std::string &name, SourceRange usedAt) const {
   auto found = symbols.find(name);
-  return found == symbols.end() ? nullptr : &found->second;
+  if (found == symbols.end())
+    return nullptr;
+  const Symbol &symbol = found->second;
+  if (isOfLibrary(usedAt) &&
+      !(symbol.kind == Symbol::Kind::Function ? libraryFunctionNames.count(name) != 0
+                                              : isOfLibrary(symbol.range)))
+    return nullptr;
+  return &symbol;
+}
+
+std::vector<const typed::Function *> Program::findFunctions(const std::string &name,
+                                                            SourceRange usedAt) const {
+  std::vector<const typed::Function *> found;
+  if (const auto overloads = functions.find(name); overloads != functions.end())
+    for (const typed::Function *function : overloads->second)
+      if (!isOfLibrary(usedAt) || isOfLibrary(function->range))
+        found.push_back(function);
+  return found;
 }
 
 bool Program::suggestImport(Diagnostic &diagnostic, const std::string &name) const {
@@ -33,8 +50,11 @@ void Program::collect(const std::vector<const ast::TranslationUnit *> &roots,
       if (const ast::TranslationUnit *imported = resolver(import, units[i]->file))
         if (seen.insert(imported).second)
           units.push_back(imported);
-  for (const ast::TranslationUnit *unit : units)
+  for (const ast::TranslationUnit *unit : units) {
+    if (unit->isOfLibrary)
+      libraryFiles.insert(unit->file);
     collectUnit(*unit);
+  }
 }
 
 /// Declares a name; false (reported) if it is already declared as something else. Functions may
@@ -80,8 +100,11 @@ void Program::collectUnit(const ast::TranslationUnit &unit) {
     entry.variable->type = types.error;
     constantOrder.push_back(declaration.name.text);
   }
-  for (const ast::FunctionDecl &declaration : unit.functions)
+  for (const ast::FunctionDecl &declaration : unit.functions) {
     functionNames.insert(declaration.name.text);
+    if (unit.isOfLibrary)
+      libraryFunctionNames.insert(declaration.name.text);
+  }
   for (const ast::ClassDecl &declaration : unit.classes) {
     if (!declareSymbol(declaration.name, Symbol::Kind::Class))
       continue;
@@ -102,8 +125,9 @@ void Program::collectUnit(const ast::TranslationUnit &unit) {
   }
 }
 
-bool Program::namesFunction(const ClassScope *scope, const std::string &name) const {
-  if (functionNames.count(name))
+bool Program::namesFunction(const ClassScope *scope, const std::string &name,
+                            SourceRange usedAt) const {
+  if ((isOfLibrary(usedAt) ? libraryFunctionNames : functionNames).count(name))
     return true;
   for (const ClassScope *at = methodNames.count(name) ? scope : nullptr; at; at = at->base)
     for (const ast::FunctionDecl &function : at->declaration->functions)

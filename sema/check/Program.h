@@ -113,7 +113,12 @@ public:
       defaults; // the default classes of an rt_ class
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
 
-  const Symbol *findSymbol(const std::string &name) const;
+  /// What a name at file level denotes where it is used; null: nothing. The library sees nothing of
+  /// the author's: a function of theirs may have the name of a built-in one that it calls.
+  const Symbol *findSymbol(const std::string &name, SourceRange usedAt) const;
+  /// The functions at file level of that name, seen from there.
+  std::vector<const typed::Function *> findFunctions(const std::string &name,
+                                                     SourceRange usedAt) const;
   /// Adds to a message about an unknown name which module of the library defines it, if one does.
   bool suggestImport(Diagnostic &diagnostic, const std::string &name) const;
   /// In the class or one of its bases.
@@ -125,7 +130,7 @@ public:
 
   /// Does the name denote a user function, seen from a class or (null) from a file? Also valid
   /// before functions are declared, which happens after constants and members.
-  bool namesFunction(const ClassScope *scope, const std::string &name) const;
+  bool namesFunction(const ClassScope *scope, const std::string &name, SourceRange usedAt) const;
 
   /// The checked constant, or null if it is broken or depends on itself (reported).
   const typed::Variable *constant(const std::string &name, SourceRange usedAt);
@@ -177,14 +182,17 @@ private:
                         typed::Function &function);
   void checkOverride(const ClassScope &scope, const typed::Function &function);
   void declareFreeFunction(const ast::FunctionDecl &declaration);
+  bool isOfLibrary(SourceRange range) const { return libraryFiles.count(range.file) != 0; }
 
   const ModuleFinder &finder;
   std::vector<const ast::TranslationUnit *> units;
   std::vector<ClassScope *> baseFirst;
   std::vector<PendingBody> bodies;
   std::unordered_map<std::string, unsigned> memberNames,
-      methodNames;                                        // number of classes that have it
-  std::unordered_set<std::string> functionNames;          // at file level
+      methodNames; // number of classes that have it
+  std::unordered_set<FileId> libraryFiles;
+  // at file level: all, and those of the library
+  std::unordered_set<std::string> functionNames, libraryFunctionNames;
   std::unordered_set<const typed::Function *> prototypes; // those without a body so far
   unsigned constantDepth = 0, structDepth = 0;
 };

@@ -42,6 +42,31 @@ class Library(Case):
         messages = self.diagnose("check", "main.rtsl")
         self.assertEqual([each["code"] for each in messages], ["E0207"], messages)
 
+    def test_the_author_s_names_do_not_reach_the_library(self):
+        """Functions with the names of built-in ones, and names that an engine has: the picture must not change."""
+        own = GREY.replace(";\n", " {\n", 1) + "};\n"
+        names = """
+            float max(float a, float b, float c) { return 1.0; }
+            float clamp(float low, float x, float high) { return low; } // another order
+            color mix(color a, color b, float share) { return color(0.0); }
+            vec3 normalize(vec3 v) { return v; }
+            const float dot = 2.0;
+            struct PathRay { float x; };
+            const float pathFarthest = 1.0;
+            float pathShare(float density, float other) { return 0.0; }
+            class PathSampler { float half() { return max(0.0, 1.0, clamp(0.0, dot, pathFarthest)) * pathShare(0.0, PathRay(1.0).x); } };
+            """
+        pictures = []
+        for text in (own, own + names):
+            self.scene(materials={"noisy": {"class": "Lambert", "albedo": {"class": "Noise", "kind": 1, "low": [0.2, 0.1, 0.9]}}},
+                       objects=[SPHERE, {**SPHERE, "primitive": {"class": "Sphere", "center": [0.5, 0, -2.5]}, "material": "noisy"}],
+                       background=[1, 1, 1], render={"engine": "path", "size": [16, 12], "spp": 4},
+                       **{"import": ["std.primitives", "std.cameras", "std.materials", "std.textures", "Grey.rtsl"]})
+            self.write("Grey.rtsl", text)
+            pictures.append(f"{len(pictures)}.exr")
+            self.run_rtslc("render", "scene.json", "-o", pictures[-1])
+        self.assert_same_bits(*pictures)
+
     def test_macros_do_not_apply(self):
         self.assertEqual(self.classes("import std.primitives.Sphere;\n", "-Dcenter=2", "-Dradius=3"), ["Sphere"])
 
@@ -127,6 +152,10 @@ class Library(Case):
         self.scene(objects=[{**SPHERE, "primitive": {"class": "Sphre"}}])
         messages = self.diagnose("check", "scene.json")
         self.assertIn("Sphere", str(messages[0]["fixes"]))
+        self.scene(background={"class": "UniformSky"})
+        messages = self.diagnose("check", "scene.json")
+        self.assert_message(messages, "E0810", "UniformSky")
+        self.assertEqual(messages[0]["notes"], ['it is in the standard library: add "std.backgrounds" to `import`'])
 
 
 if __name__ == "__main__":
