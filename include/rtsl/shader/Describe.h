@@ -181,7 +181,7 @@ using StoredAs = typename Stored<std::remove_cv_t<std::remove_reference_t<T>>>::
 template <typename T>
 inline StoredAs<T> take(const unsigned char *&from) {
   StoredAs<T> value;
-  std::memcpy(&value, from, sizeof value);
+  std::memcpy(static_cast<void *>(&value), from, sizeof value);
   from += sizeof value;
   return value;
 }

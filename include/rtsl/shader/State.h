@@ -149,7 +149,8 @@ struct Helper {}; // derived from no rt_ class
 template <typename T, int N>
 inline void loadAttribute(const State<N> &rt, int word, T &value) {
   static_assert(sizeof(T) % 4 == 0);
-  std::memcpy(&value, rt.attributes + word, sizeof(T));
+  // As void: a struct of the author's may have constructors, of which g++ warns.
+  std::memcpy(static_cast<void *>(&value), rt.attributes + word, sizeof(T));
 }
 template <typename T, int N>
 inline void storeAttribute(State<N> &rt, int word, const T &value) {
