@@ -489,6 +489,20 @@ void Generator::makeMiss(const Targets &targets) {
   program.miss = plan->name;
 }
 
+/// Above some instances: which of four children a ray may enter.
+void Generator::makeSelector(const Targets &targets) {
+  Node *members = nullptr;
+  ClassPlan *plan = startClass("Selector", "rt_Selector", nullptr, members);
+  addMembers(*plan, *members, some(below(3)));
+  if (chance(40))
+    addConstructor(*plan, *members);
+  addReferences(*plan, *members, someOf(targets));
+  addMethod(*plan, *members, "visit", {},
+            "visitChild(int(h & 3u)); if ((h & 12u) != 0u) visitChild(int(h >> 4u & 3u)); ",
+            1 + below(3), Context());
+  program.selector = plan->name;
+}
+
 const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Material", "rt_Material", base, members);
@@ -606,6 +620,8 @@ void Generator::makeClasses() {
   makeCamera(all);
   if (likely(80))
     makeMiss(all);
+  if (likely(50))
+    makeSelector(helpers);
 }
 
 } // namespace rtsl::random

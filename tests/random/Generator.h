@@ -208,6 +208,7 @@ private:
   const ClassPlan *makePrimitive(const ClassPlan *base, const Targets &targets);
   const ClassPlan *makeLight(const Targets &targets);
   void makeMiss(const Targets &targets);
+  void makeSelector(const Targets &targets);
   Targets someOf(const Targets &targets);
   const ClassPlan *makeMaterial(const ClassPlan *base, const Targets &targets);
   void addBsdf(ClassPlan &plan, Node &members);

@@ -23,7 +23,7 @@ struct Program {
   unsigned colorComponents = 3;
   /// The objects of the scene, by class; what refers to others stands behind them.
   std::vector<std::string> helpers, textures, lights, primitives, materials;
-  std::string camera, miss; // miss may be empty
+  std::string camera, miss, selector; // miss and selector may be empty
   // those that ask nothing of a primitive that meshes have not
   std::vector<std::string> meshMaterials;
 

@@ -252,10 +252,83 @@ void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) 
   instance.anyHit = material.anyHit;
 }
 
+/// With these columns.
+static RtslTransform transformOf(const float (&linear)[9], const float (&translation)[3]) {
+  RtslTransform transform{};
+  std::copy_n(linear, 9, transform.linear);
+  std::copy_n(translation, 3, transform.translation);
+  const auto at = [&](int column, int row) { return double(linear[3 * (column % 3) + row % 3]); };
+  const auto cofactor = [&](int column, int row) {
+    return at(column + 1, row + 1) * at(column + 2, row + 2) -
+           at(column + 1, row + 2) * at(column + 2, row + 1);
+  };
+  const double determinant =
+      at(0, 0) * cofactor(0, 0) + at(0, 1) * cofactor(0, 1) + at(0, 2) * cofactor(0, 2);
+  for (int column = 0; column != 3; ++column)
+    for (int row = 0; row != 3; ++row)
+      transform.inverse[3 * column + row] = cofactor(row, column) / determinant;
+  return transform;
+}
+
+/// The first is the identity, as in every launch; the others mirror and shear, stretch, and turn.
+static std::vector<RtslTransform> someTransforms() {
+  return {transformOf({1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}),
+          transformOf({-1, 0.2f, 0, 0.3f, 1, 0.1f, 0, -0.4f, 0.8f}, {0.1f, -0.2f, 0.3f}),
+          transformOf({0.5f, 0, 0, 0, 2, 0, 0, 0, 1.5f}, {-0.3f, 0.2f, 0.1f}),
+          transformOf({0, 24, 18, 0, -18, 24, 30, 0, 0}, {0, 0, 0})};
+}
+
+/// Ways through a selector to its children 0 to 3, and on through the same one in another space.
+void World::addSelections(RtslRef selector) {
+  selections = {RtslSelection{}};
+  for (std::uint32_t above = 0; above != 2; ++above)
+    for (std::int32_t child = 0; child != 4; ++child)
+      selections.push_back({selector, child, 2 * above, above});
+}
+
+/// Where the instance is, which rays see it, and whether it is an object of several primitives.
+void World::place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives) {
+  const std::uint32_t key = mix(program.seed, 0x706c6163u + number);
+  instance.transform = key % 5 < 2 ? 0 : 1 + key / 5 % 3;
+  instance.roots = 1 | (key >> 8 & 2);
+  instance.id = static_cast<std::int32_t>(key >> 12 & 7) - 3;
+  if (selections.size() > 1 && (key >> 16) % 4 == 0)
+    instance.selection = 1 + (key >> 20) % 8;
+  if (instance.primitive != 0 && primitives > 1) {
+    instance.mesh = static_cast<std::uint32_t>(treeItems.size()) - 1; // the first is of the mesh
+    instance.firstBox = static_cast<std::uint32_t>(boxes.size());
+    instance.boxCount = primitives;
+    boxes.insert(boxes.end(), primitives,
+                 {{-1e18f, -1e18f, -1e18f}, {1e18f, 1e18f, 1e18f}}); // nothing is culled
+    treeItems.emplace_back();
+  }
+  const bool hasParts = instance.primitive == 0 || instance.boxCount != 0;
+  const bool hasOwnSpace = hasParts && instance.transform != 0;
+  for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
+    if (hasOwnSpace)
+      treeItems[instance.primitive == 0 ? 0 : instance.mesh + 1].push_back({0, primitive});
+    else
+      worldItems.push_back({number, primitive});
+  if (hasOwnSpace)
+    worldItems.push_back({number, 0});
+}
+
+/// One list for the launch.
+void World::listItems() {
+  items = worldItems;
+  trees.clear();
+  for (const std::vector<RtslLeafItem> &tree : treeItems) {
+    trees.push_back(
+        {~static_cast<std::int32_t>(items.size()), static_cast<std::uint32_t>(tree.size())});
+    items.insert(items.end(), tree.begin(), tree.end());
+  }
+  launch.leafItems = items.data();
+  launch.meshTrees = trees.data();
+}
+
 /// One in three is not there for some rays. Its bounds are what the primitive says, and never used
 /// to cull it.
 void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
-  instance.roots = 1;
   if (instance.primitive != 0 && code.slots.rt_Primitive_computeBounds) {
     RtslState state{};
     state.launch = &launch;
@@ -270,9 +343,8 @@ void World::addInstance(RtslInstance instance, std::uint32_t primitives) {
   for (const Object &object : objects)
     if (object.reference == instance.material)
       describeMaterial(instance, *code.find(object.info->name));
+  place(instance, number, primitives);
   instances.push_back(instance);
-  for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
-    items.push_back({number, primitive});
 }
 
 /// Three triangles round where rays begin.
@@ -291,9 +363,10 @@ static RtslMesh someMesh() {
 }
 
 World::World(const runtime::Program &code, const Program &program)
-    : code(code), program(program), host{code.slots}, mesh(someMesh()) {
+    : code(code), program(program), host{code.slots}, transforms(someTransforms()), treeItems(1),
+      mesh(someMesh()) {
   std::size_t words = used;
-  std::vector<std::string> all = {program.camera, program.miss};
+  std::vector<std::string> all = {program.camera, program.miss, program.selector};
   for (const auto *names : {&program.helpers, &program.textures, &program.lights,
                             &program.primitives, &program.materials})
     all.insert(all.end(), names->begin(), names->end());
@@ -303,7 +376,7 @@ World::World(const runtime::Program &code, const Program &program)
   records.resize(words);
   launch.records = reinterpret_cast<std::uint8_t *>(records.data());
 
-  std::vector<RtslRef> cameras, misses;
+  std::vector<RtslRef> cameras, misses, selectors;
   addObjects(program.helpers, &others);
   addObjects(program.textures, &others);
   addObjects(program.lights, &lights);
@@ -311,6 +384,9 @@ World::World(const runtime::Program &code, const Program &program)
   addObjects(program.materials, &materials);
   addObjects({program.camera}, &cameras);
   addObjects({program.miss}, &misses);
+  addObjects({program.selector}, &selectors);
+  if (!selectors.empty())
+    addSelections(selectors[0]);
 
   if (!primitives.empty() && !materials.empty()) {
     const std::size_t count = std::max(primitives.size(), materials.size()) + 1;
@@ -345,10 +421,16 @@ World::World(const runtime::Program &code, const Program &program)
   launch.width = 5;
   launch.height = 3;
   launch.seed = program.seed;
-  launch.leafItems = items.data();
+  launch.transforms = transforms.data();
+  launch.transformCount = static_cast<std::uint32_t>(transforms.size());
+  launch.selections = selections.data();
+  launch.selectionCount = static_cast<std::uint32_t>(selections.size());
+  launch.boxes = boxes.data();
+  launch.boxCount = static_cast<std::uint32_t>(boxes.size());
+  listItems();
   launch.rootIsLeaf = 1;
-  launch.nodeCount = static_cast<std::uint32_t>(items.size());
-  launch.needs = code.needs;
+  launch.nodeCount = static_cast<std::uint32_t>(worldItems.size());
+  launch.needs = code.needs | RTSL_HAS_ALL;
   launch.host = &host;
 }
 
@@ -361,12 +443,15 @@ World::World(const runtime::Program &bound, const World &made)
         describeMaterial(instance, *bound.find(object.info->name));
   }
   launch.instances = instances.data();
-  launch.needs = bound.needs;
+  launch.needs = bound.needs | RTSL_HAS_ALL;
   launch.host = &host;
 }
 
 void World::reverseOrder() {
-  std::reverse(items.begin(), items.end());
+  std::reverse(worldItems.begin(), worldItems.end());
+  for (std::vector<RtslLeafItem> &tree : treeItems)
+    std::reverse(tree.begin(), tree.end());
+  listItems();
 }
 
 runtime::SceneFacts World::facts() const {
@@ -379,6 +464,7 @@ runtime::SceneFacts World::facts() const {
   facts.instanceCount = instances.size();
   if (facts.instanceCount <= runtime::SceneFacts::mostInstances)
     facts.instances = instances;
+  facts.needs = RTSL_HAS_ALL;
   facts.lightCount = launch.lightCount;
   facts.referenceChain = static_cast<std::uint32_t>(objects.size()); // no longer
   facts.ambient.assign(launch.ambient, launch.ambient + code.colorComponents);

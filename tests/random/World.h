@@ -46,6 +46,9 @@ private:
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
+  void addSelections(RtslRef selector);
+  void place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives);
+  void listItems();
   void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
   std::uint32_t needsOf(const runtime::ClassInfo &info,
                         std::set<const runtime::ClassInfo *> &seen) const;
@@ -69,7 +72,14 @@ private:
   std::deque<std::vector<std::uint32_t>> buffers;
   std::vector<RtslRef> lights, primitives, materials, others;
   std::vector<RtslInstance> instances;
-  std::vector<RtslLeafItem> items;
+  std::vector<RtslTransform> transforms;
+  std::vector<RtslSelection> selections;
+  std::vector<RtslBox> boxes;
+  // of the world, and of the mesh and each object with several primitives, in their own spaces
+  std::vector<RtslLeafItem> worldItems;
+  std::vector<std::vector<RtslLeafItem>> treeItems;
+  std::vector<RtslLeafItem> items; // all of them
+  std::vector<RtslMeshTree> trees;
   RtslMesh mesh{};
   RtslLaunch launch{};
 };
