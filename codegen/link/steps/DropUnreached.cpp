@@ -12,10 +12,12 @@
 #include "language/SlotTable.h"
 
 #include "llvm/ADT/MapVector.h"
+#include "llvm/ADT/StringExtras.h"
 #include "llvm/ADT/StringSet.h"
 
 #include <algorithm>
 #include <set>
+#include <tuple>
 
 namespace rtsl::linking {
 
@@ -202,12 +204,25 @@ bool traces(FuncOp function) {
 } // namespace
 
 std::string shownName(FuncOp function) {
-  auto [owner, method] = function.getSymName().split('.');
-  if (const auto name = ir::attr::methodName.of(function)) {
-    const auto [plain, payload] = name.getValue().split('.');
-    return owner.str() + "." + plain.str() + (payload.empty() ? "" : "(" + payload.str() + ")");
+  auto [owner, rest] = function.getSymName().split('.');
+  const auto method = ir::attr::methodName.of(function);
+  std::string shown;
+  if (method)
+    rest = method.getValue();
+  if (ir::attr::className.isOn(function)) {
+    shown = owner.str() + ".";
+    std::tie(owner, rest) = rest.split('.');
+    if (!method && !rest.empty()) {
+      shown += owner.str() + "::";
+      std::tie(owner, rest) = rest.split('.');
+    }
   }
-  return function.getSymName().str();
+  shown += owner.str();
+  if (rest.empty())
+    return shown;
+  llvm::SmallVector<llvm::StringRef> parameters;
+  rest.split(parameters, '.');
+  return shown + "(" + llvm::join(parameters, ", ") + ")";
 }
 
 bool isLitByLights(mlir::Operation *op) {

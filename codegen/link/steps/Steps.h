@@ -91,7 +91,8 @@ void deriveHitErrors(LinkContext &context);
 /// Erases the methods that are never run. Runs after slots are resolved.
 void dropUnreached(LinkContext &context);
 
-/// The name of a function in the source: "Painted.closestHit(Radiance)".
+/// The name of a function in the source: "Painted.closestHit(Radiance)"; of the definition of a base
+/// class that is called on an object, "Coated.Glass::shade".
 std::string shownName(mlir::func::FuncOp function);
 
 /// Erases stores of outputs that are never read, and records which outputs of hits and samples are

@@ -106,6 +106,21 @@ class Explain(Case):
         self.assertGreater(saved["dispatch"]["instructions"], 0)
         self.assertEqual(saved["meshes"]["memoryBytes"], 0)
 
+    def test_functions_have_the_names_of_the_source(self):
+        """Overloads by their parameters, definitions of base classes by these."""
+        self.write("more.rtsl", """
+            class Twice : Unlit {
+              color tone(float x) { return x * tint; }
+              color tone(vec2 x, int n) { return tone(x[n & 1]); }
+              void shade() { rt_SampleColor = tone(rt_TextureUV, rt_Depth); Unlit::shade(); }
+            };
+            """)
+        self.write_scene(**{"import": ["all.rtsl", "more.rtsl"]}, materials={"red": {"class": "Twice", "tint": [1, 0.2, 0.1]}})
+        methods = self.entries()["methods"]
+        self.assertEqual(methods["Twice.tone(vec2, int)"][:2], (True, "called by `Twice.shade`"))
+        self.assertEqual(methods["Twice.tone(float)"][:2], (True, "called by `Twice.tone(vec2, int)`"))
+        self.assertEqual(methods["Twice.Unlit::shade"][:2], (True, "called by `Twice.shade`"))
+
     def test_what_a_scene_adds_is_needed(self):
         self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
         items = self.entries()
