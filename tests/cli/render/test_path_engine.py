@@ -33,6 +33,29 @@ class Own : rt_Material {
   }
   void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
 };
+// The same in two classes, of which the first has no evaluatePDF.
+class Half : rt_Material {
+  public float albedo = 0.5;
+  public color glow = color(0.0);
+
+  vec3 normal() { return faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal); }
+
+  void BSDF() {
+    rt_BSDFValue = color(dot(rt_LightDirection, normal()) > 0.0 ? albedo * 0.31830989 : 0.0);
+  }
+  void sampleBSDF() {
+    vec3 n = normal();
+    vec3 u = perpendicularTo(n);
+    float r = sqrt(rt_BSDFSeed.x), a = 2.0 * rt_BSDFSeed.y;
+    rt_LightDirection = r * cospi(a) * u + r * sinpi(a) * cross(n, u) + sqrt(1.0 - rt_BSDFSeed.x) * n;
+    rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
+    rt_BSDFValue = color(albedo * 0.31830989);
+  }
+};
+class Whole : Half {
+  void emission() { rt_EmissionColor = glow; }
+  void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
+};
 // A mirror that has no more than it needs.
 class Mirror : rt_Material {
   void sampleBSDF() {
@@ -206,6 +229,15 @@ class ClosedForms(PathCase):
                           'import=["std.primitives", "std.materials", "shaders.rtsl", "PathTracer.rtsl"]')
         for one, other in zip(both, found):
             self.assertAlmostEqual(one, other, delta=0.01 * other)
+
+    def test_a_derived_class_may_add_evaluatePDF(self):
+        pictures = []
+        for name in ("Own", "Whole"):
+            self.scene([(FLOOR, {"class": name}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": name, "glow": 1})],
+                       camera="Under", spp=4)
+            pictures.append(name + ".exr")
+            self.run_rtslc("render", "scene.json", "-o", pictures[-1], "-q")
+        self.assert_same_bits(*pictures)
 
     def test_many_lights(self):
         """Of more than four lights four are chosen; the mean is that of all."""
