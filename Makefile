@@ -2,6 +2,7 @@
 #
 #   make demo     install what is missing, build, render examples/glass
 #   make check    install what is missing, build, run every test
+#   make deep     run in full what `make check` samples: thousands of random programs, all of printed C++, ...
 #   make golden   renew the expected output of the golden tests (then read the difference)
 #   make bench    build and run the benchmarks
 #   make fuzz     feed mutated inputs to the front end for TIME seconds (TARGET=scene: to the reader of scenes)
@@ -13,7 +14,7 @@ PRESET ?= release
 BUILD := build/$(PRESET)
 JOBS ?= $(shell nproc)
 
-.PHONY: demo check build configure dependencies golden bench fuzz mutations memory numerics format install clean
+.PHONY: demo check deep build configure dependencies golden bench fuzz mutations memory numerics format install clean
 
 demo: configure
 	cmake --build --preset $(PRESET) -j $(JOBS) --target rtslc
@@ -22,6 +23,9 @@ demo: configure
 
 check: build
 	cd $(BUILD) && ctest --output-on-failure -j$(JOBS)
+
+deep: build
+	tests/deep $(BUILD)
 
 build: configure
 	cmake --build --preset $(PRESET) -j $(JOBS)

@@ -1,10 +1,11 @@
 # How everything is compiled: warnings, the host's baseline architecture and strict floating point.
 find_program(RTSL_CCACHE ccache)
 if(RTSL_CCACHE)
-  # ccache needs this sloppiness to cache precompiled headers.
+  # ccache needs this sloppiness to cache precompiled headers. It takes the names of headers from the compiler, and does not
+  # run the preprocessor first, which takes a tenth of the time of a first build.
+  set(rtslCcacheSettings CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_DEPEND=true)
   set(CMAKE_C_COMPILER_LAUNCHER "${RTSL_CCACHE}")
-  set(CMAKE_CXX_COMPILER_LAUNCHER
-      "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${RTSL_CCACHE}")
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env ${rtslCcacheSettings} "${RTSL_CCACHE}")
 endif()
 
 # Optimised lightly, with assertions and line tables: tests run fast and a crash still has a backtrace.
@@ -82,6 +83,6 @@ function(rtsl_precompiled_ir target)
   if(TARGET rtslPrecompiledChecksum)
     add_dependencies(${target} rtslPrecompiledChecksum)
     set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
-      "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;CCACHE_PCH_EXTSUM=true;${RTSL_CCACHE}")
+      "${CMAKE_COMMAND};-E;env;${rtslCcacheSettings};CCACHE_PCH_EXTSUM=true;${RTSL_CCACHE}")
   endif()
 endfunction()

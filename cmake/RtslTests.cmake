@@ -1,4 +1,6 @@
-# rtsl_unit_test(NAME SOURCES... LINK libraries...): the GoogleTest program test-NAME. Its tests are called NAME.Suite.Test.
+# rtsl_unit_test(NAME [EACH] SOURCES... LINK libraries...): the GoogleTest program test-NAME. CTest runs it as one test, NAME,
+# which takes less time than a process for each of its hundreds of tests; --gtest_filter=Suite.Test chooses among them. With
+# EACH, for tests that take seconds, they are tests of CTest, called NAME.Suite.Test.
 include(GoogleTest)
 
 # rtsl_precompiled_tests(NAME [OTHER]): for tests that do not read MLIR's headers. GoogleTest's are precompiled for
@@ -12,12 +14,16 @@ function(rtsl_precompiled_tests name)
 endfunction()
 
 function(rtsl_unit_test name)
-  cmake_parse_arguments(ARG "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(ARG "EACH" "" "LINK" ${ARGN})
   add_executable(test-${name} ${ARG_UNPARSED_ARGUMENTS})
   target_include_directories(test-${name} SYSTEM PRIVATE ${MLIR_INCLUDE_DIRS} ${LLVM_INCLUDE_DIRS})
   target_link_libraries(test-${name} PRIVATE ${ARG_LINK} GTest::gtest_main)
   target_compile_definitions(test-${name} PRIVATE RTSL_ROOT="${PROJECT_SOURCE_DIR}")
   rtsl_warnings(test-${name})
-  # Tests are listed when they are run: a build starts none of the programs that it makes.
-  gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 120 DISCOVERY_MODE PRE_TEST)
+  if(ARG_EACH)
+    # Tests are listed when they are run: a build starts none of the programs that it makes.
+    gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 120 DISCOVERY_MODE PRE_TEST)
+  else()
+    add_test(NAME ${name} COMMAND test-${name} --gtest_brief=1)
+  endif()
 endfunction()

@@ -96,14 +96,14 @@ def statements(folder, n):
 
 
 def branches(folder, n):
-    """`if` and `else`, one behind the other."""
+    """`if` and `else`, one after the other."""
     body = "    float a = rt_HitPoint.x;\n    float b = rt_HitPoint.y;\n" + "".join(
         f"    if (a > {i}.0)\n      b = b * 0.5 + a;\n    else\n      a = a + {i}.5 * b;\n" for i in range(n))
     return material(folder, body + "    rt_SampleColor = color(a + b);\n")
 
 
 def loops(folder, n):
-    """Loops, one behind the other."""
+    """Loops, one after the other."""
     body = "    float a = rt_HitPoint.x;\n" + "".join(
         f"    for (int i = 0; i < int(a) + {k}; ++i)\n      a = a * 0.5 + float(i);\n" for k in range(n))
     return material(folder, body + "    rt_SampleColor = color(a);\n")

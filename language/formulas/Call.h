@@ -5,7 +5,7 @@
 //   Number                     a scalar or a vector
 //   const Columns<Number> &    a matrix
 //   Number &                   an `out` argument
-//   IntegerSign                behind the others: of the first argument
+//   IntegerSign                after the others: of the first argument
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -75,7 +75,7 @@ Number floatFromHalf(Number bits) {
       [](Number bits) {
         Number magnitude = bits & 0x7fff;
         Number normal = shiftLeft(magnitude, 13) + 0x38000000;
-        // Read as a significand behind an exponent of 2^-14, then the leading one is taken away:
+        // Read as a significand after an exponent of 2^-14, then the leading one is taken away:
         // exact.
         Number subnormal = ((shiftLeft(magnitude, 13) + 0x38800000).asFloat() - 0x1p-14).bits();
         Number value = select(less(magnitude, 0x400), subnormal, normal);

@@ -16,7 +16,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Records begin behind this: reference 0 is "none", and a class id of 0 there makes every dispatch
+/// Records begin after this: reference 0 is "none", and a class id of 0 there makes every dispatch
 /// do nothing.
 constexpr std::uint32_t firstRecord = 16;
 constexpr std::uint32_t recordAlignment = 16;

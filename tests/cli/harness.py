@@ -39,6 +39,10 @@ def obey_permissions():
 
 
 class Case(unittest.TestCase):
+    # The level of optimisation of `rtslc render` where a test gives none; None: that of users. No picture depends on it, which
+    # tests/render and the conformance suite check; a suite about something else takes less time with "-O0".
+    level = None
+
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rtslc-"))
         os.chmod(self.folder, 0o755)
@@ -54,6 +58,8 @@ class Case(unittest.TestCase):
 
     def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False, prepare=None):
         """Gives (standard output, standard error); fails unless the exit status is the expected one (None: any)."""
+        if self.level and arguments[0] == "render" and not any(str(argument).startswith("-O") for argument in arguments):
+            arguments += (self.level,)
         done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,
                               stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=obey_permissions if unprivileged else prepare)
         error = done.stderr.decode("utf-8", "replace")

@@ -13,9 +13,31 @@ def run(*words, **more):
     return done.stdout
 
 
+def compiled_with(source):
+    """How programs of the build tree find the headers."""
+    return ["-std=c++17", *WARNINGS, "-I", source, "-I", f"{source}/include"]
+
+
+def linked_with(library):
+    return ["-L", library, "-lrtsl", f"-Wl,-rpath,{library}"]
+
+
 def built_with(source, library):
-    """How programs of the build tree find the headers and the library."""
-    return ["-std=c++17", *WARNINGS, "-I", source, "-I", f"{source}/include", "-L", library, "-lrtsl", f"-Wl,-rpath,{library}"]
+    """How they find the library, too."""
+    return [*compiled_with(source), *linked_with(library)]
+
+
+def precompiled_header(compiler, level, flags, folder):
+    """The options that use `rtsl/shader.h` precompiled with these flags, for files that define no macro before it: parsing the
+    header takes most of the time of compiling a small program."""
+    name = "shader.h.gch" if compiler == "g++" else "shader.h.pch"
+    made = folder / f"{compiler}{level}" / "rtsl" / name
+    if not made.exists():
+        made.parent.mkdir(parents=True)
+        source = made.parent / "precompiled.h"
+        source.write_text("#include <rtsl/shader.h>\n")
+        run(compiler, "-x", "c++-header", source, "-o", made, level, *flags)
+    return ["-I", made.parent.parent] if compiler == "g++" else ["-include-pch", made]
 
 
 def same_picture(rtslc, ours, theirs):

@@ -146,7 +146,7 @@ Generator::Targets Generator::someOf(const Targets &targets) {
   return chosen;
 }
 
-/// References to objects of earlier classes, so that there are no circles.
+/// References to objects of earlier classes, so that there are no cycles.
 void Generator::addReferences(ClassPlan &plan, Node &members, const Targets &targets) {
   for (const ClassPlan *target : targets) {
     const std::string name = fresh("o");
@@ -233,7 +233,7 @@ void Generator::addRecursion(ClassPlan &plan, Node &members) {
   plan.functions.push_back(std::move(made));
 }
 
-/// Another definition of an inherited function. It calls only what stood before that: no circles.
+/// Another definition of an inherited function. It calls only what stood before that: no cycles.
 void Generator::overrideFunction(ClassPlan &plan, Node &members) {
   if (!plan.base || plan.base->functions.empty())
     return;

@@ -2,7 +2,7 @@
 //
 // Top down, by type: expression(T) chooses a way to make a T from what is in scope. Everything that
 // the language leaves to the machine is left out (nothing reads what was never written, loops are
-// counted, references have no circles); everything else is fair: NaNs, overflow, aliasing.
+// counted, references have no cycles); everything else is fair: NaNs, overflow, aliasing.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -57,7 +57,7 @@ struct ClassPlan {
   std::vector<Variable> scratch;
   std::vector<Reference> references;
   std::vector<Function> functions; // that methods of it may call
-  // that it has, inherited ones too: the name, and the payload's type behind it
+  // that it has, inherited ones too: the name, and the payload's type after it
   std::set<std::string> methods;
 };
 

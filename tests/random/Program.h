@@ -21,7 +21,7 @@ struct Program {
   bool inRange = true;
   bool traces = false;
   unsigned colorComponents = 3;
-  /// The objects of the scene, by class; what refers to others stands behind them.
+  /// The objects of the scene, by class; what refers to others comes after them.
   std::vector<std::string> helpers, textures, lights, primitives, materials;
   std::string camera, miss, selector; // miss and selector may be empty
   // those that ask nothing of a primitive that meshes have not

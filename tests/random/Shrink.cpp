@@ -46,7 +46,7 @@ std::vector<NodePtr *> all(NodePtr &root, Role role) {
 bool Shrinker::deleteFrom(Node &list) {
   bool changed = false;
   for (std::size_t length = list.children.size(); length > 0; length /= 2) {
-    for (std::size_t end = list.children.size(); end > 0;) { // users stand behind what they use
+    for (std::size_t end = list.children.size(); end > 0;) { // users come after what they use
       const std::size_t begin = end > length ? end - length : 0;
       std::vector<NodePtr> before;
       before.swap(list.children);

@@ -8,7 +8,7 @@ namespace rtsl::random {
 NodePtr Generator::declare(const std::string &name, const Type *type, NodePtr value,
                            const char *qualifier) {
   std::string head = qualifier;
-  // The outermost dimension may stand behind the name.
+  // The outermost dimension may stand after the name.
   if (type->is(TypeKind::Array) && chance(50))
     head += toString(type->element) + " " + name + "[" + std::to_string(type->count) + "]";
   else
@@ -16,7 +16,7 @@ NodePtr Generator::declare(const std::string &name, const Type *type, NodePtr va
   return makeNode(Role::Statement, head + " = $;", std::move(value));
 }
 
-/// Appends a statement (or none), behind the declarations that were put off while it was made.
+/// Appends a statement (or none), after the declarations that were put off while it was made.
 void Generator::add(Node &list, NodePtr statement) {
   for (NodePtr &before : pending)
     list.children.push_back(std::move(before));
@@ -25,7 +25,7 @@ void Generator::add(Node &list, NodePtr statement) {
     list.children.push_back(std::move(statement));
 }
 
-/// Appends `count` statements, each behind the declarations that it needs.
+/// Appends `count` statements, each after the declarations that it needs.
 void Generator::statements(Node &list, unsigned count, unsigned depth) {
   std::vector<NodePtr> outer = std::move(pending);
   pending.clear();

@@ -38,7 +38,7 @@ void write(int pipe, const std::string &text) {
 }
 
 /// A finding is a letter for the failure, a large one if a ray met something, and two texts with a
-/// zero behind each: the detail, and why a path refused the program.
+/// zero after each: the detail, and why a path refused the program.
 void report(int pipe, const std::vector<Finding> &findings) {
   std::string text;
   for (const Finding &finding : findings) {

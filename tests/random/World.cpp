@@ -94,7 +94,7 @@ extern "C" void *rtsl_machine_stack(std::uint64_t bytes) {
 static void checkGuard() {
   for (std::uint64_t i = 0; stackMemory && i != guardBytes; ++i)
     if (stackMemory[stackBytes + i] != 0xa5) {
-      std::fputs("a program wrote behind the machine's stack\n", stderr);
+      std::fputs("a program wrote past the machine's stack\n", stderr);
       std::abort();
     }
 }

@@ -29,7 +29,7 @@ public:
   runtime::SceneFacts facts() const;
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
-  /// are one), and what was printed until then. Behind them what methods leave that only the host
+  /// are one), and what was printed until then. After them what methods leave that only the host
   /// calls.
   std::vector<std::uint32_t> run();
   /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is

@@ -7,7 +7,7 @@ import unittest
 from harness import EXAMPLES, FINE, USAGE, Case
 
 ROOT = EXAMPLES.parent
-FOLDERS = "examples|tests|scripts|docs|frontend|sema|codegen|runtime|scene|tools|bench|library|include|grammar"
+FOLDERS = "bench|codegen|docs|examples|frontend|include|language|library|math|runtime|scenefile|scripts|sema|support|tests|tools"
 
 
 def read(path):
@@ -24,7 +24,7 @@ def constant(path, name):
 
 
 def table(page, title):
-    """{first cell: second cell} of the first table behind `title`."""
+    """{first cell: second cell} of the first table after `title`."""
     rows = {}
     for line in read(page).split(title, 1)[1].splitlines():
         if line.startswith("|"):

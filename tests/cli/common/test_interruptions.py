@@ -35,7 +35,7 @@ class Interruptions(Case):
             time.sleep(0.02 if isCaught else 0.001)
         self.fail("no handler")
 
-    def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.5, again=False):
+    def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.2, again=False):
         """Standard output and error of a rendering that is stopped some time after it began."""
         # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would be.
         running = subprocess.Popen([program, *arguments], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,

@@ -10,6 +10,7 @@ from harness import DIAGNOSED, EXAMPLES, FINE, RTSLC, SECONDS, Case
 
 RTSL_RUN = os.environ["RTSL_RUN"]
 SMALL = ("--size", "8x8", "--spp", "1")
+QUIET = ("-q", "-Wno-depth-limit", "-O0")  # where files go does not depend on how code is optimised
 MATERIAL = ('#include "part.inc"\nimport "other.rtsl";\nclass Grey : rt_Material {\n'
             "  void shade() { rt_SampleColor = shared() * other() * trace(rt_HitPoint, vec3(0.0, 1.0, 0.0)); }\n};\n")
 
@@ -28,7 +29,7 @@ class Outputs(Case):
 
     def package(self):
         if not (self.folder / "glass.rtslpkg").exists():
-            self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", "--quiet")
+            self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", *QUIET)
 
     def mesh(self):
         return next(path.name for path in self.folder.iterdir() if path.suffix == ".obj")
@@ -50,16 +51,16 @@ class Outputs(Case):
             (RTSLC, ["explain", "--states", "grey.rtsl", "-MD", "-MF", "OUT"], read_by_grey),
             (RTSLC, ["compile", "scene.json", "--emit=ir", "-o", "OUT"], read_by_scene),
             (RTSLC, ["explain", "--states", "scene.json", "-o", "OUT"], read_by_scene),
-            (RTSLC, ["pack", "scene.json", "-o", "OUT", "--quiet"], read_by_scene),
-            (RTSLC, ["pack", "scene.json", "-o", "package", "--quiet", "-MD", "-MF", "OUT"], read_by_scene),
-            (RTSLC, ["render", "scene.json", "-q", "-Wno-depth-limit", "--format=exr", "-o", "OUT", *SMALL], read_by_scene),
-            (RTSLC, ["render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", "-MD", "-MF", "OUT", *SMALL], read_by_scene),
+            (RTSLC, ["pack", "scene.json", "-o", "OUT", *QUIET], read_by_scene),
+            (RTSLC, ["pack", "scene.json", "-o", "package", *QUIET, "-MD", "-MF", "OUT"], read_by_scene),
+            (RTSLC, ["render", "scene.json", *QUIET, "--format=exr", "-o", "OUT", *SMALL], read_by_scene),
+            (RTSLC, ["render", "scene.json", *QUIET, "-o", "a.exr", "-MD", "-MF", "OUT", *SMALL], read_by_scene),
             (RTSL_RUN, ["glass.rtslpkg", "-q", "--target=host", "--format=exr", "-o", "OUT", *SMALL], ["glass.rtslpkg"]),
             (RTSL_RUN, ["glass.rtslpkg", "-q", "--target=host", "--format=exr", "-o", "OUT", "--compare", "glass.exr", *SMALL],
              ["glass.exr"]),
         ]
         self.package()
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "glass.exr", "--target=host-megakernel", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "glass.exr", "--target=host-megakernel", *SMALL)
         return rows
 
     def test_nothing_that_is_read_is_overwritten(self):
@@ -83,7 +84,7 @@ class Outputs(Case):
         self.assert_message(self.diagnose("compile", "grey.rtsl", "--emit=ir", "-o", "other.rtsl"), "E0965", "overwritten")
 
     def test_reports_keep_what_they_read(self):
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "a.exr", *SMALL)
         for part in ("reference.exr", "pictures/a.exr", "partial/a.exr"):
             path = self.folder / "out" / part
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -117,11 +118,11 @@ class Outputs(Case):
 
     def test_full_standard_output_is_said(self):
         self.package()
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", *SMALL)
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "b.exr", "--seed", "7", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "a.exr", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "b.exr", "--seed", "7", *SMALL)
         self.write("print.rtsl", 'class Grey : rt_Material { void shade() { print("here"); rt_SampleColor = color(0.5); } };')
         prints = ["--set", "import.9=print.rtsl", "--set", 'materials.clay={"class":"Grey"}']
-        render = ["render", "scene.json", "-q", "-Wno-depth-limit", *SMALL]
+        render = ["render", "scene.json", *QUIET, *SMALL]
         rows = [
             (RTSLC, ["--help"]), (RTSLC, ["--version"]), (RTSLC, ["-V"]), (RTSLC, ["help"]), (RTSLC, ["help", "render"]),
             (RTSLC, ["check", "--help"]), (RTSLC, ["check", "-Whelp"]),
@@ -129,7 +130,7 @@ class Outputs(Case):
             (RTSLC, ["compile", "grey.rtsl", "--emit=ir", "-o", "ir", "-MD", "-MF", "-"]),
             (RTSLC, ["explain", "--states", "Glass.rtsl"]), (RTSLC, ["explain", "scene.json", "--json"]),
             (RTSLC, [*render, "-o", "c.exr", "--json"]), (RTSLC, [*render, "-o", "c.exr", "--print", *prints]),
-            (RTSLC, [*render, "-o", "-"]), (RTSLC, ["pack", "scene.json", "-o", "-", "--quiet"]),
+            (RTSLC, [*render, "-o", "-"]), (RTSLC, ["pack", "scene.json", "-o", "-", *QUIET]),
             (RTSLC, ["compare", "a.exr", "a.exr"]), (RTSLC, ["compare", "a.exr", "b.exr"]),
             (RTSLC, ["compare", "a.exr", "b.exr", "--json"]),
             *[(RTSLC, ["report", "scene.json", "--out", "out", "--size", "8x8", "--budget", "10ms", "--runs", "2", "--only",
@@ -167,7 +168,7 @@ class Outputs(Case):
 
     def test_the_picture_to_compare_with_is_looked_at_first(self):
         self.package()
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", "--size", "9x8", "--spp", "1")
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "a.exr", "--size", "9x8", "--spp", "1")
         for reference, words in (("missing.exr", "No such file"), ("a.exr", "has 9x8 pixels of 3 channels, not 8x8 of 3")):
             done = self.run_any(RTSL_RUN, "glass.rtslpkg", "--target=host", "-o", "out.exr", "--compare", reference, *SMALL)
             self.assertEqual(done.returncode, DIAGNOSED)
@@ -180,7 +181,7 @@ class Endless(Case):
 
     def test_devices_are_refused(self):
         self.glass_scene()
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "a.exr", *SMALL)
         for device in ("/dev/zero", "/dev/urandom"):
             for name in ("zero.rtsl", "zero.json", "zero.obj", "zero.ply", "zero.png", "zero.exr", "zero.rtslpkg"):
                 os.symlink(device, self.folder / name)
@@ -221,8 +222,8 @@ class Streams(Case):
 
     def test_scenes_pictures_and_packages(self):
         scene = self.glass_scene()
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "a.exr", *SMALL)
-        arguments = ["-q", "-Wno-depth-limit", *SMALL]
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "a.exr", *SMALL)
+        arguments = [*QUIET, *SMALL]
 
         def piped(program, *command, stdin):
             done = subprocess.run([program, *command], cwd=self.folder, input=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -237,7 +238,7 @@ class Streams(Case):
         package = piped(RTSLC, "pack", "-", "-o", "-", "-q", stdin=scene.read_bytes())
         picture = piped(RTSL_RUN, "-", "-q", "--target=host", "-o", "-", "--format=exr", *SMALL, stdin=package)
         self.write("b.exr", picture)
-        self.run_rtslc("render", "scene.json", "-q", "-Wno-depth-limit", "-o", "c.exr", "--target=host-megakernel", *SMALL)
+        self.run_rtslc("render", "scene.json", *QUIET, "-o", "c.exr", "--target=host-megakernel", *SMALL)
         self.run_rtslc("compare", "b.exr", "c.exr")
 
     def test_mistakes_in_a_scene_of_standard_input_are_shown(self):

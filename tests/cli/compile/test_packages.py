@@ -49,8 +49,8 @@ class Packages(Case):
         scenes = sorted(EXAMPLES.glob("*/scene.json"))
         self.assertGreaterEqual(len(scenes), 2)
         for scene in scenes:
-            self.run_rtslc("render", str(scene), "-o", "a.exr", "--target=host-megakernel", *SMALL)
-            self.run_rtslc("pack", str(scene), "-o", "example.rtslpkg", "--quiet")
+            self.run_rtslc("render", str(scene), "-o", "a.exr", "-O0", "--target=host-megakernel", *SMALL)
+            self.run_rtslc("pack", str(scene), "-o", "example.rtslpkg", "-O0", "--quiet")
             content = (self.folder / "example.rtslpkg").read_bytes()
             self.run_package("--target=host", *SMALL, "--compare", "a.exr", content=content)
 

@@ -61,7 +61,7 @@ class Gpu(Case):
     def test_every_example_goes_there(self):
         for scene in sorted(EXAMPLES.glob("*/scene.json")):
             with self.subTest(scene=scene):
-                self.render(*SMALL, "-q", program=(RTSLC, "render", str(scene)))
+                self.render(*SMALL, "-q", "-O0", program=(RTSLC, "render", str(scene)))
 
     def test_what_is_wrong_with_a_gpu_is_said(self):
         host = "`--target=host-megakernel` renders the same picture on the CPU"
@@ -70,15 +70,15 @@ class Gpu(Case):
                            ("old-ptx", "the CUDA driver is too old for the program's PTX"),
                            ("other-gpu", "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed")):
             with self.subTest(fake=fake):
-                _, error = self.render(*SMALL, fake=fake, status=DIAGNOSED)
+                _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
                 self.assertIn("error[E1002]: " + text, error)
                 self.assertIn(host, error)
-        _, error = self.render(*SMALL, fake="little-memory", status=DIAGNOSED)
+        _, error = self.render(*SMALL, "-O0", fake="little-memory", status=DIAGNOSED)
         self.assertIn("error[E1001]: not enough GPU memory for", error)
         for fake, text in (("fault", "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered"),
                            ("overflow", "rays of depth 8 overflow the stack that was made for them")):
             with self.subTest(fake=fake):
-                _, error = self.render(*SMALL, fake=fake, status=INTERNAL)
+                _, error = self.render(*SMALL, "-O0", fake=fake, status=INTERNAL)
                 self.assertIn(text, error)
         self.assertNotIn("a.exr", self.files())
 

@@ -51,6 +51,8 @@ def scene(nodes=None, **more):
 
 
 class GraphCase(Case):
+    level = "-O0"
+
     def setUp(self):
         super().setUp()
         shutil.copy(SHADERS, self.folder)
@@ -77,6 +79,8 @@ class GraphCase(Case):
 
 
 class EveryPath(GraphCase):
+    level = None
+
     def test_gives_the_same_bits(self):
         expected, _ = self.render(scene())
         for options in (["--trace=recurse"], ["--traversal=device"], ["--traversal=device", "--trace=recurse"], ["-O0"],

@@ -9,9 +9,9 @@ PATTERNS = ("leave", "bytes", "nan")
 WAYS = {
     "recursion": ["--traversal=device"],
     "Embree": [],
-    "states": ["--trace=split", "--traversal=device"],
-    "the GPU's program": ["--target=host-megakernel", "-O1"],
-    "everything kept": ["--target=host-megakernel", "--keep=all", "-O1"],
+    "states": ["--trace=split", "--traversal=device", "-O1"],
+    "the GPU's program": ["--target=host-megakernel", "-O0"],
+    "everything kept": ["--target=host-megakernel", "--keep=all", "-O0"],
     "keeping, in recursion": ["--keep=all", "--traversal=device", "-O1"],
     "double": ["--fp=double", "-O1"],
     "unoptimised": ["-O", "0", "--traversal=device"],

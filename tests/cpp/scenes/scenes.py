@@ -9,12 +9,13 @@ import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent))
 from objects import objects_scene
-from programs import built_with, run, same_picture
+from programs import compiled_with, linked_with, precompiled_header, run, same_picture
 
 rtslc, source, library, render = sys.argv[1:]
 here = pathlib.Path(__file__).parent
 glass = pathlib.Path(source, "examples/glass")
-FLAGS = ["-fPIC", "-shared", *built_with(source, library)]
+COMPILED = ["-fPIC", *compiled_with(source)]
+FLAGS = ["-shared", *COMPILED, *linked_with(library)]
 
 
 def sphere(center, radius, material):
@@ -223,7 +224,8 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
             sys.exit(f"{compiler} is not installed: make dependencies installs it")
         imports = list(dict.fromkeys(file for scene in scenes for file in scene["import"]))
         run(rtslc, "compile", *imports, "--emit=cpp", *options, "-o", folder / "shaders.cpp")
-        run(compiler, folder / "shaders.cpp", "-o", folder / "shaders.so", *flags, *FLAGS)
+        header = [] if "--unchecked" in options else precompiled_header(compiler, *flags, COMPILED, folder)
+        run(compiler, *header, folder / "shaders.cpp", "-o", folder / "shaders.so", *flags, *FLAGS)
         for scene in scenes:
             (folder / "scene.json").write_text(json.dumps(scene))
             events_of = [option for option in options if option in ("--print", "--exceptions")]

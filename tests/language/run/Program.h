@@ -10,7 +10,7 @@
 //   //! texture name: {...}  and `light: {...}`: what the materials refer to
 //
 // All tests of a program are compiled together, and run as the pixels of one picture. The material
-// that calls the functions traces before and behind them, so that they are part of a state where
+// that calls the functions traces before and after them, so that they are part of a state where
 // `trace` is split. A line `// unchecked: no` in front of a function leaves it out where indices
 // are not checked, `// fast: no` where arithmetic need not be as it is written, `// double: no`
 // where it is double.

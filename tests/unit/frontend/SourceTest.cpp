@@ -21,7 +21,7 @@ TEST(Source, LinesAndColumnsCountFromOneAndInBytes) {
   EXPECT_EQ(at(0), std::make_pair(1u, 1u));
   EXPECT_EQ(at(2), std::make_pair(1u, 3u)); // the line ending belongs to its line
   EXPECT_EQ(at(3), std::make_pair(2u, 1u));
-  EXPECT_EQ(at(5), std::make_pair(2u, 3u)); // behind the two bytes of e acute
+  EXPECT_EQ(at(5), std::make_pair(2u, 3u)); // after the two bytes of e acute
   EXPECT_EQ(at(7), std::make_pair(3u, 1u));
   EXPECT_EQ(at(12), std::make_pair(4u, 5u));    // the end
   EXPECT_EQ(at(10000), std::make_pair(4u, 5u)); // clamped to it

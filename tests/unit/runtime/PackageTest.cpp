@@ -144,7 +144,7 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 64, 3)), ""); // an entry behind the code
+  EXPECT_NE(refusal(forged(info + 64, 3)), ""); // an entry after the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);

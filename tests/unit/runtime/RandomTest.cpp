@@ -89,7 +89,7 @@ bool bitAt(const Fraction &fraction, int index) {
   return fraction[std::size_t(index / 32)] >> (31 - index % 32) & 1;
 }
 
-/// The float below a fraction, bit by bit: 24 of them from the first that is set, none behind the
+/// The float below a fraction, bit by bit: 24 of them from the first that is set, none after the
 /// 149th.
 float floatBelow(const Fraction &fraction) {
   double value = 0;

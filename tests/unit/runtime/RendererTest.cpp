@@ -161,7 +161,7 @@ TEST(Renderer, DepthZeroSeesCameraRaysOnly) {
   RenderOptions options = small();
   options.maxDepth = 0;
   Image none = render(scene, options);
-  EXPECT_EQ(none.at(48, 32)[0], 0.0f); // no background behind the last bounce
+  EXPECT_EQ(none.at(48, 32)[0], 0.0f); // no background after the last bounce
   EXPECT_EQ(none.at(0, 0)[0], 0.25f);
   options.maxDepth = 1;
   Image one = render(scene, options);

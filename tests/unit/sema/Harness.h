@@ -43,7 +43,7 @@ std::string render(const Checked &checked);
 /// was expected.
 std::string withActualMessages(const std::string &text);
 
-/// One test of a file that holds several, each behind a line `//--- what it is about`.
+/// One test of a file that holds several, each after a line `//--- what it is about`.
 struct Case {
   std::string title;
   std::string text;

@@ -233,7 +233,7 @@ TEST(Limits, TenThousandClassesSideBySide) {
 TEST(Limits, TenThousandClassesInACircle) {
   const std::unique_ptr<Checked> checked =
       checkText(numbered(10000, "class C# : C@ { };\n") + "class C10000 : C0 { };\n");
-  EXPECT_EQ(checked->numbers(), "E0400"); // and nothing of the chain that is left of the circle
+  EXPECT_EQ(checked->numbers(), "E0400"); // and nothing of the chain that is left of the cycle
 }
 
 TEST(Limits, TenThousandFunctionsInAChain) {

@@ -171,6 +171,40 @@ void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
                                "shaders on a GPU compute in single precision; give strict or fast");
 }
 
+/// When all options are read. Throws CLI::ValidationError for those that exclude each other.
+void completeRenderOptions(const CLI::App &command, RenderCommandOptions &options) {
+  for (const auto &[name, isGiven] :
+       {std::make_pair("--json", options.json), std::make_pair("--print", options.prints)})
+    if (isGiven && options.output == "-")
+      throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
+  if (!options.className.empty() && !holdsShaders(options.scene))
+    throw CLI::ValidationError("--class", fmt::format("`{}` is a scene, which names its classes; "
+                                                      "give a file of shaders (.rtsl)",
+                                                      options.scene));
+  if (command.count("--noise") && (options.noise == 0 || std::isinf(options.noise)))
+    throw CLI::ValidationError("--noise", "no picture is without error; give a number like 0.01");
+  if (command.count("--checkpoint-every") && options.checkpoint.file.empty())
+    throw CLI::ValidationError("--checkpoint-every", "there is no `--checkpoint`");
+  if (options.isInPasses())
+    rejectInPasses(options);
+  if (options.frames)
+    rejectWithFrames(options);
+  if (options.watches) {
+    rejectWithWatch(options);
+    if (!command.count("-O"))
+      options.common.compile.optimization = optimizationOfWatch;
+  }
+  checkPictureName(options.output, options.format);
+  if (!options.aovs.empty() && !runtime::isExr(options.output, options.format))
+    throw CLI::ValidationError("--aov", "only EXR files have layers; give a name that ends in "
+                                        ".exr, or `--format=exr`");
+  if (options.target == TargetName::Gpu)
+    rejectWithoutGpuSupport(options);
+  if (options.target != TargetName::Host)
+    options.common.compile.target = Target::HostMegakernel;
+  options.hasGpuArchitecture = command.count("--gpu-arch") != 0;
+}
+
 } // namespace
 
 void addRenderCommand(CLI::App &app, Action &action) {
@@ -238,36 +272,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
                   "camera.name=Plan\n"
                   "  rtslc render Clay.rtsl -o clay.png --set Clay.polish=0.2");
   command->callback([options, command, &action] {
-    for (const auto &[name, isGiven] :
-         {std::make_pair("--json", options->json), std::make_pair("--print", options->prints)})
-      if (isGiven && options->output == "-")
-        throw CLI::ValidationError(name, "standard output is the picture; give a file to `-o`");
-    if (!options->className.empty() && !holdsShaders(options->scene))
-      throw CLI::ValidationError("--class", fmt::format("`{}` is a scene, which names its classes; "
-                                                        "give a file of shaders (.rtsl)",
-                                                        options->scene));
-    if (command->count("--noise") && (options->noise == 0 || std::isinf(options->noise)))
-      throw CLI::ValidationError("--noise", "no picture is without error; give a number like 0.01");
-    if (command->count("--checkpoint-every") && options->checkpoint.file.empty())
-      throw CLI::ValidationError("--checkpoint-every", "there is no `--checkpoint`");
-    if (options->isInPasses())
-      rejectInPasses(*options);
-    if (options->frames)
-      rejectWithFrames(*options);
-    if (options->watches) {
-      rejectWithWatch(*options);
-      if (!command->count("-O"))
-        options->common.compile.optimization = optimizationOfWatch;
-    }
-    checkPictureName(options->output, options->format);
-    if (!options->aovs.empty() && !runtime::isExr(options->output, options->format))
-      throw CLI::ValidationError("--aov", "only EXR files have layers; give a name that ends in "
-                                          ".exr, or `--format=exr`");
-    if (options->target == TargetName::Gpu)
-      rejectWithoutGpuSupport(*options);
-    if (options->target != TargetName::Host)
-      options->common.compile.target = Target::HostMegakernel;
-    options->hasGpuArchitecture = command->count("--gpu-arch") != 0;
+    completeRenderOptions(*command, *options);
     action = [options] { return render(*options); };
   });
 }

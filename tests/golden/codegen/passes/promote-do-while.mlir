@@ -1,4 +1,4 @@
-// A loop that tests behind its body.
+// A loop that tests after its body.
 // RUN: rtsl-opt %s --rtsl-to-cf --rtsl-hoist-vars --mem2reg --canonicalize --cse | FileCheck %s
 
 // CHECK-LABEL: func.func @doWhile(

@@ -57,7 +57,7 @@ public:
   }
 
   /// Calls a method, a constructor or `Class.initialize` on an object of `launch.records`.
-  /// Attributes lie one behind the other in the order in which the text of the program mentions
+  /// Attributes lie one after the other in the order in which the text of the program mentions
   /// them.
   template <typename... Arguments>
   void callMethod(const std::string &name, RtslRef object, Arguments... arguments) {

@@ -1,4 +1,4 @@
-// Members lie behind the class id; a load is invariant but in constructors and in what they call.
+// Members follow the class id; a load is invariant but in constructors and in what they call.
 // RUN: rtsl-opt %s --rtsl-to-llvm --cse | FileCheck %s
 
 rtsl.class @Glass root "rt_Material" {

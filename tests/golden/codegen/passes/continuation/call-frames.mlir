@@ -26,7 +26,7 @@ func.func @rtsl_rt_Material_shade(%self: !rtsl.ref<"Mirror">) attributes {rtsl.e
 }
 
 // The direction is read where it is needed, on both sides of the trace: it is not saved. The color of the ray is
-// saved across the call, in the 12 bytes behind what was handed over, rounded up to 8.
+// saved across the call, in the 12 bytes after what was handed over, rounded up to 8.
 // SPLIT-LABEL: func.func private @follow.state0(%arg0: !rtsl.ref<"Tint">)
 // SPLIT:         %[[D:.*]] = rtsl.call_argument "argument0"[16] : vector<3xf32>
 // SPLIT:         rtsl.spawn %[[D]], %[[D]]
@@ -83,6 +83,6 @@ rtsl.class @Tint root "rt_Texture" {
 // +   for (mlir::Type type : results)
 // +     place(type, layout.results);
 
-// MUTATION frame-areas of calls/CallFrames.cpp: one call round a circle is all there is
+// MUTATION frame-areas of calls/CallFrames.cpp: a cycle has only one call
 // -       most = std::max(most, bytes(call.callee, chain - 1));
 // +       most = std::max(most, bytes(call.callee, 0));

@@ -1,4 +1,4 @@
-// What is reached from behind several traces gets a state of its own where its copies come to more than the function.
+// What is reached after several traces gets a state of its own where its copies come to more than the function.
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-cut-joins="free=0 copies=1 shortest=1" | FileCheck %s
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-cut-joins | FileCheck %s --check-prefix=FEW
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-cut-joins="free=0 copies=1 shortest=1" --rtsl-save-live --rtsl-layout-frame --rtsl-split-states | FileCheck %s --check-prefix=STATES

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-frame-objects | FileCheck %s
 
-// Indexed at run time behind the trace: it lives in the frame, and is zero when control comes there, as a variable is.
+// Indexed at run time after the trace: it lives in the frame, and is zero when control comes there, as a variable is.
 // CHECK-LABEL: func.func @table
 // CHECK-NEXT:   %table = rtsl.frame_object "table"[0] : !rtsl.ptr<!rtsl.array<4 x f32>>
 // CHECK-NEXT:   rtsl.clear %table

@@ -1,5 +1,5 @@
 // What the report says is moved between registers and frame at a trace. In the loop `w` lies in its slot after the first round, and is
-// read behind the last alone; `i` is written and read each time.
+// read after the last alone; `i` is written and read each time.
 // RUN: rtsl-opt %s --rtsl-split="no-dispatch report=text" 2>&1 >/dev/null | FileCheck %s
 // RUN: rtsl-opt %s --rtsl-split="no-dispatch no-clean-up report=text" 2>&1 >/dev/null | FileCheck %s --check-prefix=UNCLEAN
 // RUN: rtsl-opt %s --rtsl-split="no-dispatch report=json" 2>&1 >/dev/null | FileCheck %s --check-prefix=STEPS

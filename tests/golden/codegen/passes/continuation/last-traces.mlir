@@ -37,7 +37,7 @@ func.func @product(%self: !rtsl.ref<"M">) {
   return
 }
 
-// Something happens behind it.
+// Something happens after it.
 // CHECK-LABEL: func.func @draws
 // CHECK:         rtsl.suspend
 // REPORT-LABEL: draws: 2 states

@@ -98,7 +98,7 @@ func.func @overwritten(%self: !rtsl.ref<"M">, %o: vector<3xf32>) -> vector<3xf32
   return %v : vector<3xf32>
 }
 
-// A store behind the load on one of two ways is enough ...
+// A store after the load on one of two paths is enough ...
 // CHECK-LABEL: func.func @maybeOverwritten
 // CHECK:        names ["SampleColor"]
 func.func @maybeOverwritten(%self: !rtsl.ref<"M">, %o: vector<3xf32>, %w: i1) -> vector<3xf32> {
@@ -147,7 +147,7 @@ func.func @called(%self: !rtsl.ref<"M">, %o: vector<3xf32>) -> (f32, vector<3xf3
 
 // -----
 
-// What one trace saves is needed behind the one before it: the random number, and nothing that is made of it.
+// What one trace saves is needed after the one before it: the random number, and nothing that is made of it.
 // CHECK-LABEL: func.func @chain
 // CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb1(%{{.*}}, %{{.*}} : vector<3xf32>, f32) names ["o", "r"]
 // CHECK:        rtsl.suspend %{{.*}}, %{{.*}}, ^bb2(%{{.*}} : f32) names ["r"]

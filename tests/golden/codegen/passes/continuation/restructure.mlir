@@ -147,7 +147,7 @@ func.func @switch(%v: i32) -> i32 {
 
 // -----
 
-// A loop that nothing leaves; what stands behind it is there for the verifier.
+// A loop that nothing leaves; what stands after it is there for the verifier.
 // CHECK-LABEL: @forever(
 // CHECK: rtsl.loop do {
 // CHECK-NEXT: call @again

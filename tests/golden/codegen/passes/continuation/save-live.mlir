@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-save-live | FileCheck %s
 
-// What is used behind the trace comes through the suspend; the object does not, it belongs to the ray.
+// What is used after the trace comes through the suspend; the object does not, it belongs to the ray.
 // CHECK-LABEL: func.func @straight
 // CHECK-NEXT:   rtsl.suspend %arg1, %arg1, ^bb1(%arg2 : f32) names ["w"]
 // CHECK-NEXT: ^bb1(%[[W:.*]]: f32):

@@ -1,6 +1,6 @@
 // RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-trim-vectors --rtsl-rematerialise --rtsl-save-live | FileCheck %s
 
-// One component is read behind the trace, so 4 bytes are saved and not 12.
+// One component is read after the trace, so 4 bytes are saved and not 12.
 // CHECK-LABEL: func.func @one
 // CHECK:        rtsl.suspend %arg0, %arg0, ^bb1(%{{.*}} : f32) names ["v.y"]
 // CHECK-NEXT: ^bb1(%[[Y:.*]]: f32):

@@ -1,5 +1,5 @@
 // Plans of functions with more values than a BitVector holds in itself, for AddressSanitizer too:
-// what a trace saves depends on what stands behind it alone.
+// what a trace saves depends only on what comes after it.
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/save/Steps.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
@@ -15,8 +15,8 @@ using namespace rtsl::continuation;
 
 namespace {
 
-/// A hundred tables are read before the trace, and three hundred values made; behind it eight sums
-/// are asked for that can be had again of a member.
+/// A hundred tables are read before the trace, and three hundred values made; after it eight sums
+/// are needed that can be rematerialised from a member.
 std::string functionWithManyValues() {
   std::string text = "rtsl.class @M root \"rt_Material\" {\n"
                      "  rtsl.member_decl @a : f32 access \"public\"\n"

@@ -72,7 +72,7 @@ std::string Generator::payloadField(const std::string &base, unsigned field) {
               "> -> !rtsl.ptr<f32>");
 }
 
-/// A ray with a payload of its own, as lowering makes it: filled before, read behind.
+/// A ray with a payload of its own, as lowering makes it: filled before, read after.
 void Generator::tracePayload() {
   std::string origin = vectorValue(1), direction = vectorValue(2), from = floatValue(1),
               to = floatValue(1);

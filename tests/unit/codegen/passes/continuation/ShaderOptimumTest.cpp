@@ -160,7 +160,7 @@ Shader Maker::make(unsigned traces) {
   return shader;
 }
 
-/// The cost of a trace that saves this set, with what has to be there behind it; `impossible` if
+/// The cost of a trace that saves this set, with what must be there after it; `impossible` if
 /// that cannot be.
 std::int64_t costAt(const Shader &shader, unsigned trace, unsigned saved, unsigned needed) {
   std::int64_t cost = 0;
@@ -187,7 +187,7 @@ unsigned madeBefore(const Shader &shader, unsigned trace) {
   return set;
 }
 
-/// What must be there behind a trace if the next one saves this set.
+/// What must be there after a trace if the next one saves this set.
 unsigned neededBehind(const Shader &shader, unsigned trace, unsigned savedNext) {
   unsigned needed = savedNext;
   for (unsigned v : shader.asked[trace + 1])
@@ -195,7 +195,7 @@ unsigned neededBehind(const Shader &shader, unsigned trace, unsigned savedNext) 
   return needed & madeBefore(shader, trace);
 }
 
-/// The least cost of the traces up to this one, by what the one behind it saves.
+/// The least cost of the traces up to this one, by what the next one saves.
 std::int64_t cheapest(const Shader &shader, unsigned trace, unsigned savedNext,
                       std::map<std::pair<unsigned, unsigned>, std::int64_t> &known) {
   const unsigned needed = neededBehind(shader, trace, savedNext),
