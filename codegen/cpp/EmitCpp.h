@@ -30,6 +30,7 @@ struct Options {
   bool prints = false;               // `print` prints; otherwise it is left out
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
   std::uint32_t undefined = 0;       // RTSL_FEATURE_UNDEFINED_*, for tests
+  std::uint32_t sampler = 0;         // RTSL_FEATURE_SAMPLER_*, or 0
   bool checkIndices = true;
   // what cannot be printed as states, so that traces are calls; empty: nothing
   std::string whyCalls;

@@ -15,7 +15,7 @@ namespace rtsl::driver {
 static bool linkForScene(Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   LinkRequest request = *compilation.input.scene;
-  request.features |= options.undefined;
+  request.features |= options.undefined | options.sampler;
   return link(*compilation.ir, *compilation.input.module, request, options.colorComponents,
               compilation.diagnostics, *compilation.program, compilation.findings,
               options.floatingPoint);

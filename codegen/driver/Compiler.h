@@ -53,6 +53,8 @@ struct CompileOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
+  /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.
+  std::uint32_t sampler = 0;
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.
   std::uint32_t undefined = 0;
 };

@@ -334,7 +334,7 @@ struct ImportDecl {
 struct TranslationUnit {
   FileId file = 0;
   bool isOfLibrary = false; // the standard library; set by whoever reads the file
-  std::string comment; // at the beginning of the file
+  std::string comment;      // at the beginning of the file
   std::vector<ImportDecl> imports;
   std::vector<StructDecl> structs;
   std::vector<VariableDecl> constants; // `const` at file level

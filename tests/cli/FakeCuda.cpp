@@ -51,6 +51,16 @@ bool isAllocated(const void *address, std::size_t bytes) {
   return start + bytes <= after->first + after->second;
 }
 
+/// Sample n of a pixel, from 1, is n times the color.
+void takeSamples(const RtslPixelSums &sums, std::uint64_t pixel, std::uint32_t count,
+                 const float *color) {
+  for (; sums.taken[pixel] < count; ++sums.counted[pixel]) {
+    ++sums.taken[pixel];
+    for (std::uint32_t c = 0; c < 3; ++c)
+      sums.colors[3 * pixel + c] += double(sums.taken[pixel]) * double(color[c]);
+  }
+}
+
 } // namespace
 
 extern "C" {
@@ -214,7 +224,7 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
   if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
-  const std::uint64_t pixels = std::uint64_t(launch.width) * launch.height;
+  const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
   bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
   isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
   isFine &= isAllocated(job.pixels, pixels * launch.colorComponents * sizeof(float));
@@ -230,6 +240,13 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
   for (std::uint32_t i = 0; i < launch.meshCount; ++i)
     isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
               isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
+  isFine &= job.left + job.width <= launch.width && job.top + job.height <= launch.height;
+  const RtslPixelSums &sums = job.sums;
+  if (sums.colors)
+    isFine &= isAllocated(sums.colors, pixels * launch.colorComponents * sizeof(double)) &&
+              isAllocated(sums.squares, pixels * sizeof(double)) &&
+              isAllocated(sums.counted, pixels * sizeof(std::uint32_t)) &&
+              isAllocated(sums.taken, pixels * sizeof(std::uint32_t));
   if (!isFine)
     return IllegalAddress;
   const std::uint64_t painted = is("endless") ? pixels / 2 : pixels;
@@ -237,9 +254,12 @@ int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads
     if (job.pixels[i] != 0)
       return IllegalAddress;
   for (std::uint64_t i = 0; i < painted; ++i) {
-    job.pixels[3 * i] = float(i % launch.width);
-    job.pixels[3 * i + 1] = float(i / launch.width);
-    job.pixels[3 * i + 2] = float(launch.seed);
+    const float color[3] = {float(job.left + i % job.width), float(job.top + i / job.width),
+                            float(launch.seed)};
+    for (std::uint32_t c = 0; c < 3 && !sums.colors; ++c)
+      job.pixels[3 * i + c] = color[c];
+    if (sums.colors)
+      takeSamples(sums, i, job.samplesPerPixel, color);
   }
   __atomic_store_n(&job.status->nextPixel, painted, __ATOMIC_RELAXED);
   endlessStatus = is("endless") ? job.status : nullptr;

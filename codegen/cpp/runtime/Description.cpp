@@ -180,6 +180,8 @@ static Statements describeFeatures(const Options &options) {
   add(options.prints, "RTSL_FEATURE_PRINT");
   add(options.undefined & RTSL_FEATURE_UNDEFINED_BYTES, "RTSL_FEATURE_UNDEFINED_BYTES");
   add(options.undefined & RTSL_FEATURE_UNDEFINED_NAN, "RTSL_FEATURE_UNDEFINED_NAN");
+  add(options.sampler & RTSL_FEATURE_SAMPLER_R2, "RTSL_FEATURE_SAMPLER_R2");
+  add(options.sampler & RTSL_FEATURE_SAMPLER_SOBOL, "RTSL_FEATURE_SAMPLER_SOBOL");
   return features ? Statements{onProgram("features", {features})} : Statements();
 }
 

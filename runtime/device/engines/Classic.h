@@ -14,7 +14,7 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Events.h"
-#include "runtime/device/ray/Random.h"
+#include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
@@ -107,7 +107,7 @@ inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
 inline void descend(RtslState &child, const RtslState &parent, uint32_t dimension) {
   inherit(child, parent);
   child.Depth = parent.Depth + 1;
-  childKey(parent.randomKey, dimension, child.randomKey);
+  setChildKey(child, parent, dimension);
   child.dimension = 0;
 }
 
@@ -177,21 +177,12 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
 }
 
-/// The time of a sample, in the launch's shutter. `shift` is the same for all samples of a pixel.
-inline float timeOfSample(const RtslLaunch &launch, uint32_t index, uint32_t shift) {
-  const float share = unitFloat(evenlySpread(index) ^ shift);
-  return fused(share, launch.shutterClose - launch.shutterOpen, launch.shutterOpen);
-}
-
 /// The start of a sample of a pixel. Row 0 is the top of the image, where ScreenCoord.y is near 1.
 inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
   beginState(state, &launch);
   startEvents(state, events, x, y, index);
-  Words4 key = hash4(x, y, index, launch.seed);
-  state.randomKey[0] = key.x;
-  state.randomKey[1] = key.y;
-  state.dimension = 0;
+  const SampleNumbers numbers = beginRandomNumbers(state, x, y, index, launch.seed);
   state.Depth = 0;
   uint32_t needs = rtsl_needs(&launch);
   if (needs & RTSL_NEEDS_LAUNCH) {
@@ -201,20 +192,18 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
     state.LaunchSize[1] = launch.height;
   }
 
-  Words4 shift = hash4(x, y, 0xffffffffu, launch.seed); // the same for all samples of the pixel
-  float jitterX, jitterY;
-  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
-  state.ScreenCoord[0] = (float(x) + jitterX) / float(launch.width);
-  state.ScreenCoord[1] = 1.0f - (float(y) + jitterY) / float(launch.height);
+  state.ScreenCoord[0] = (float(x) + numbers.pixel[0]) / float(launch.width);
+  state.ScreenCoord[1] = 1.0f - (float(y) + numbers.pixel[1]) / float(launch.height);
   if (needs & RTSL_NEEDS_LENS) {
-    state.LensCoord[0] = unitFloat(key.z);
-    state.LensCoord[1] = unitFloat(key.w);
+    state.LensCoord[0] = numbers.lens[0];
+    state.LensCoord[1] = numbers.lens[1];
   }
   if (needs & RTSL_NEEDS_TIME)
-    state.TimeSeed = unitFloat(key.x * 0x9e3779b9u ^ key.y);
-  state.Time = needs & RTSL_HAS_SHUTTER
-                   ? timeOfSample(launch, index, hash4(x, y, 0xfffffffeu, launch.seed).x)
-                   : 0;
+    state.TimeSeed = numbers.timeSeed;
+  state.Time =
+      needs & RTSL_HAS_SHUTTER
+          ? fused(numbers.shutter, launch.shutterClose - launch.shutterOpen, launch.shutterOpen)
+          : 0;
   state.rayType = 0;
   state.rayMask = 0xffffffffu;
   state.rayRoot = 0;

@@ -67,11 +67,11 @@ uint32_t rtsl_is_abandoned(RtslState *state) {
 }
 
 float rtsl_rand(RtslState *state) {
-  return device::randomNumber(state->randomKey, state->dimension++);
+  return device::drawNumber(*state, state->dimension++);
 }
 
 float rtsl_rand_open(RtslState *state) {
-  return device::openRandomNumber(state->randomKey, state->dimension++);
+  return device::drawOpenNumber(*state, state->dimension++);
 }
 
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color) {

@@ -14,7 +14,7 @@
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
-#include "runtime/device/ray/Random.h"
+#include "runtime/device/ray/Sampler.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -243,10 +243,10 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
   setColor(state.LightColor, components, 0);
   state.PDF = 0;
   EmitterChoice choice;
-  choice.emitter = randomNumber(state.randomKey, state.dimension);
-  choice.part = randomNumber(state.randomKey, state.dimension + 1);
-  choice.u = randomNumber(state.randomKey, state.dimension + 2);
-  choice.v = randomNumber(state.randomKey, state.dimension + 3);
+  choice.emitter = drawNumber(state, state.dimension);
+  choice.part = drawNumber(state, state.dimension + 1);
+  choice.u = drawNumber(state, state.dimension + 2);
+  choice.v = drawNumber(state, state.dimension + 3);
   state.dimension += 4;
   if (launch.emitterCount == 0)
     return false;

@@ -4,6 +4,7 @@
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Events.h"
+#include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
@@ -37,9 +38,7 @@ inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
   ray.mask = shading.rayMask;
   ray.root = shading.rayRoot;
   ray.depth = shading.Depth + 1;
-  // Draws are hashed; a key that no other ray has is sufficient.
-  ray.randomKey[0] = shading.randomKey[0] ^ 0x9e3779b9u;
-  ray.randomKey[1] = shading.randomKey[1] + shading.dimension * 0x9e3779b9u;
+  setShadowKey(ray.randomKey, shading);
   return ray;
 }
 

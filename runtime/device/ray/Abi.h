@@ -376,6 +376,9 @@ extern "C" {
 // For tests: uninitialised state is filled with a pattern (Undefined.h).
 #define RTSL_FEATURE_UNDEFINED_BYTES 8u
 #define RTSL_FEATURE_UNDEFINED_NAN 16u
+// What random numbers are (Sampler.h); without any of these they are independent.
+#define RTSL_FEATURE_SAMPLER_R2 32u
+#define RTSL_FEATURE_SAMPLER_SOBOL 64u
 
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);

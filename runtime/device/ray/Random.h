@@ -84,7 +84,7 @@ inline float floatOfFraction(const uint32_t words[5]) {
   return float(double(leading) * scale);
 }
 
-/// randomNumber() if the first word does not have 24 significant bits, as happens once in 512
+/// numberOfWord() if the first word does not have 24 significant bits, as happens once in 512
 /// draws.
 __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, uint32_t keyY,
                                                                uint32_t dimension, uint32_t first) {
@@ -93,15 +93,20 @@ __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, ui
   return floatOfFraction(words);
 }
 
-/// Draw number `dimension` of the ray with this key: uniform in [0, 1), with 24 significant bits
-/// even near 0. (With the leading bits of one word only, as in unitFloat(), there is nothing
-/// between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values", 2007.)
-inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
-  const uint32_t first = hash3(key[0], key[1], dimension).x;
+/// The number in [0, 1) whose first 32 binary digits are `first` and whose others are hashed, with 24
+/// significant bits even near 0. (With the leading bits of one word only, as in unitFloat(), there
+/// is nothing between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values",
+/// 2007.)
+inline float numberOfWord(const uint32_t key[2], uint32_t dimension, uint32_t first) {
   if (first < 1u << 23)
     return smallRandomNumber(key[0], key[1], dimension, first);
   return float(first & ~(0xffu >> __builtin_clz(first))) *
          0x1p-32f; // exact, so that it is not rounded to 1
+}
+
+/// Draw number `dimension` of the ray with this key: uniform in [0, 1).
+inline float randomNumber(const uint32_t key[2], uint32_t dimension) {
+  return numberOfWord(key, dimension, hash3(key[0], key[1], dimension).x);
 }
 
 /// The same draw, with 0 replaced by the smallest float: uniform in (0, 1).
@@ -127,15 +132,18 @@ inline void pixelSample(uint32_t index, uint32_t shiftX, uint32_t shiftY, float 
   *y = unitFloat(shiftY + index * 2447445414u); // 2^32 / 1.32471795724^2
 }
 
-/// Number `index` of a sequence of fractions of 2^32 of which any 2^n consecutive ones from a
-/// multiple of 2^n lie in different intervals of 2^32 / 2^n: its bits reversed (van der Corput,
-/// 1935). Exclusive or with a constant keeps that property.
-inline uint32_t evenlySpread(uint32_t index) {
-  index = index >> 16 | index << 16;
-  index = (index & 0xff00ff00u) >> 8 | (index & 0x00ff00ffu) << 8;
-  index = (index & 0xf0f0f0f0u) >> 4 | (index & 0x0f0f0f0fu) << 4;
-  index = (index & 0xccccccccu) >> 2 | (index & 0x33333333u) << 2;
-  return (index & 0xaaaaaaaau) >> 1 | (index & 0x55555555u) << 1;
+/// Of the numbers from 0 on, a sequence of fractions of 2^32 of which any 2^n consecutive ones from
+/// a multiple of 2^n lie in different intervals of 2^32 / 2^n (van der Corput, 1935). Exclusive or
+/// with a constant keeps that property.
+inline uint32_t reverseBits(uint32_t x) {
+#ifdef __clang__
+  return __builtin_bitreverse32(x); // one instruction on a GPU
+#else
+  x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
+  x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
+  x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
+  return __builtin_bswap32(x);
+#endif
 }
 
 } // namespace rtsl::device

@@ -52,6 +52,19 @@ class Gpu(Case):
                              program=(RTSL_RUN, "x.rtslpkg"))
         self.assertEqual(json.loads(out)["laneBytes"], gpu["laneBytes"])
 
+    def test_a_rendering_goes_on_with_its_sums(self):
+        """They go to the device and come back; sample n of the stand-in is n times what it paints."""
+        whole = json.loads(self.render(*SMALL[:2], "--spp=9", "--checkpoint=whole.ckpt", "--json")[0])
+        (self.folder / "a.exr").rename(self.folder / "whole.exr")
+        for spp in (2, 5, 9):
+            part = json.loads(self.render(*SMALL[:2], f"--spp={spp}", "--checkpoint=a.ckpt", "--json")[0])
+            self.assertEqual(part["samples"], 576 * spp)
+        self.assertEqual(part["resumedAt"], 5)
+        self.assertEqual((part["samples"], part["pixels"]), (whole["samples"], whole["pixels"]))
+        self.assert_same_bits("a.exr", "whole.exr")
+        document = json.loads(self.render(*SMALL[:2], "--time=300ms", "--json", "--crop=3,4,10,8")[0])
+        self.assertEqual(document["samples"], 28 * document["spp"])
+
     def test_it_says_what_ran(self):
         _, error = self.render(*SMALL)
         self.assertRegex(error, r"^a\.exr: 32x18, 2 spp; compiled in \d+ ms, rendered in .* samples/s\)\n"
@@ -110,6 +123,15 @@ class Gpu(Case):
                     for target in ("gpu", "host-megakernel"):
                         self.run_rtslc("render", scene, "-o", f"{target}.exr", "-q", *SMALL, *arguments, f"--target={target}")
                     self.assert_same_bits("gpu.exr", "host-megakernel.exr")
+
+    @unittest.skipUnless(has_gpu(), "this machine has no GPU")
+    def test_checkpoints_of_other_backends(self):
+        arguments = ["render", "scene.json", "-q", "-Wno-depth-limit", "--size=200x150"]
+        for spp, target in ((3, "gpu"), (5, "host-megakernel"), (11, "gpu"), (13, "host")):
+            self.run_rtslc(*arguments, "-o", "a.exr", f"--spp={spp}", f"--target={target}", "--checkpoint=a.ckpt",
+                           "--checkpoint-every=1ms")
+        self.run_rtslc(*arguments, "-o", "whole.exr", "--spp=13")
+        self.assert_same_bits("a.exr", "whole.exr")
 
 
 if __name__ == "__main__":

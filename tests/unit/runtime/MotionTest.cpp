@@ -1,7 +1,6 @@
 #include "FakeProgram.h"
 #include "TraversalRays.h"
 
-#include "runtime/device/engines/Classic.h"
 #include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/Surface.h"
 #include "runtime/embree/HostScene.h"
@@ -290,19 +289,4 @@ TEST(Motion, KeysOfAMeshMustFit) {
             "mesh `b.obj` has other triangles than the first key of its object, `a.obj`");
   EXPECT_EQ(message(larger), "mesh `b.obj` has 4 vertices, but the first key of its object, "
                              "`a.obj`, has 3");
-}
-
-TEST(Motion, SamplesAreSpreadOverTheShutter) {
-  RtslLaunch launch{};
-  launch.shutterOpen = 0.25f;
-  launch.shutterClose = 0.75f;
-  int inParts[16] = {};
-  for (std::uint32_t i = 0; i < 64; ++i) {
-    const float time = device::timeOfSample(launch, i, 0x12345678u);
-    ASSERT_GE(time, 0.25f);
-    ASSERT_LT(time, 0.75f);
-    ++inParts[int((time - 0.25f) * 32)];
-  }
-  for (int count : inParts)
-    EXPECT_EQ(count, 4); // evenly
 }

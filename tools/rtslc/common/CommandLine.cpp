@@ -155,6 +155,12 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             "the oldest NVIDIA GPU that the PTX supports; default sm_75");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
+  addChoice(command, "--sampler", options.compile.sampler,
+            Choices<std::uint32_t>{{"independent", 0},
+                                   {"r2", RTSL_FEATURE_SAMPLER_R2},
+                                   {"sobol", RTSL_FEATURE_SAMPLER_SOBOL}},
+            "the random numbers of samples: independent of each other, or spread evenly among the "
+            "samples of a pixel by the sequence R2, or by Sobol's with Owen's scrambling");
   addChoice(command, "--undefined", options.compile.undefined,
             Choices<std::uint32_t>{{"leave", 0},
                                    {"bytes", RTSL_FEATURE_UNDEFINED_BYTES},
