@@ -161,6 +161,9 @@ private:
     checkKeys(mention, {"model", "name", "transform"}, "the camera of a model");
     const JsonValue &path = expect(*mention.find("model"), Kind::String, "`model`");
     const std::string file = resolvePath(path, scene.file);
+    if (const auto known = models.find(file);
+        known != models.end() && known->second.root == unreadable)
+      return gltf::objectOf(mention, "PerspectiveCamera"); // it is reported where its nodes are
     std::string name;
     if (const JsonValue *found = mention.find("name"))
       name = expect(*found, Kind::String, "`name`").string;

@@ -119,7 +119,9 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
     ir::attr::className.set(function, emitter.getStringAttr(key.concrete->name));
     if (source.isConstructor)
       ir::attr::constructor.set(function);
-    else if (!key.isForIntersect() && !key.isHidden)
+    else if (key.isHidden)
+      ir::attr::hidden.set(function);
+    else if (!key.isForIntersect())
       ir::attr::methodName.set(function, emitter.getStringAttr(slotName(source)));
     if (options.source && source.sends.traced)
       ir::attr::states.set(function);

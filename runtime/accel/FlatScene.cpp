@@ -61,12 +61,12 @@ FlatScene flatten(const Scene &scene) {
   const std::uint64_t meshes =
       flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
   flattener.addAt(offsetof(RtslLaunch, transforms), launch.transforms, launch.transformCount);
-  if (launch.needs & RTSL_HAS_MOTION) {
-    flattener.addAt(offsetof(RtslLaunch, motions), launch.motions, launch.motionCount);
-    flattener.addAt(offsetof(RtslLaunch, motionFactors), launch.motionFactors,
-                    launch.motionFactorCount);
-    flattener.addAt(offsetof(RtslLaunch, motionKeys), launch.motionKeys, launch.motionKeyCount);
-  }
+  const bool moves = launch.needs & RTSL_HAS_MOTION;
+  flattener.addAt(offsetof(RtslLaunch, motions), launch.motions, moves ? launch.motionCount : 0);
+  flattener.addAt(offsetof(RtslLaunch, motionFactors), launch.motionFactors,
+                  moves ? launch.motionFactorCount : 0);
+  flattener.addAt(offsetof(RtslLaunch, motionKeys), launch.motionKeys,
+                  moves ? launch.motionKeyCount : 0);
   flattener.addAt(offsetof(RtslLaunch, boxes), launch.boxes, launch.boxCount);
   flattener.addAt(offsetof(RtslLaunch, selections), launch.selections, launch.selectionCount);
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);

@@ -50,7 +50,7 @@ public:
         check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     if (diagnostics.hasErrors())
       return;
-    request.classes = {program.camera, program.miss};
+    request.classes = {program.camera, program.miss, program.selector};
     for (const auto *names : {&program.helpers, &program.textures, &program.lights,
                               &program.primitives, &program.materials, &program.meshMaterials})
       request.classes.insert(request.classes.end(), names->begin(), names->end());

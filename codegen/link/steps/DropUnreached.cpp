@@ -212,7 +212,7 @@ std::string shownName(FuncOp function) {
   if (ir::attr::className.isOn(function)) {
     shown = owner.str() + ".";
     std::tie(owner, rest) = rest.split('.');
-    if (!method && !rest.empty()) {
+    if (ir::attr::hidden.isOn(function)) {
       shown += owner.str() + "::";
       std::tie(owner, rest) = rest.split('.');
     }
@@ -251,9 +251,9 @@ void dropUnreached(LinkContext &context) {
   for (auto function : llvm::make_early_inc_range(context.ir.getOps<FuncOp>())) {
     const auto method = ir::attr::methodName.of(function);
     const auto found = reached.find(function);
-    if (method) {
+    if (method || ir::attr::hidden.isOn(function)) {
       Finding finding;
-      finding.item = itemOf(method.getValue());
+      finding.item = method ? itemOf(method.getValue()) : Item::Methods;
       finding.subject = shownName(function);
       finding.isNeeded = reach.isReachedByRendering(function);
       if (finding.isNeeded) {

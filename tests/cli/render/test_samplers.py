@@ -12,8 +12,8 @@ CONSTANT = 0x65766e73  # of the hash of evenly spread numbers
 class Samplers(Case):
     scene = EXAMPLES / "cornell" / "room.json"
 
-    def render(self, name, *options):
-        self.run_rtslc("render", self.scene, "-o", name, "-q", "-Wno-depth-limit", *SIZE, *options)
+    def render(self, name, *options, scene=scene):
+        self.run_rtslc("render", scene, "-o", name, "-q", "-Wno-depth-limit", *SIZE, *options)
 
     def test_the_bits_are_the_same_everywhere(self):
         for sampler in ("r2", "sobol"):
@@ -35,17 +35,18 @@ class Samplers(Case):
             self.assertEqual(any(word in ptx for word in (*words, *signed)), is_there, sampler)
 
     def test_the_picture_is_the_same_with_less_noise(self):
-        self.render("reference.exr", "--spp=1500", "--seed=77")
+        metal = EXAMPLES / "metal" / "scene.json" # without lamps, at whose edges the position in the pixel matters most
+        self.render("reference.exr", "--spp=1500", "--seed=77", scene=metal)
         errors = {}
         for sampler in ("independent", "r2", "sobol"):
-            self.render("a.exr", "--spp=64", f"--sampler={sampler}")
+            self.render("a.exr", "--spp=64", f"--sampler={sampler}", scene=metal)
             out, _ = self.run_rtslc("compare", "reference.exr", "a.exr", "--json", "--threshold", "10")
             comparison = json.loads(out)
             errors[sampler] = comparison["rmse"]
             for mean, other in zip(*comparison["means"]):
                 self.assertAlmostEqual(mean / other, 1, delta=0.01)
-        self.assertLess(errors["sobol"], 0.9 * errors["independent"])
-        self.assertLess(errors["r2"], 0.95 * errors["independent"])
+        self.assertLess(errors["sobol"], 0.75 * errors["independent"])
+        self.assertLess(errors["r2"], 0.75 * errors["independent"])
 
     def test_a_checkpoint_is_of_one_sampler(self):
         self.render("a.exr", "--spp=1", "--checkpoint=a.ckpt", "--sampler=sobol")

@@ -128,6 +128,7 @@ public:
     job.lanes = lane.data()->bytes;
     job.laneBytes = flat->laneBytes();
     job.pixels = pixel.data();
+    job.width = job.height = 1;
     job.samplesPerPixel = 1;
   }
 
@@ -193,6 +194,7 @@ public:
     job.laneBytes = flat->laneBytes();
     job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
     job.pixels = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
+    job.width = job.height = 1;
     job.samplesPerPixel = 1;
     device.upload(jobAddress, &job, sizeof job);
   }

@@ -23,7 +23,9 @@ using device::Vec3;
 /// missed.
 bool hitFrom(Random &random, const Triangle &target, RtslState &state) {
   const Ray ray = rayTowards(random, target, -8, 8);
+  static const RtslLaunch launch{}; // nothing moves, no object holds several primitives
   state = {};
+  state.launch = &launch;
   device::store(state.RayOrigin, ray.origin);
   device::store(state.RayDirection, ray.direction);
   const auto hit = meet(target, ray.origin, ray.direction);

@@ -339,6 +339,6 @@ TEST_F(GltfError, PartsOfASceneFile) {
   EXPECT_EQ(
       object(
           R"({"light": {"class": "PointLight"}, "transform": {"keys": [{"scale": 2}, {"scale": 3}]}})"),
-      "s.json:1:65+1: notSupported: a light in a node does not move, but the transform of its "
+      "s.json:1:64+1: notSupported: a light in a node does not move, but the transform of its "
       "node, or of one above it, has keys");
 }

@@ -214,7 +214,7 @@ TEST_F(Gltf, CamerasAreTheFilesOrFrameIt) {
             "(note it has `wide`, `flat`)");
   EXPECT_EQ(folder.without(errorOf(
                 [&] { camera(file, R"(, "transform": {"keys": [{"scale": 1}, {"scale": 2}]})"); })),
-            "s.json:1:58+1: notSupported: a camera does not move, but its transform has keys");
+            "s.json:1:56+1: notSupported: a camera does not move, but its transform has keys");
   // The square has the radius sqrt(2) and is seen from the distance sqrt(2) / sin(20 degrees).
   EXPECT_EQ(camera(squareFile()), "PerspectiveCamera (eye=[1.861 1.447 3.391] "
                                   "target=[0 0 0] up=[0 1 0]) fieldOfView=40");

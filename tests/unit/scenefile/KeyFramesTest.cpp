@@ -103,7 +103,7 @@ TEST(KeyFrames, FollowTheFrameOfTheScene) {
   EXPECT_EQ(places({"camera.eye={\"frames\": {\"0\": [4], \"2\": [6]}}", "frame=1"}),
             std::pair(5.0, 1.25));
   EXPECT_EQ(errorOf([&] { places({"frame=soon"}); }),
-            "--set frame=soon: wrongType: `frame` is a number, not a string");
+            "--set frame=soon:1:13+4: wrongType: `frame` is a number, not a string");
 }
 
 TEST(Cameras, AreChosenByName) {
