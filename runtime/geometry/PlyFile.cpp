@@ -1,215 +1,21 @@
 #include "runtime/geometry/PlyFile.h"
 
 #include "runtime/geometry/Normals.h"
+#include "runtime/geometry/PlyFormat.h"
 #include "runtime/geometry/PolygonSplit.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <sstream>
-#include <utility>
 #include <vector>
 
 namespace rtsl::runtime {
 
+using namespace ply;
+
 namespace {
-
-//===----------------------------------------------------------------------===//
-// Header
-//===----------------------------------------------------------------------===//
-
-enum class Type : std::uint8_t { None, Int8, UInt8, Int16, UInt16, Int32, UInt32, Float, Double };
-
-struct Property {
-  std::string name;
-  bool isList = false;
-  Type countType = Type::None, type = Type::None; // of a list's count, and of a value
-};
-
-struct Element {
-  std::string name;
-  std::uint64_t count = 0;
-  std::vector<Property> properties;
-};
-
-enum class Format { Ascii, LittleEndian, BigEndian };
-
-struct Header {
-  Format format = Format::Ascii;
-  std::vector<Element> elements;
-  std::size_t size = 0;
-};
-
-/// None for a type that PLY does not have.
-Type typeOf(const std::string &name) {
-  static constexpr std::pair<const char *, Type> types[] = {
-      {"char", Type::Int8},     {"int8", Type::Int8},     {"uchar", Type::UInt8},
-      {"uint8", Type::UInt8},   {"short", Type::Int16},   {"int16", Type::Int16},
-      {"ushort", Type::UInt16}, {"uint16", Type::UInt16}, {"int", Type::Int32},
-      {"int32", Type::Int32},   {"uint", Type::UInt32},   {"uint32", Type::UInt32},
-      {"float", Type::Float},   {"float32", Type::Float}, {"double", Type::Double},
-      {"float64", Type::Double}};
-  for (const auto &[known, type] : types)
-    if (name == known)
-      return type;
-  return Type::None;
-}
-
-std::size_t sizeOf(Type type) {
-  static constexpr std::uint8_t sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[std::size_t(type)];
-}
-
-bool isFloating(Type type) {
-  return type == Type::Float || type == Type::Double;
-}
-
-std::optional<Header> readHeader(std::string_view bytes) {
-  Header header;
-  std::size_t position = 0;
-  while (position < bytes.size()) {
-    std::size_t newline = bytes.find('\n', position);
-    if (newline == std::string_view::npos)
-      return std::nullopt;
-    std::istringstream line(std::string(bytes.substr(position, newline - position)));
-    position = newline + 1;
-    std::string word, type;
-    line >> word;
-    if (word == "end_header") {
-      header.size = position;
-      return header;
-    }
-    if (word == "format") {
-      line >> type;
-      header.format = type == "ascii"                  ? Format::Ascii
-                      : type == "binary_little_endian" ? Format::LittleEndian
-                                                       : Format::BigEndian;
-    } else if (word == "element") {
-      Element element;
-      if (!(line >> element.name >> element.count))
-        return std::nullopt;
-      header.elements.push_back(element);
-    } else if (word == "property") {
-      Property property;
-      line >> type;
-      if (type == "list") {
-        property.isList = true;
-        line >> type;
-        property.countType = typeOf(type);
-        line >> type;
-      }
-      property.type = typeOf(type);
-      line >> property.name;
-      if (header.elements.empty() || property.type == Type::None ||
-          (property.isList && (property.countType == Type::None || isFloating(property.countType))))
-        return std::nullopt;
-      header.elements.back().properties.push_back(property);
-    }
-  }
-  return std::nullopt;
-}
-
-//===----------------------------------------------------------------------===//
-// Values
-//===----------------------------------------------------------------------===//
-
-/// Steps over values. Functions return false at the end of the data, or if a value is not valid.
-class Body {
-public:
-  Body(std::string_view bytes, const Header &header)
-      : position(bytes.data() + header.size), end(bytes.data() + bytes.size()),
-        format(header.format) {}
-
-  std::size_t bytesLeft() const { return std::size_t(end - position); }
-
-  bool skip(const Property &property) {
-    std::uint64_t count = 1;
-    if (property.isList && !readCount(property.countType, count))
-      return false;
-    if (format != Format::Ascii) {
-      const std::size_t size = sizeOf(property.type);
-      if (count > bytesLeft() / size)
-        return false;
-      position += count * size;
-      return true;
-    }
-    for (; count > 0; --count)
-      if (nextWord().empty())
-        return false;
-    return true;
-  }
-
-  /// A non-negative integer.
-  bool readCount(Type type, std::uint64_t &count) {
-    if (format == Format::Ascii)
-      return readWord(count);
-    return !isFloating(type) && readBits(sizeOf(type), count) && !isNegative(type, count);
-  }
-
-  /// A finite number.
-  bool readFloat(Type type, float &number) {
-    if (format == Format::Ascii)
-      return readWord(number) && std::isfinite(number);
-    std::uint64_t bits;
-    if (!readBits(sizeOf(type), bits))
-      return false;
-    if (type == Type::Double) {
-      double value;
-      std::memcpy(&value, &bits, sizeof value);
-      number = float(value);
-    } else {
-      const auto low = std::uint32_t(bits);
-      std::memcpy(&number, &low, sizeof number);
-    }
-    return std::isfinite(number);
-  }
-
-private:
-  std::string_view nextWord() {
-    auto isSpace = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
-    position = std::find_if_not(position, end, isSpace);
-    const char *start = position;
-    position = std::find_if(position, end, isSpace);
-    return {start, std::size_t(position - start)};
-  }
-
-  template <typename Number>
-  bool readWord(Number &number) {
-    const std::string_view word = nextWord();
-    const char *last = word.data() + word.size();
-    const auto [after, error] = std::from_chars(word.data(), last, number);
-    return error == std::errc() && after == last;
-  }
-
-  bool readBits(std::size_t size, std::uint64_t &bits) {
-    if (size > bytesLeft())
-      return false;
-    bits = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t from = format == Format::LittleEndian ? size - 1 - i : i;
-      bits = bits << 8 | static_cast<unsigned char>(position[from]);
-    }
-    position += size;
-    return true;
-  }
-
-  static bool isNegative(Type type, std::uint64_t bits) {
-    const bool isSigned = type == Type::Int8 || type == Type::Int16 || type == Type::Int32;
-    return isSigned && bits >> (8 * sizeOf(type) - 1) != 0;
-  }
-
-  const char *position, *end;
-  Format format;
-};
-
-//===----------------------------------------------------------------------===//
-// Meshes
-//===----------------------------------------------------------------------===//
 
 /// The destination of a property of a vertex.
 struct Target {

@@ -1,0 +1,144 @@
+//===- PlyFormat.h - header and values of PLY files -----------------------===//
+//
+// What a PLY file declares, and its values one after the other, in text and in both byte orders.
+// PlyFile.h reads meshes by it.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtsl::runtime::ply {
+
+enum class Type : std::uint8_t { None, Int8, UInt8, Int16, UInt16, Int32, UInt32, Float, Double };
+
+struct Property {
+  std::string name;
+  bool isList = false;
+  Type countType = Type::None, type = Type::None; // of a list's count, and of a value
+};
+
+struct Element {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<Property> properties;
+};
+
+enum class Format { Ascii, LittleEndian, BigEndian };
+
+struct Header {
+  Format format = Format::Ascii;
+  std::vector<Element> elements;
+  std::size_t size = 0;
+};
+
+inline std::size_t sizeOf(Type type) {
+  static constexpr std::uint8_t sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return sizes[std::size_t(type)];
+}
+
+inline bool isFloating(Type type) {
+  return type == Type::Float || type == Type::Double;
+}
+
+/// Nothing if the header is damaged or does not end.
+std::optional<Header> readHeader(std::string_view bytes);
+
+/// Steps over values. Functions return false at the end of the data, or if a value is not valid.
+class Body {
+public:
+  Body(std::string_view bytes, const Header &header)
+      : position(bytes.data() + header.size), end(bytes.data() + bytes.size()),
+        format(header.format) {}
+
+  std::size_t bytesLeft() const { return std::size_t(end - position); }
+
+  bool skip(const Property &property) {
+    std::uint64_t count = 1;
+    if (property.isList && !readCount(property.countType, count))
+      return false;
+    if (format != Format::Ascii) {
+      const std::size_t size = sizeOf(property.type);
+      if (count > bytesLeft() / size)
+        return false;
+      position += count * size;
+      return true;
+    }
+    for (; count > 0; --count)
+      if (nextWord().empty())
+        return false;
+    return true;
+  }
+
+  /// A non-negative integer.
+  bool readCount(Type type, std::uint64_t &count) {
+    if (format == Format::Ascii)
+      return readWord(count);
+    return !isFloating(type) && readBits(sizeOf(type), count) && !isNegative(type, count);
+  }
+
+  /// A finite number.
+  bool readFloat(Type type, float &number) {
+    if (format == Format::Ascii)
+      return readWord(number) && std::isfinite(number);
+    std::uint64_t bits;
+    if (!readBits(sizeOf(type), bits))
+      return false;
+    if (type == Type::Double) {
+      double value;
+      std::memcpy(&value, &bits, sizeof value);
+      number = float(value);
+    } else {
+      const auto low = std::uint32_t(bits);
+      std::memcpy(&number, &low, sizeof number);
+    }
+    return std::isfinite(number);
+  }
+
+private:
+  std::string_view nextWord() {
+    auto isSpace = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
+    position = std::find_if_not(position, end, isSpace);
+    const char *start = position;
+    position = std::find_if(position, end, isSpace);
+    return {start, std::size_t(position - start)};
+  }
+
+  template <typename Number>
+  bool readWord(Number &number) {
+    const std::string_view word = nextWord();
+    const char *last = word.data() + word.size();
+    const auto [after, error] = std::from_chars(word.data(), last, number);
+    return error == std::errc() && after == last;
+  }
+
+  bool readBits(std::size_t size, std::uint64_t &bits) {
+    if (size > bytesLeft())
+      return false;
+    bits = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::size_t from = format == Format::LittleEndian ? size - 1 - i : i;
+      bits = bits << 8 | static_cast<unsigned char>(position[from]);
+    }
+    position += size;
+    return true;
+  }
+
+  static bool isNegative(Type type, std::uint64_t bits) {
+    const bool isSigned = type == Type::Int8 || type == Type::Int16 || type == Type::Int32;
+    return isSigned && bits >> (8 * sizeOf(type) - 1) != 0;
+  }
+
+  const char *position, *end;
+  Format format;
+};
+
+} // namespace rtsl::runtime::ply
