@@ -1,6 +1,7 @@
 #include "scenefile/BufferFiles.h"
 
 #include "scenefile/NumberFiles.h"
+#include "scenefile/PlyColumns.h"
 #include "scenefile/Reader.h"
 #include "support/AtomicFile.h"
 
@@ -152,6 +153,20 @@ Value readElements(const BufferDescription &buffer, const ValueType &type, std::
   return Value::block(std::move(words), sizesOf(shape, shape.size(), what));
 }
 
+std::string extensionOf(const BufferDescription &buffer) {
+  return std::filesystem::path(buffer.file).extension().string();
+}
+
+/// A key that only files of some formats have.
+const JsonValue *findFor(bool isTaken, const JsonValue &buffer, const std::string &key,
+                         const char *files) {
+  for (const auto &[name, value] : buffer.members)
+    if (name.text == key && !isTaken)
+      throw Error(ErrorCode::UnknownKey, fmt::format("`{}` is for {}", key, files),
+                  buffer.place(name));
+  return buffer.find(key);
+}
+
 } // namespace
 
 bool isBuffer(const JsonValue &value) {
@@ -174,12 +189,17 @@ readBufferDescription(const JsonValue &buffer,
       description.shape.push_back(readInteger(one, 0, 0xffffffff, "a number of `size`"));
     return description;
   }
-  checkKeys(buffer, {"buffer", "columns", "shape"}, "a buffer");
+  checkKeys(buffer, {"buffer", "element", "columns", "shape"}, "a buffer");
   description.file = resolve(*buffer.find("buffer"));
-  if (const JsonValue *columns = buffer.find("columns"))
+  const std::string extension = extensionOf(description);
+  const bool isPly = extension == ".ply", isTable = isPly || extension == ".csv";
+  const bool hasFormat = isTable || extension == ".npy";
+  if (const JsonValue *element = findFor(isPly, buffer, "element", ".ply files"))
+    description.element = expect(*element, Kind::String, "`element`").string;
+  if (const JsonValue *columns = findFor(isTable, buffer, "columns", ".csv and .ply files"))
     for (const JsonValue &column : expect(*columns, Kind::Array, "`columns`").elements)
       description.columns.push_back(expect(column, Kind::String, "a column").string);
-  if (const JsonValue *shape = buffer.find("shape"))
+  if (const JsonValue *shape = findFor(!hasFormat, buffer, "shape", "files without a format"))
     for (const JsonValue &size : expect(*shape, Kind::Array, "`shape`").elements)
       description.shape.push_back(readInteger(size, 0, 0xffffffff, "a size of `shape`"));
   return description;
@@ -214,8 +234,8 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
     throw Error(ErrorCode::NotSupported,
                 fmt::format("{} is a `{}`, which a file cannot hold", what, type.name));
   const std::size_t numbers = numbersOf(type, colorComponents);
-  const std::string extension = std::filesystem::path(buffer.file).extension().string();
-  if (extension != ".npy" && extension != ".csv")
+  const std::string extension = extensionOf(buffer);
+  if (extension != ".npy" && extension != ".csv" && extension != ".ply")
     return readElements(buffer, type, numbers, what);
   if (extension == ".npy") {
     const NpyFile file(buffer.file);
@@ -228,7 +248,9 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
     return Value::block(wordsOf(file.numbers(), given, type, colorComponents, what),
                         sizesOf(file.shape(), type.bufferRank, what));
   }
-  const NumberArray array = readCsv(buffer.file, buffer.columns);
+  const NumberArray array = extension == ".ply"
+                                ? readPly(buffer.file, buffer.element, buffer.columns)
+                                : readCsv(buffer.file, buffer.columns);
   const std::size_t given = checkShape(buffer.file, array.shape, type, numbers, what);
   return Value::block(wordsOf(array.numbers, given, type, colorComponents, what),
                       sizesOf(array.shape, type.bufferRank, what));
@@ -237,13 +259,15 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
 std::size_t lengthOf(const BufferDescription &buffer) {
   if (!buffer.shape.empty())
     return buffer.shape.front();
-  const std::string extension = std::filesystem::path(buffer.file).extension().string();
+  const std::string extension = extensionOf(buffer);
   if (extension == ".npy") {
     const NpyFile file(buffer.file, NpyFile::Part::Header);
     return file.shape().empty() ? 1 : file.shape().front();
   }
   if (extension == ".csv")
     return readCsv(buffer.file, buffer.columns).shape.front();
+  if (extension == ".ply")
+    return plyCount(buffer.file, buffer.element);
   throw Error(ErrorCode::MissingKey,
               fmt::format("`{}` has no format that says how many elements it has: give `shape`",
                           buffer.file));

@@ -1,7 +1,7 @@
 //===- BufferFiles.h - buffers of a scene that are no lists ---------------===//
 //
 // {"buffer": "points.npy"} in place of a list (docs/scene-format.md#buffers): NumPy's .npy, columns
-// of .csv, or elements as they lie in memory. {"size": [480, 640]}: zeros.
+// of .csv and .ply, or elements as they lie in memory. {"size": [480, 640]}: zeros.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,7 +18,8 @@ namespace rtsl::scene {
 
 struct BufferDescription {
   std::string file;                 // resolved; empty: zeros
-  std::vector<std::string> columns; // of .csv; empty: all
+  std::string element = "vertex";   // of .ply: whose columns
+  std::vector<std::string> columns; // of .csv and .ply; empty: all
   // of zeros, or of a file without a format: then empty is one dimension
   std::vector<std::uint32_t> shape;
 };

@@ -117,26 +117,6 @@ bool isNumber(std::string_view text, double &number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// The places of the chosen columns among the names of the file.
-std::vector<std::size_t> placesOf(const std::string &path, const std::vector<std::string> &columns,
-                                  const std::vector<std::string> &names) {
-  std::vector<std::size_t> places;
-  for (const std::string &column : columns) {
-    const auto found = std::find(names.begin(), names.end(), column);
-    if (found == names.end()) {
-      const std::string near = closestName(column, names);
-      throw Error(ErrorCode::UnknownName,
-                  fmt::format("`{}` has no column `{}`{}", path, column,
-                              names.empty() ? ": its first line has no names"
-                              : near.empty()
-                                  ? fmt::format("; it has `{}`", fmt::join(names, "`, `"))
-                                  : fmt::format("; did you mean `{}`?", near)));
-    }
-    places.push_back(static_cast<std::size_t>(found - names.begin()));
-  }
-  return places;
-}
-
 } // namespace
 
 /// The beginning of a file, as much as a header can be.
@@ -200,6 +180,23 @@ std::vector<double> NpyFile::numbers() const {
   return numbers;
 }
 
+std::vector<std::size_t> placesOf(const std::string &where, const std::vector<std::string> &columns,
+                                  const std::vector<std::string> &names) {
+  std::vector<std::size_t> places;
+  for (const std::string &column : columns) {
+    const auto found = std::find(names.begin(), names.end(), column);
+    if (found == names.end()) {
+      const std::string near = closestName(column, names);
+      throw Error(ErrorCode::UnknownName,
+                  fmt::format("{} has no column `{}`; it has `{}`{}", where, column,
+                              fmt::join(names, "`, `"),
+                              near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+    }
+    places.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  return places;
+}
+
 NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns) {
   const std::string file = readFile(path);
   std::string_view text = file;
@@ -218,7 +215,11 @@ NumberArray readCsv(const std::string &path, const std::vector<std::string> &col
       const bool hasNames = !isNumber(cells.front(), number);
       if (hasNames)
         names.assign(cells.begin(), cells.end());
-      places = placesOf(path, columns, names);
+      if (!hasNames && !columns.empty())
+        throw Error(ErrorCode::UnknownName,
+                    fmt::format("`{}` has no column `{}`: its first line has no names", path,
+                                columns.front()));
+      places = placesOf(fmt::format("`{}`", path), columns, names);
       for (std::size_t i = 0; columns.empty() && i < width; ++i)
         places.push_back(i);
       if (hasNames)

@@ -39,4 +39,9 @@ private:
 /// them, in this order; empty: all. Throws BadBuffer, UnknownName, and the errors of reading a file.
 NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns);
 
+/// The places of the chosen columns among the names of a file. `where` begins the message. Throws
+/// UnknownName.
+std::vector<std::size_t> placesOf(const std::string &where, const std::vector<std::string> &columns,
+                                  const std::vector<std::string> &names);
+
 } // namespace rtsl::scene

@@ -154,7 +154,7 @@ private:
 } // namespace
 
 std::optional<Mesh> readPlainPly(std::string_view bytes) {
-  if (bytes.substr(0, 4) != "ply\n" && bytes.substr(0, 5) != "ply\r\n")
+  if (!isPly(bytes))
     return std::nullopt;
   const std::optional<Header> header = readHeader(bytes);
   if (!header)

@@ -22,12 +22,28 @@ Type typeOf(const std::string &name) {
   return Type::None;
 }
 
+/// False for a format that PLY does not have.
+bool formatOf(const std::string &name, Format &format) {
+  static constexpr std::pair<const char *, Format> formats[] = {
+      {"ascii", Format::Ascii},
+      {"binary_little_endian", Format::LittleEndian},
+      {"binary_big_endian", Format::BigEndian}};
+  for (const auto &[known, meant] : formats)
+    if (name == known) {
+      format = meant;
+      return true;
+    }
+  return false;
+}
+
 } // namespace
 
-std::optional<Header> readHeader(std::string_view bytes) {
+std::optional<Header> readHeader(std::string_view bytes, std::size_t *lines) {
   Header header;
-  std::size_t position = 0;
+  std::size_t position = 0, count = 0;
   while (position < bytes.size()) {
+    if (lines)
+      *lines = ++count;
     std::size_t newline = bytes.find('\n', position);
     if (newline == std::string_view::npos)
       return std::nullopt;
@@ -41,9 +57,8 @@ std::optional<Header> readHeader(std::string_view bytes) {
     }
     if (word == "format") {
       line >> type;
-      header.format = type == "ascii"                  ? Format::Ascii
-                      : type == "binary_little_endian" ? Format::LittleEndian
-                                                       : Format::BigEndian;
+      if (!formatOf(type, header.format))
+        return std::nullopt;
     } else if (word == "element") {
       Element element;
       if (!(line >> element.name >> element.count))

@@ -1,7 +1,7 @@
 //===- PlyFormat.h - header and values of PLY files -----------------------===//
 //
 // What a PLY file declares, and its values one after the other, in text and in both byte orders.
-// PlyFile.h reads meshes by it.
+// PlyFile.h reads meshes by it, and scenefile/PlyColumns.h columns of numbers.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -49,8 +49,14 @@ inline bool isFloating(Type type) {
   return type == Type::Float || type == Type::Double;
 }
 
-/// Nothing if the header is damaged or does not end.
-std::optional<Header> readHeader(std::string_view bytes);
+/// Is it the first line of a PLY file?
+inline bool isPly(std::string_view bytes) {
+  return bytes.substr(0, 4) == "ply\n" || bytes.substr(0, 5) == "ply\r\n";
+}
+
+/// Nothing if the header is damaged or does not end: `lines` is then the line that is at fault, or
+/// how many lines there are, and else that of `end_header`.
+std::optional<Header> readHeader(std::string_view bytes, std::size_t *lines = nullptr);
 
 /// Steps over values. Functions return false at the end of the data, or if a value is not valid.
 class Body {
@@ -60,6 +66,8 @@ public:
         format(header.format) {}
 
   std::size_t bytesLeft() const { return std::size_t(end - position); }
+  /// Of text: the last word that was read, which is at fault after a failure; empty at the end.
+  std::string_view lastWord() const { return word; }
 
   bool skip(const Property &property) {
     std::uint64_t count = 1;
@@ -83,6 +91,26 @@ public:
     if (format == Format::Ascii)
       return readWord(count);
     return !isFloating(type) && readBits(sizeOf(type), count) && !isNegative(type, count);
+  }
+
+  /// A number that the type can hold; a float may be NaN or infinite.
+  bool readNumber(Type type, double &number) {
+    if (format == Format::Ascii)
+      return readWord(number) && (isFloating(type) || isInteger(type, number));
+    std::uint64_t bits;
+    if (!readBits(sizeOf(type), bits))
+      return false;
+    if (type == Type::Double) {
+      std::memcpy(&number, &bits, sizeof number);
+    } else if (type == Type::Float) {
+      float single;
+      const auto low = std::uint32_t(bits);
+      std::memcpy(&single, &low, sizeof single);
+      number = double(single);
+    } else {
+      number = double(bits) - (isNegative(type, bits) ? std::ldexp(1.0, bitsOf(type)) : 0.0);
+    }
+    return true;
   }
 
   /// A finite number.
@@ -109,12 +137,12 @@ private:
     position = std::find_if_not(position, end, isSpace);
     const char *start = position;
     position = std::find_if(position, end, isSpace);
-    return {start, std::size_t(position - start)};
+    return word = {start, std::size_t(position - start)};
   }
 
   template <typename Number>
   bool readWord(Number &number) {
-    const std::string_view word = nextWord();
+    nextWord();
     const char *last = word.data() + word.size();
     const auto [after, error] = std::from_chars(word.data(), last, number);
     return error == std::errc() && after == last;
@@ -132,13 +160,26 @@ private:
     return true;
   }
 
+  static int bitsOf(Type type) { return 8 * int(sizeOf(type)); }
+
+  static bool isSigned(Type type) {
+    return type == Type::Int8 || type == Type::Int16 || type == Type::Int32;
+  }
+
   static bool isNegative(Type type, std::uint64_t bits) {
-    const bool isSigned = type == Type::Int8 || type == Type::Int16 || type == Type::Int32;
-    return isSigned && bits >> (8 * sizeOf(type) - 1) != 0;
+    return isSigned(type) && bits >> (bitsOf(type) - 1) != 0;
+  }
+
+  /// Is it one of those of the type?
+  static bool isInteger(Type type, double number) {
+    const int bits = bitsOf(type) - isSigned(type);
+    const double lowest = isSigned(type) ? -std::ldexp(1.0, bits) : 0.0;
+    return number >= lowest && number < std::ldexp(1.0, bits) && number == std::floor(number);
   }
 
   const char *position, *end;
   Format format;
+  std::string_view word;
 };
 
 } // namespace rtsl::runtime::ply

@@ -1,4 +1,4 @@
-"""Buffers from files: .npy, .csv and bytes, as members of every type, and files that are wrong."""
+"""Buffers from files: .npy, .csv, .ply and bytes, as members of every type, and files that are wrong."""
 
 import json
 import random
@@ -41,6 +41,10 @@ class Objects : rt_RayGeneration { public rt_Texture textures[]; void generate()
 
 
 class Buffers(Case):
+    PLY = ("ply\nformat %s 1.0\nelement cone 1\nproperty list uchar float heights\nproperty double tilt\nelement vertex 2\nproperty float x\n"
+           "property float y\nproperty double z\nproperty uchar shade\nproperty int id\nelement face 1\nproperty list uchar int corners\n"
+           "end_header\n")
+
     def setUp(self):
         super().setUp()
         self.write("show.rtsl", SHADERS)
@@ -96,6 +100,46 @@ class Buffers(Case):
         self.write("plain.csv", "1,2\n3,4\n")
         self.scene(table={"buffer": "plain.csv"})
         self.assertEqual([line[3] for line in self.printed()], [1, 2, 3, 4])
+
+    def test_columns_of_ply(self):
+        rows = [(1, 2, 3, 255, -7), (-4.5, 0.5, 6, 0, 70000)]
+        files = {"ascii": b"2 1 2 0.75\n" + b"".join(" ".join(map(str, row)).encode() + b"\n" for row in rows) + b"3 0 1 1\n"}
+        for name, order in (("binary_little_endian", "<"), ("binary_big_endian", ">")):
+            files[name] = (struct.pack(order + "B2fd", 2, 1, 2, 0.75) + b"".join(struct.pack(order + "2fdBi", *row) for row in rows) +
+                           struct.pack(order + "B3i", 3, 0, 1, 1))
+        for name, body in files.items():
+            self.write("points.ply", (self.PLY % name).encode() + body)
+            self.scene(points={"buffer": "points.ply", "columns": ["z", "x", "y"]}, whole={"buffer": "points.ply", "columns": ["id"]},
+                       positive={"buffer": "points.ply", "element": "vertex", "columns": ["shade"]}, table={"buffer": "points.ply"},
+                       numbers={"buffer": "points.ply", "element": "cone"})
+            self.assertEqual(self.printed(), [[0, 0.75], *[[1, i, j, v] for i, row in enumerate(rows)
+                                                           for j, v in enumerate(row)],
+                                              [3, 3, 1, 2], [3, 6, -4.5, 0.5], [6, -7], [6, 70000], [7, 255], [7, 0]], name)
+
+    def test_wrong_columns_of_ply(self):
+        good = self.PLY % "ascii" + "2 1 2 0.75\n1 2 3 255 -7\n4 5 6 0 70000\n3 0 1 1\n"
+        self.write("points.ply", good)
+        self.wrong("numbers", {"buffer": "points.ply", "columns": ["w"]}, "E0806", "has no column `w`; it has `x`, `y`, `z`, `shade`, `id`")
+        self.wrong("numbers", {"buffer": "points.ply", "element": "edge"}, "E0806", "has no element `edge`; it has `cone`, `vertex`, `face`")
+        self.wrong("numbers", {"buffer": "points.ply", "element": "cone", "columns": ["heights"]}, "E0808", "is a list")
+        self.wrong("numbers", {"buffer": "points.ply"}, "E0804", "has the shape (2, 5)")
+        self.wrong("positive", {"buffer": "points.ply", "columns": ["id"]}, "E0805", "from 0 to 4294967295")
+        self.write("points.ply", good[:-3])
+        self.wrong("points", {"buffer": "points.ply", "columns": ["x", "y", "z"]}, "E0906", "cut short or damaged in element 1 of 1 of `face`")
+        self.write("points.ply", good.replace("255", "256"))
+        self.wrong("points", {"buffer": "points.ply", "columns": ["x", "y", "z"]}, "E0906", "`256` in line 16 is nothing that `shade`")
+        self.write("points.ply", b"solid")
+        self.wrong("points", {"buffer": "points.ply"}, "E0906", "no .ply file")
+        self.wrong("numbers", {"buffer": "numbers.raw", "element": "vertex"}, "E0802", "`element` is for .ply files")
+        self.wrong("numbers", {"buffer": "numbers.raw", "columns": ["x"]}, "E0802", "`columns` is for .csv and .ply files")
+        self.wrong("points", {"buffer": "points.ply", "shape": [2]}, "E0802", "`shape` is for files without a format")
+
+    def test_launch_of_the_size_of_a_ply(self):
+        self.write("count.rtsl", "class Count : rt_RayGeneration { public float xs[]; void generate() { uint i = rt_LaunchIndex.x; print(i, xs[i]); } };")
+        self.write("xs.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n5 6 7\n")
+        self.write("scene.json", json.dumps({"rtsl": 1, "import": ["count.rtsl"], "rayGeneration": {"class": "Count", "xs": {"buffer": "xs.ply"}},
+                                             "render": {"engine": "programs", "size": "xs", "spp": 1}}))
+        self.assertEqual(self.printed(), [[0, 5], [1, 6], [2, 7]])
 
     def test_bytes(self):
         self.write("numbers.raw", struct.pack("<4f", 1, 2, 3, 4))

@@ -1,10 +1,10 @@
 //===- GltfFiles.h - small glTF files, for tests --------------------------===//
 #pragma once
 
+#include "Folder.h"
+
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -63,29 +63,5 @@ inline std::string container(std::string json, const std::string &binary) {
       (binary.empty() ? "" : word(binary.size()) + std::string("BIN\0", 4) + binary);
   return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
 }
-
-/// A folder for files, which is removed with it.
-class Folder {
-public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "gltf-XXXXXX").string();
-    path = mkdtemp(name.data());
-  }
-  Folder(const Folder &) = delete;
-  ~Folder() { std::filesystem::remove_all(path); }
-
-  void write(const std::string &name, const std::string &bytes) const {
-    std::ofstream(path + "/" + name, std::ios::binary) << bytes;
-  }
-  /// A text without the folder's name.
-  std::string without(std::string text) const {
-    for (std::size_t at = text.find(path + "/"); at != std::string::npos;
-         at = text.find(path + "/"))
-      text.erase(at, path.size() + 1);
-    return text;
-  }
-
-  std::string path;
-};
 
 } // namespace rtsl::scene::test
