@@ -110,8 +110,9 @@ protected:
 } // namespace
 
 TEST_F(PlyColumns, AllTypesInTextAndBothByteOrders) {
-  const Numbers expected = {-128, 255, -32768, 65535, -2147483648.0, 4294967295.0, 0.5,  1e300,
-                            127,  0,   32767,  0,     2147483647,    0,            -1.5, -0.1};
+  const Numbers expected = {-128,       255,   -32768, 65535, -2147483648.0, 4294967295.0,
+                            0.5,        1e300, 127,    0,     32767,         0,
+                            2147483647, 0,     -1.5,   -0.1};
   for (const std::string &file : {text(), Binary::file(false), Binary::file(true)}) {
     const NumberArray all = read(file);
     EXPECT_EQ(all.shape, (Sizes{2, 8}));
