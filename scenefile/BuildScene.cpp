@@ -1,6 +1,7 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "scenefile/MeshFiles.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/VariablePlaces.h"
 #include "scenefile/Variables.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
@@ -31,9 +32,10 @@ public:
   SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
                NamedBuffers &buffers)
       : description(description), program(*program), variables(description, *program),
-        buffers(buffers), scene(std::move(program)), files(description),
-        images(description,
-               [this](const std::string &className) { return readsLevels(className); }) {}
+        variablePlaces(description), buffers(buffers), scene(std::move(program)),
+        files(description), images(description, [this](const std::string &className) {
+          return readsLevels(className);
+        }) {}
 
   Scene build() {
     attempt([&] {
@@ -162,7 +164,20 @@ private:
             values.members.push_back({member.name, outputOf(member, name), object.place});
           });
     ofMembers.throwIfAny();
+    if (classInfo && leavesOut(*classInfo, values))
+      values.variablePlaces = variablePlaces.of(object);
     return scene.addObject(object.className.text, values, name);
+  }
+
+  /// Is a public member without a default not set?
+  static bool leavesOut(const ClassInfo &classInfo, const ObjectValues &values) {
+    const auto isSet = [&](const MemberInfo &member) {
+      return std::any_of(values.members.begin(), values.members.end(),
+                         [&](const NamedValue &one) { return one.name == member.name; });
+    };
+    return std::any_of(classInfo.members.begin(), classInfo.members.end(), [&](const auto &one) {
+      return one.isPublic && !one.hasDefault && !isSet(one);
+    });
   }
 
   Value bufferOf(const BufferDescription &buffer, const ValueType &type, const std::string &what,
@@ -552,6 +567,7 @@ private:
       &description.materials}; // of named objects
   const Program &program;
   Variables variables;
+  VariablePlaces variablePlaces;
   NamedBuffers &buffers;
   Scene scene;
   std::map<std::pair<std::string, Variables::Taken>, RtslRef> made; // 0: being created

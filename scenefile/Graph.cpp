@@ -84,10 +84,15 @@ public:
       return;
     for (std::size_t number = 0; number < roots.size(); ++number)
       placeInstances(number);
-    for (Node &node : nodes)
-      if (node.geometry && !node.geometry->placements.empty())
-        scene.objects.push_back(std::move(*node.geometry));
-    warnOfUnused(named);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (auto &geometry = nodes[i].geometry; geometry && !geometry->placements.empty()) {
+        geometry->node = i;
+        scene.objects.push_back(std::move(*geometry));
+      }
+    const std::vector<bool> isUsed = usedNodes();
+    mentionNodes(isUsed);
+    if (named)
+      warnOfUnused(*named, isUsed);
   }
 
 private:
@@ -358,6 +363,7 @@ private:
       way.scope = addScope(scene, way.scope, node.variables);
     if (node.selector) {
       SelectorDescription selector;
+      selector.node = static_cast<std::size_t>(&node - nodes.data());
       selector.object = *node.selector;
       selector.children = std::uint32_t(node.children.size());
       selector.toWorld = way.transform;
@@ -408,9 +414,8 @@ private:
     return {instance.transform, instance.id, instance.selector, instance.scope};
   }
 
-  void warnOfUnused(const JsonValue *named) {
-    if (!named)
-      return;
+  /// Those that a root leads to.
+  std::vector<bool> usedNodes() const {
     std::vector<bool> isUsed(nodes.size(), false);
     for (const Edge &edge : roots)
       isUsed[edge.node] = true;
@@ -418,7 +423,21 @@ private:
       if (isUsed[*number])
         for (const Edge &child : nodes[*number].children)
           isUsed[child.node] = true;
-    for (std::size_t i = 0; i < named->members.size(); ++i)
+    return isUsed;
+  }
+
+  void mentionNodes(const std::vector<bool> &isUsed) {
+    scene.nodes.resize(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      scene.nodes[i].name = {nodes[i].name, nodes[i].place};
+      if (isUsed[i])
+        for (const Edge &child : nodes[i].children)
+          scene.nodes[child.node].parents.push_back(i);
+    }
+  }
+
+  void warnOfUnused(const JsonValue &named, const std::vector<bool> &isUsed) {
+    for (std::size_t i = 0; i < named.members.size(); ++i)
       if (!isUsed[i] && !gltf::isModel(nodes[i].place.file))
         scene.warnings.push_back(
             {fmt::format("the node `{}` is not part of the scene: no root leads to it",

@@ -24,8 +24,8 @@ struct NodeReaders {
 };
 
 /// Reads `nodes`, and `root` or `roots`, of a scene: appends the geometries that a root leads to,
-/// with their instances, to `scene.objects`, and lights to `scene.lights`, and sets `scene.roots`, `scene.selectors` and
-/// `scene.scopes`. Nodes that no root leads to are noted in `scene.warnings`. Adds mistakes to
+/// with their instances, to `scene.objects`, and lights to `scene.lights`, and sets `scene.roots`, `scene.nodes`,
+/// `scene.selectors` and `scene.scopes`. Nodes that no root leads to are noted in `scene.warnings`. Adds mistakes to
 /// `errors`.
 void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescription &scene,
                ErrorCollector &errors);

@@ -77,8 +77,15 @@ struct VariableScope {
   }
 };
 
+/// A node that a root leads to, for messages about what is below it.
+struct NodeMention {
+  LocatedName name;                 // empty text: written in place
+  std::vector<std::size_t> parents; // indices, perhaps repeated
+};
+
 /// A selector above instances, once for each way to it.
 struct SelectorDescription {
+  std::size_t node = 0;        // an index in `nodes`
   ReferenceDescription object; // of an rt_Selector class
   std::uint32_t children = 0;
   runtime::MovingTransform toWorld;
@@ -102,6 +109,7 @@ struct MeshPath {
 /// A mesh or a primitive with a material, and its instances.
 struct GeometryDescription {
   LocatedName name;                           // for messages; empty text: none
+  std::optional<std::size_t> node;            // an index in `nodes`; none: it is in `objects`
   std::optional<ObjectDescription> primitive; // or
   std::vector<MeshPath> mesh;                 // of a mesh: its keys, or its only file
   std::vector<float> meshTimes;               // of several keys
@@ -155,6 +163,7 @@ struct SceneDescription {
   std::vector<PassDescription> passes;              // empty: the one launch that `render` describes
   std::vector<GeometryDescription> objects;         // those of nodes come last
   std::vector<SelectorDescription> selectors;       // those above others come first
+  std::vector<NodeMention> nodes; // empty, if a mistake keeps them from being read
   // the first is that of the scene, above all nodes
   std::vector<std::shared_ptr<VariableScope>> scopes{std::make_shared<VariableScope>()};
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0

@@ -1,5 +1,7 @@
 #include "scenefile/Variables.h"
 
+#include "scenefile/References.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,32 +41,17 @@ void Variables::addTaken(const ObjectDescription &object, Taken &taken, Seen &se
   const runtime::ClassInfo *classInfo = program.find(object.className.text);
   if (!classInfo)
     return;
+  const auto visit = [&](const ObjectDescription &other, bool isNamed) {
+    if (!isNamed || seen.insert(&other).second)
+      addTaken(other, taken, seen);
+  };
   for (const runtime::MemberInfo &member : classInfo->members)
     if (const VariableDefinition *definition = of(member, object);
         definition && taken.insert(definition->second).second) {
       const Taking taking(*this, *definition);
-      addTaken(*definition->second, taken, seen);
+      forEachReferred(description, *definition->second, visit);
     }
-  if (object.constructor)
-    forEachValue(*object.constructor,
-                 [&](const JsonValue &value) { addTaken(value, taken, seen); });
-  for (const auto &member : object.members)
-    addTaken(*member.second, taken, seen);
-}
-
-void Variables::addTaken(const JsonValue &value, Taken &taken, Seen &seen) const {
-  using Kind = JsonValue::Kind;
-  if (value.kind == Kind::String) {
-    if (const ObjectDescription *object = findObject(description, value.string);
-        object && seen.insert(object).second)
-      addTaken(*object, taken, seen);
-  } else if (const JsonValue *className = value.find("class");
-             className && className->kind == Kind::String) {
-    addTaken(objectInPlace(value, "an object"), taken, seen);
-  } else if (value.kind == Kind::Array) {
-    for (const JsonValue &element : value.elements)
-      addTaken(element, taken, seen);
-  }
+  forEachReferred(description, object, visit);
 }
 
 std::vector<Warning> Variables::warnings() const {

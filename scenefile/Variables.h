@@ -55,7 +55,6 @@ public:
 private:
   using Seen = std::set<const ObjectDescription *>;
   void addTaken(const ObjectDescription &object, Taken &taken, Seen &seen) const;
-  void addTaken(const JsonValue &value, Taken &taken, Seen &seen) const;
 
   const SceneDescription &description;
   const runtime::Program &program;

@@ -126,6 +126,13 @@ void storeMembers(const ClassInfo &classInfo, const std::string &name, const Obj
   errors.throwIfAny();
 }
 
+/// Where a member could be set besides its object, as the end of a message.
+static std::string elsewhere(const char *before, const ObjectValues &values) {
+  return values.variablePlaces.empty()
+             ? ""
+             : fmt::format("{} a variable of this name in {}", before, values.variablePlaces);
+}
+
 void checkUnset(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
                 const std::uint8_t *record, std::vector<Warning> &warnings) {
   for (const MemberInfo &member : classInfo.members) {
@@ -141,12 +148,14 @@ void checkUnset(const ClassInfo &classInfo, const std::string &name, const Objec
       std::memcpy(&reference, record + member.offset, 4);
       if (reference == 0)
         throw Error(ErrorCode::MissingMember,
-                    fmt::format("`{}` refers to nothing: set member `{}` of class `{}`, a `{}`",
-                                name, member.name, classInfo.name, member.type.className),
+                    fmt::format("`{}` refers to nothing: set member `{}` of class `{}`, a `{}`{}",
+                                name, member.name, classInfo.name, member.type.className,
+                                elsewhere(", or", values)),
                     values.place);
     } else if (!classInfo.hasConstructor && member.type.bufferRank == 0) {
-      warnings.push_back({fmt::format("member `{}` of `{}` is not set and has no default: it is 0",
-                                      member.name, name),
+      warnings.push_back({fmt::format("member `{}` of `{}` is not set and has no default: it is "
+                                      "0{}",
+                                      member.name, name, elsewhere("; set it, or", values)),
                           values.place});
     }
   }

@@ -19,6 +19,8 @@ struct ObjectValues {
   std::variant<std::monostate, std::vector<Value>, std::vector<NamedValue>> constructor;
   std::vector<NamedValue> members;
   std::optional<Place> place; // of the object, for messages
+  /// Where variables could set members that are not set, as "`car` or the scene"; empty: nowhere.
+  std::string variablePlaces;
 };
 
 /// Where an instance is, and for which rays.

@@ -314,6 +314,30 @@ class Selectors(GraphCase):
 
 
 class Variables(GraphCase):
+    def test_members_that_nothing_sets(self):
+        """A warning, or an error for a reference, that lists the nodes whose variables could set it."""
+        self.write("Bare.rtsl", "class Bare : rt_Material { public float glow; public rt_Texture grain; public optional rt_Texture film;\n"
+                   "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * grain.lookup(); } };\n"
+                   "class Flat : rt_Texture { public float level; void lookup() { rt_TextureColor = color(level); } };\n")
+
+        def bare(material, **variables):
+            nodes = {"ball": {**balls([0, 0, 0, 1]), "material": "bare"}, "row": {"children": ["ball", {"child": "ball", "transform": SQUASHED}]},
+                     "root": {"child": "row", "variables": variables}, "unused": {"child": "ball"}}
+            return scene(nodes, root="root", materials={"bare": {"class": "Bare", **material}}, textures={"flat": {"class": "Flat"}}, variables={},
+                         **{"import": ["Graph.rtsl", "Bare.rtsl"]})
+
+        places = r"a variable of this name in `ball` \(line \d+\), `row` \(line \d+\), a node \(line \d+\), `root` \(line \d+\) or the scene"
+        _, warned = self.render(bare({"grain": "flat"}))
+        for member in ("`glow` of `bare`", "`level` of `flat`"):
+            self.assertRegex(warned, r"warning\[W2800\]: member " + member + " is not set and has no default: it is 0; set it, or " + places)
+        self.assertNotIn("`film`", warned)
+        self.assertNotIn("`dim`", warned)
+        _, warned = self.render(bare({"grain": "flat"}, glow=0.5, level=0.25))
+        self.assertNotIn("is not set", warned)
+        path = self.write("scene.json", json.dumps(bare({"glow": 1}), indent=1))
+        error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
+        self.assertRegex(error, r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a `rt_Texture`, or " + places)
+
     def tinted(self, material, **nodes):
         return scene({"b": balls(*CLUSTER), "root": {"children": ["b"]}, **nodes}, root="root", materials={"paint": material},
                      variables={})

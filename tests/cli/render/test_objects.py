@@ -78,7 +78,7 @@ class Objects(Case):
     def test_a_reference_that_is_not_optional_is_set(self):
         self.scene(textures={"t0": {"class": "Layered"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
-        self.assertIn("`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`", error)
+        self.assertIn("`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`, or a variable of this name in ", error)
         self.scene(textures={"t0": {"class": "Layered", "noise": None}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
         self.assertIn("member `noise` of `t0` cannot be null", error)

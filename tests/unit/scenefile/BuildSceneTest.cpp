@@ -238,7 +238,8 @@ TEST(BuildScene, MembersLeftOutAreWarnedOf) {
   Scene scene = build("\"background\": {\"class\": \"Sky\", \"low\": 1}");
   ASSERT_EQ(scene.warnings().size(), 1u);
   EXPECT_EQ(scene.warnings()[0].message,
-            "member `high` of `background` is not set and has no default: it is 0");
+            "member `high` of `background` is not set and has no default: it is 0; set it, or a "
+            "variable of this name in the scene");
 }
 
 TEST(BuildScene, MeshErrorsPointIntoTheScene) {
