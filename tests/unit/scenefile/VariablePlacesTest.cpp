@@ -20,7 +20,8 @@ SceneDescription parse(const std::string &more) {
                     "s.json");
 }
 
-const std::string graph = R"("materials": {"m": {"class": "M", "texture": "t"}, "other": {"class": "M"}},
+const std::string graph =
+    R"("materials": {"m": {"class": "M", "texture": "t"}, "other": {"class": "M"}},
 "textures": {"t": {"class": "T", "below": ["u", 3]}, "u": {"class": "U"}, "v": {"class": "V"}},
 "nodes": {
   "a": {"primitive": {"class": "P"}, "material": "m"},
