@@ -8,6 +8,12 @@
 
 namespace rtsl {
 
+/// Compiles only if each row of the table has a number of its own.
+enum class Number : std::uint16_t {
+#define RTSL_DIAGNOSTIC(id, number, severity, message) number,
+#include "frontend/diagnostics/DiagnosticCodes.def"
+};
+
 const std::vector<CodeInfo> codeTable = {
 #define RTSL_DIAGNOSTIC(id, number, severity, message) {#id, #number, Severity::severity, message},
 #define RTSL_WARNING(id, number, group, name, message)                                             \
