@@ -7,6 +7,7 @@
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Models.h"
 #include "scenefile/Reader.h"
+#include "scenefile/SettingsReader.h"
 #include "scenefile/TransformReader.h"
 #include "scenefile/gltf/Mesh.h"
 #include "support/AtomicFile.h"
@@ -308,7 +309,7 @@ private:
       pass.rayGeneration = readObject(require(value, "rayGeneration", "a pass"), "`rayGeneration`");
       pass.render = scene.render;
       pass.render.engine = runtime::Engine::Programs;
-      readSettings(value, pass.render, value.find("rayGeneration"));
+      readSettings(value, pass.render, scene, value.find("rayGeneration"));
       scene.passes.push_back(std::move(pass));
     });
     const JsonValue *passes = root.find("passes");
@@ -518,64 +519,7 @@ private:
       if (engine->string != "classic")
         render.engine = runtime::Engine::Programs;
     }
-    readSettings(value, render, root.find("rayGeneration"));
-  }
-
-  /// The number of elements of a buffer, by its name in `buffers` or as a member of the ray
-  /// generation.
-  std::uint32_t lengthOfBuffer(const JsonValue &name, const JsonValue *rayGeneration) const {
-    const JsonValue *value = rayGeneration && rayGeneration->kind == Kind::Object
-                                 ? rayGeneration->find(name.string)
-                                 : nullptr;
-    const std::string &called = value && value->kind == Kind::String ? value->string : name.string;
-    if (const auto named = scene.buffers.find(called); named != scene.buffers.end())
-      value = named->second;
-    if (value && value->kind == Kind::Array && !value->elements.empty())
-      return static_cast<std::uint32_t>(value->elements.size());
-    const auto buffer = value ? scene.bufferValues.find(value) : scene.bufferValues.end();
-    if (buffer == scene.bufferValues.end())
-      throw Error(ErrorCode::UnknownName,
-                  fmt::format("`size` is two numbers, one, or the name of a buffer that the scene "
-                              "gives, and `{}` is none",
-                              name.string),
-                  name.place());
-    try {
-      const std::size_t length = lengthOf(buffer->second);
-      if (length == 0 || length > runtime::mostLaunchWidth)
-        throw Error(ErrorCode::OutOfRange,
-                    fmt::format("a launch of the size of `{}` has {} indices; it may have 1 to {}",
-                                name.string, length, runtime::mostLaunchWidth));
-      return static_cast<std::uint32_t>(length);
-    } catch (Error &error) {
-      error.place = name.place();
-      throw;
-    }
-  }
-
-  /// What `render` and a pass may both say.
-  void readSettings(const JsonValue &value, RenderSettings &render,
-                    const JsonValue *rayGeneration) const {
-    if (const JsonValue *size = value.find("size")) {
-      if (size->kind == Kind::String) {
-        render.width = lengthOfBuffer(*size, rayGeneration);
-        render.height = 1;
-      } else if (size->kind == Kind::Array && size->elements.size() == 1) {
-        render.width = readInteger(size->elements[0], 1, runtime::mostLaunchWidth, "the size");
-        render.height = 1;
-      } else {
-        readNumbers(*size, 2, "`size`");
-        render.width = readInteger(size->elements[0], 1, runtime::mostPixelsOfSide, "the width");
-        render.height = readInteger(size->elements[1], 1, runtime::mostPixelsOfSide, "the height");
-      }
-    }
-    if (const JsonValue *spp = value.find("spp")) {
-      render.samplesPerPixel = readInteger(*spp, 1, runtime::mostSamplesPerPixel, "`spp`");
-      render.hasSamples = true;
-    }
-    if (const JsonValue *depth = value.find("depth"))
-      render.depth = readInteger(*depth, 0, runtime::maxRayDepth, "`depth`");
-    if (const JsonValue *seed = value.find("seed"))
-      render.seed = readInteger(*seed, 0, 0xffffffff, "`seed`");
+    readSettings(value, render, scene, root.find("rayGeneration"));
   }
 
   const JsonValue &root;

@@ -1,0 +1,70 @@
+//===- SettingsReader.cpp - size, samples, depth and seed -----------------===//
+#include "scenefile/SettingsReader.h"
+
+#include "scenefile/BufferFiles.h"
+#include "scenefile/Reader.h"
+
+#include <fmt/format.h>
+
+namespace rtsl::scene {
+
+using Kind = JsonValue::Kind;
+
+/// The number of elements of a buffer, by its name in `buffers` or as a member of the ray
+/// generation.
+static std::uint32_t lengthOfBuffer(const JsonValue &name, const SceneDescription &scene,
+                                    const JsonValue *rayGeneration) {
+  const JsonValue *value = rayGeneration && rayGeneration->kind == Kind::Object
+                               ? rayGeneration->find(name.string)
+                               : nullptr;
+  const std::string &called = value && value->kind == Kind::String ? value->string : name.string;
+  if (const auto named = scene.buffers.find(called); named != scene.buffers.end())
+    value = named->second;
+  if (value && value->kind == Kind::Array && !value->elements.empty())
+    return static_cast<std::uint32_t>(value->elements.size());
+  const auto buffer = value ? scene.bufferValues.find(value) : scene.bufferValues.end();
+  if (buffer == scene.bufferValues.end())
+    throw Error(ErrorCode::UnknownName,
+                fmt::format("`size` is two numbers, one, or the name of a buffer that the scene "
+                            "gives, and `{}` is none",
+                            name.string),
+                name.place());
+  try {
+    const std::size_t length = lengthOf(buffer->second);
+    if (length == 0 || length > runtime::mostLaunchWidth)
+      throw Error(ErrorCode::OutOfRange,
+                  fmt::format("a launch of the size of `{}` has {} indices; it may have 1 to {}",
+                              name.string, length, runtime::mostLaunchWidth));
+    return static_cast<std::uint32_t>(length);
+  } catch (Error &error) {
+    error.place = name.place();
+    throw;
+  }
+}
+
+void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
+                  const JsonValue *rayGeneration) {
+  if (const JsonValue *size = value.find("size")) {
+    if (size->kind == Kind::String) {
+      render.width = lengthOfBuffer(*size, scene, rayGeneration);
+      render.height = 1;
+    } else if (size->kind == Kind::Array && size->elements.size() == 1) {
+      render.width = readInteger(size->elements[0], 1, runtime::mostLaunchWidth, "the size");
+      render.height = 1;
+    } else {
+      readNumbers(*size, 2, "`size`");
+      render.width = readInteger(size->elements[0], 1, runtime::mostPixelsOfSide, "the width");
+      render.height = readInteger(size->elements[1], 1, runtime::mostPixelsOfSide, "the height");
+    }
+  }
+  if (const JsonValue *spp = value.find("spp")) {
+    render.samplesPerPixel = readInteger(*spp, 1, runtime::mostSamplesPerPixel, "`spp`");
+    render.hasSamples = true;
+  }
+  if (const JsonValue *depth = value.find("depth"))
+    render.depth = readInteger(*depth, 0, runtime::maxRayDepth, "`depth`");
+  if (const JsonValue *seed = value.find("seed"))
+    render.seed = readInteger(*seed, 0, 0xffffffff, "`seed`");
+}
+
+} // namespace rtsl::scene

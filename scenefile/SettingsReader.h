@@ -1,0 +1,14 @@
+//===- SettingsReader.h - what `render` and a pass may both say -----------===//
+#pragma once
+
+#include "scenefile/SceneFile.h"
+
+namespace rtsl::scene {
+
+/// Reads size, samples, depth and seed, where `value` has them. The size may be the name of a buffer
+/// of the scene, or of a member of the ray generation, null without one. Throws OutOfRange,
+/// WrongType or UnknownName.
+void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
+                  const JsonValue *rayGeneration);
+
+} // namespace rtsl::scene
