@@ -71,6 +71,28 @@ clang::LangOptions languageOptions() {
   return language;
 }
 
+void addFolders(const std::vector<std::string> &folders, clang::FileManager &files,
+                clang::HeaderSearch &search) {
+  for (const std::string &folder : folders)
+    if (const clang::OptionalDirectoryEntryRef directory = files.getOptionalDirectoryRef(folder))
+      search.AddSearchPath(
+          clang::DirectoryLookup(*directory, clang::SrcMgr::C_User, /*isFramework=*/false),
+          /*isAngled=*/true);
+}
+
+/// Adds the tokens of the file to the expanded text, up to its end or the first error that stops.
+void addTokens(Session &session, Watcher &events) {
+  clang::Token token;
+  while (!session.isStopped) {
+    session.preprocessor.Lex(token);
+    if (token.is(clang::tok::eof))
+      break;
+    events.wordIsOut();
+    if (!session.isStopped)
+      session.builder.add(token);
+  }
+}
+
 } // namespace
 
 bool isOfTheLanguage(std::string_view macro) {
@@ -106,12 +128,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
   const NoTarget target;
   const clang::HeaderSearchOptions searchOptions;
   clang::HeaderSearch search(searchOptions, locations, engine, language, &target);
-  for (const std::string &folder : options.includeFolders)
-    if (const clang::OptionalDirectoryEntryRef directory =
-            fileManager.getOptionalDirectoryRef(folder))
-      search.AddSearchPath(
-          clang::DirectoryLookup(*directory, clang::SrcMgr::C_User, /*isFramework=*/false),
-          /*isAngled=*/true);
+  addFolders(options.includeFolders, fileManager, search);
   const clang::PreprocessorOptions preprocessorOptions;
   clang::TrivialModuleLoader modules;
   clang::Preprocessor preprocessor(preprocessorOptions, engine, language, locations, search,
@@ -147,15 +164,7 @@ PreprocessedFile preprocess(FileId file, SourceManager &sources, const Preproces
 
   preprocessor.EnterMainSourceFile();
   origins.setFile(preprocessor.getPredefinesFileID(), sources.add("<language>", definitions));
-  clang::Token token;
-  while (!session.isStopped) {
-    preprocessor.Lex(token);
-    if (token.is(clang::tok::eof))
-      break;
-    events.wordIsOut();
-    if (!session.isStopped)
-      builder.add(token);
-  }
+  addTokens(session, events);
   messages.EndSourceFile();
 
   result.includes = std::move(session.includes);

@@ -24,6 +24,87 @@ struct Twin {
   std::string constant, hidden;
 };
 
+// Patterns of floats with operands of type float: one, two and three.
+const std::vector<std::string> floatsOfOne = {"-({})",
+                                              "abs({})",
+                                              "sign({})",
+                                              "floor({})",
+                                              "ceil({})",
+                                              "trunc({})",
+                                              "round({})",
+                                              "fract({})",
+                                              "sqrt({})",
+                                              "inversesqrt({})",
+                                              "sin({})",
+                                              "cos({})",
+                                              "tan({})",
+                                              "asin({})",
+                                              "acos({})",
+                                              "atan({})",
+                                              "exp({})",
+                                              "log({})",
+                                              "exp2({})",
+                                              "log2({})",
+                                              "sinh({})",
+                                              "cosh({})",
+                                              "tanh({})",
+                                              "asinh({})",
+                                              "acosh({})",
+                                              "atanh({})",
+                                              "radians({})",
+                                              "degrees({})",
+                                              "sinpi({})",
+                                              "cospi({})",
+                                              "expm1({})",
+                                              "log1p({})",
+                                              "refract({}, 1.0, 0.75)",
+                                              "reflect({}, 0.75)",
+                                              "normalize({})",
+                                              "length({})",
+                                              "ldexp({}, -30)",
+                                              "pow({}, 5)",
+                                              "pow({}, -7)",
+                                              "pow({}, 100)",
+                                              "unpackHalf2x16(packHalf2x16(vec2({}))).y",
+                                              "unpackSnorm4x8(packSnorm4x8(vec4({}))).z",
+                                              "unpackSnorm2x16(packSnorm2x16(vec2({}))).y",
+                                              "unpackUnorm2x16(packUnorm2x16(vec2({}))).x",
+                                              "unpackUnorm4x8(packUnorm4x8(vec4({}))).w"};
+const std::vector<std::string> floatsOfTwo = {"({} + {})",
+                                              "({} - {})",
+                                              "({} * {})",
+                                              "({} / {})",
+                                              "min({}, {})",
+                                              "max({}, {})",
+                                              "mod({}, {})",
+                                              "step({}, {})",
+                                              "pow({}, {})",
+                                              "atan({}, {})",
+                                              "dot(vec2({}), vec2(0.5, {}))",
+                                              "length(vec2({}, {}))",
+                                              "distance({}, {})",
+                                              "reflect(vec2({}, 1.0), vec2(0.6, {})).x",
+                                              "faceforward(1.0, {}, {})",
+                                              "determinant(mat2({}, 0.5, {}, 3.0))",
+                                              "inverse(mat2({}, 0.5, {}, 3.0))[0].y",
+                                              "outerProduct(vec2({}, 2.0), vec2(3.0, {}))[1].x",
+                                              "(mat2({}, 0.5, 2.0, {}) * vec2(0.7, -1.5)).x",
+                                              "mix({}, {}, bvec2(true, false).x)"};
+const std::vector<std::string> floatsOfThree = {
+    "clamp({}, {}, {})",
+    "mix({}, {}, {})",
+    "fma({}, {}, {})",
+    "smoothstep({}, {}, {})",
+    "vec3({}, {}, {}).y",
+    "normalize(vec3({}, {}, {})).z",
+    "cross(vec3({}, {}, 1.0), vec3(0.5, {}, 2.0)).z",
+    "perpendicularTo(vec3({}, {}, {})).y",
+    "determinant(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))",
+    "inverse(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))[1].z",
+    "inverse(mat4({}, 1, 2, 3, 5, {}, 7, 1, 1, 0, {}, 2, 1, 1, 4, 1))[2].y",
+    "max(vec3({}, {}, {}))",
+    "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
+
 class Generator {
 public:
   explicit Generator(unsigned seed) : random(seed) {}
@@ -100,85 +181,6 @@ private:
   }
 
   Twin makeFloat(unsigned depth) {
-    static const std::vector<std::string> one = {"-({})",
-                                                 "abs({})",
-                                                 "sign({})",
-                                                 "floor({})",
-                                                 "ceil({})",
-                                                 "trunc({})",
-                                                 "round({})",
-                                                 "fract({})",
-                                                 "sqrt({})",
-                                                 "inversesqrt({})",
-                                                 "sin({})",
-                                                 "cos({})",
-                                                 "tan({})",
-                                                 "asin({})",
-                                                 "acos({})",
-                                                 "atan({})",
-                                                 "exp({})",
-                                                 "log({})",
-                                                 "exp2({})",
-                                                 "log2({})",
-                                                 "sinh({})",
-                                                 "cosh({})",
-                                                 "tanh({})",
-                                                 "asinh({})",
-                                                 "acosh({})",
-                                                 "atanh({})",
-                                                 "radians({})",
-                                                 "degrees({})",
-                                                 "sinpi({})",
-                                                 "cospi({})",
-                                                 "expm1({})",
-                                                 "log1p({})",
-                                                 "refract({}, 1.0, 0.75)",
-                                                 "reflect({}, 0.75)",
-                                                 "normalize({})",
-                                                 "length({})",
-                                                 "ldexp({}, -30)",
-                                                 "pow({}, 5)",
-                                                 "pow({}, -7)",
-                                                 "pow({}, 100)",
-                                                 "unpackHalf2x16(packHalf2x16(vec2({}))).y",
-                                                 "unpackSnorm4x8(packSnorm4x8(vec4({}))).z",
-                                                 "unpackSnorm2x16(packSnorm2x16(vec2({}))).y",
-                                                 "unpackUnorm2x16(packUnorm2x16(vec2({}))).x",
-                                                 "unpackUnorm4x8(packUnorm4x8(vec4({}))).w"};
-    static const std::vector<std::string> two = {"({} + {})",
-                                                 "({} - {})",
-                                                 "({} * {})",
-                                                 "({} / {})",
-                                                 "min({}, {})",
-                                                 "max({}, {})",
-                                                 "mod({}, {})",
-                                                 "step({}, {})",
-                                                 "pow({}, {})",
-                                                 "atan({}, {})",
-                                                 "dot(vec2({}), vec2(0.5, {}))",
-                                                 "length(vec2({}, {}))",
-                                                 "distance({}, {})",
-                                                 "reflect(vec2({}, 1.0), vec2(0.6, {})).x",
-                                                 "faceforward(1.0, {}, {})",
-                                                 "determinant(mat2({}, 0.5, {}, 3.0))",
-                                                 "inverse(mat2({}, 0.5, {}, 3.0))[0].y",
-                                                 "outerProduct(vec2({}, 2.0), vec2(3.0, {}))[1].x",
-                                                 "(mat2({}, 0.5, 2.0, {}) * vec2(0.7, -1.5)).x",
-                                                 "mix({}, {}, bvec2(true, false).x)"};
-    static const std::vector<std::string> three = {
-        "clamp({}, {}, {})",
-        "mix({}, {}, {})",
-        "fma({}, {}, {})",
-        "smoothstep({}, {}, {})",
-        "vec3({}, {}, {}).y",
-        "normalize(vec3({}, {}, {})).z",
-        "cross(vec3({}, {}, 1.0), vec3(0.5, {}, 2.0)).z",
-        "perpendicularTo(vec3({}, {}, {})).y",
-        "determinant(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))",
-        "inverse(mat3({}, 1, 2, {}, 3, 5, 8, 1, {}))[1].z",
-        "inverse(mat4({}, 1, 2, 3, 5, {}, 7, 1, 1, 0, {}, 2, 1, 1, 4, 1))[2].y",
-        "max(vec3({}, {}, {}))",
-        "refract(vec2({}, {}), vec2(0.6, -0.8), {}).x"};
     const Kind f = Kind::Float;
     switch (pick(8)) {
     case 0:
@@ -188,12 +190,13 @@ private:
     case 2:
       return fill("({} ? {} : {})", {Kind::Bool, f, f}, depth);
     case 3:
-      return fill(three[pick(static_cast<unsigned>(three.size()))], {f, f, f}, depth);
+      return fill(floatsOfThree[pick(static_cast<unsigned>(floatsOfThree.size()))], {f, f, f},
+                  depth);
     case 4:
     case 5:
-      return fill(one[pick(static_cast<unsigned>(one.size()))], {f}, depth);
+      return fill(floatsOfOne[pick(static_cast<unsigned>(floatsOfOne.size()))], {f}, depth);
     default:
-      return fill(two[pick(static_cast<unsigned>(two.size()))], {f, f}, depth);
+      return fill(floatsOfTwo[pick(static_cast<unsigned>(floatsOfTwo.size()))], {f, f}, depth);
     }
   }
 

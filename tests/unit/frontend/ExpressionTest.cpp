@@ -11,6 +11,11 @@ namespace {
 using namespace ast;
 using test::Parsed;
 
+// In the order of BinaryOp and UnaryOp.
+const char *const binary[] = {"*",  "/",  "%",  "+", "-", "<<", ">>", "<",  ">", "<=",
+                              ">=", "==", "!=", "&", "^", "|",  "&&", "^^", "||"};
+const char *const unary[] = {"+", "-", "!", "~", "++", "--", "++", "--"};
+
 /// The expression with a pair of brackets around each operation: shows how it was understood.
 std::string grouped(const Expr *expr) {
   if (!expr)
@@ -21,9 +26,6 @@ std::string grouped(const Expr *expr) {
       result += (result.empty() ? "" : ", ") + grouped(element.get());
     return result;
   };
-  static const char *const binary[] = {"*",  "/",  "%",  "+", "-", "<<", ">>", "<",  ">", "<=",
-                                       ">=", "==", "!=", "&", "^", "|",  "&&", "^^", "||"};
-  static const char *const unary[] = {"+", "-", "!", "~", "++", "--", "++", "--"};
   switch (expr->kind) {
   case ExprKind::IntLiteral:
     return static_cast<const IntLiteral &>(*expr).spelling;

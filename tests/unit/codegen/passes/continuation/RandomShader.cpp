@@ -395,18 +395,8 @@ void Generator::method(const std::string &name, const std::string &methodName, b
   depth = 0;
 }
 
-std::string Generator::module() {
-  for (const char *record : {"A", "B"})
-    text += std::string("rtsl.class @") + record +
-            " root \"rt_Material\" { rtsl.member_decl @m : f32 access \"public\" }\n";
-  text += "rtsl.class @Sky root \"rt_Miss\" { rtsl.member_decl @m : f32 access \"public\" }\n";
-  method("A", "shade");
-  method("B", "shade");
-  method("Sky", "miss");
-  method("A", "closestHit.P", true);
-  method("B", "closestHit.P", true);
-  method("Sky", "miss.P", true);
-  text += R"(
+/// The functions of slots, which call those of the classes A, B and Sky.
+const char entryPoints[] = R"(
 func.func @rtsl_rt_Material_shade(%o: !rtsl.ref<"rt_Material">) attributes {rtsl.export, rtsl.slot = "rt_Material.shade"} {
   %id = rtsl.class_id %o : !rtsl.ref<"rt_Material">
   rtsl.switch %id : i32 {
@@ -480,6 +470,19 @@ func.func @rtsl_rt_Primitive_computeNormal(%o: !rtsl.ref<"rt_Primitive">) attrib
   rtsl.return
 }
 )";
+
+std::string Generator::module() {
+  for (const char *record : {"A", "B"})
+    text += std::string("rtsl.class @") + record +
+            " root \"rt_Material\" { rtsl.member_decl @m : f32 access \"public\" }\n";
+  text += "rtsl.class @Sky root \"rt_Miss\" { rtsl.member_decl @m : f32 access \"public\" }\n";
+  method("A", "shade");
+  method("B", "shade");
+  method("Sky", "miss");
+  method("A", "closestHit.P", true);
+  method("B", "closestHit.P", true);
+  method("Sky", "miss.P", true);
+  text += entryPoints;
   for (const char *slot :
        {"rt_Primitive_rt_boundHitError", "rt_Primitive_computeTextureCoordinates",
         "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
