@@ -15,6 +15,7 @@
 #include "codegen/link/UnrollRecursion.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/steps/Steps.h"
 
@@ -57,7 +58,7 @@ bool traces(const Cycle &cycle, mlir::ModuleOp ir) {
   bool found = false;
   for (std::size_t next = 0; next != reached.size() && !found; ++next)
     reached[next]->walk([&](mlir::Operation *op) {
-      found |= llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op);
+      found |= ir::isTrace(op);
       if (auto call = llvm::dyn_cast<CallOp>(op))
         if (mlir::Operation *callee = ir.lookupSymbol(call.getCallee()))
           reached.insert(callee);

@@ -2,6 +2,7 @@
 #include "codegen/passes/InlineFunctions.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/ir/dialect/RtslOps.h"
 
@@ -35,13 +36,9 @@ unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
 /// Whether the function itself contains a trace. By then, callees that trace have been inlined, or
 /// need a frame anyway.
 bool traces(mlir::func::FuncOp function) {
-  return function
-      .walk([](mlir::Operation *op) {
-        return llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminateOp>(op)
-                   ? mlir::WalkResult::interrupt()
-                   : mlir::WalkResult::advance();
-      })
-      .wasInterrupted();
+  return ir::anyOperation(function, [](mlir::Operation *op) {
+    return ir::isTrace(op) || llvm::isa<ir::IlluminateOp>(op);
+  });
 }
 
 struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<mlir::ModuleOp>> {

@@ -7,6 +7,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "language/SlotTable.h"
@@ -191,16 +192,6 @@ functionsOfKept(const LinkContext &context,
   return all;
 }
 
-bool traces(FuncOp function) {
-  return function
-      .walk([](mlir::Operation *op) {
-        const bool isTrace =
-            llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
-        return isTrace ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-      })
-      .wasInterrupted();
-}
-
 } // namespace
 
 std::string shownName(FuncOp function) {
@@ -273,9 +264,9 @@ void dropUnreached(LinkContext &context) {
       const Item item = finding.item;
       context.findings.push_back(std::move(finding));
       if (found == reached.end() && context.request.keep.has(item)) {
-        // A function that no entry point reaches must be one itself, unless it traces: such
+        // A function that no entry point reaches must be one itself, unless it sends rays: such
         // functions are only started by rays.
-        if (item == Item::Methods && !traces(function))
+        if (item == Item::Methods && !ir::anyOperation(function, ir::sendsRays))
           ir::attr::kept.set(function);
         continue;
       }

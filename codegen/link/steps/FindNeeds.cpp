@@ -7,6 +7,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "llvm/ADT/StringMap.h"
@@ -127,9 +128,7 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);
   if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex())
     return RTSL_NEEDS_EMITTERS | RTSL_NEEDS_SAMPLING | ofRaysFromHits;
-  const bool sendsRay =
-      llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op);
-  return sendsRay && mayStartAtHits(reader) ? ofRaysFromHits : 0;
+  return ir::sendsRays(op) && mayStartAtHits(reader) ? ofRaysFromHits : 0;
 }
 
 std::uint32_t findNeeds(const LinkContext &context) {

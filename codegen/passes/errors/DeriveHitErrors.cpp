@@ -1,6 +1,7 @@
 #include "codegen/passes/errors/DeriveHitErrors.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/Pipeline.h"
@@ -38,7 +39,7 @@ llvm::SetVector<mlir::Operation *> functionsThatSendRays(mlir::ModuleOp ir,
   llvm::DenseMap<mlir::Operation *, llvm::SmallVector<mlir::Operation *>> callers;
   for (auto function : ir.getOps<FuncOp>())
     function.walk([&](mlir::Operation *op) {
-      if (llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::IlluminanceOp, ir::IlluminateOp>(op))
+      if (ir::sendsRays(op))
         senders.insert(function);
       else if (llvm::isa<ir::CallMethodOp>(op))
         throughReferences.insert(function);

@@ -1,6 +1,7 @@
 //===- TracedFunctions.cpp - the functions of a module that trace ---------===//
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Slots.h"
 
 #include "llvm/ADT/DenseMap.h"
@@ -63,8 +64,8 @@ Calls::Calls(mlir::ModuleOp module) {
   }
   for (auto [number, function] : llvm::enumerate(functions))
     function.op.walk([&, number = number, &function = function](mlir::Operation *op) {
-      function.traces |= llvm::isa<ir::TraceOp, ir::TracePayloadOp, ir::SuspendOp, ir::SpawnOp,
-                                   ir::SpawnPayloadOp>(op);
+      function.traces |=
+          ir::isTrace(op) || llvm::isa<ir::SuspendOp, ir::SpawnOp, ir::SpawnPayloadOp>(op);
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
         function.traces |= isFramed(call);
         if (auto callee = numbers.find(call.getCalleeAttr().getAttr()); callee != numbers.end()) {

@@ -12,6 +12,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Separate.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
@@ -209,14 +210,7 @@ void Dispatcher::dropUncalled() {
       function.erase();
     uncalled.clear();
     for (FuncOp function : module.getOps<FuncOp>()) {
-      const bool traces = function
-                              .walk([](mlir::Operation *op) {
-                                return llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op)
-                                           ? mlir::WalkResult::interrupt()
-                                           : mlir::WalkResult::advance();
-                              })
-                              .wasInterrupted();
-      if (traces && !ir::attr::state.isOn(function) &&
+      if (ir::anyOperation(function, ir::isTrace) && !ir::attr::state.isOn(function) &&
           mlir::SymbolTable::symbolKnownUseEmpty(function, module))
         uncalled.push_back(function);
     }

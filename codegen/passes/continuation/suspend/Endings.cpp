@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/IncomingEdges.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
 
 #include "mlir/IR/RegionGraphTraits.h"
@@ -19,7 +20,7 @@ namespace rtsl::continuation {
 namespace {
 
 bool traces(mlir::Block &block) {
-  return llvm::any_of(block, llvm::IsaPred<ir::TraceOp, ir::TracePayloadOp>);
+  return llvm::any_of(block, [](mlir::Operation &op) { return ir::isTrace(&op); });
 }
 
 /// Blocks from whose beginning some path leads to the end of the function without a trace.

@@ -24,6 +24,7 @@
 //                                             after
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/ir/Rays.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Recompute.h"
 #include "codegen/passes/continuation/suspend/Steps.h"
@@ -77,8 +78,7 @@ void insertSuspends(FuncOp function, const WriteSummary &summary) {
 
   llvm::SmallVector<mlir::Operation *> traces;
   function.walk([&](mlir::Operation *op) {
-    if (llvm::isa<ir::TraceOp, ir::TracePayloadOp>(op) ||
-        (llvm::isa<mlir::func::CallOp>(op) && isFramed(op)))
+    if (ir::isTrace(op) || (llvm::isa<mlir::func::CallOp>(op) && isFramed(op)))
       traces.push_back(op);
   });
   for (mlir::Operation *op : traces) {
