@@ -6,7 +6,7 @@ namespace rtsl::scene {
 
 namespace {
 
-/// What this file knows of library/std/engines.
+/// A class of library/std/engines.
 struct LibraryEngine {
   const char *name;
   const char *className;

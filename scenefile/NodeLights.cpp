@@ -21,7 +21,7 @@ struct SpatialMember {
   std::array<double, 3> otherwise;
 };
 
-/// What this file knows of library/std/lights.
+/// A class of library/std/lights, and its members that a transform changes.
 struct PlaceableLight {
   const char *className;
   std::vector<SpatialMember> members;

@@ -141,10 +141,10 @@ private:
   }
 
   JsonValue &element(JsonValue &list, const PathPart &part, bool last) {
-    const char *begin = part.text.data(), *behind = begin + part.text.size();
+    const char *begin = part.text.data(), *textEnd = begin + part.text.size();
     std::size_t index = 0;
-    auto [end, error] = std::from_chars(begin, behind, index);
-    if (error != std::errc() || end != behind)
+    auto [end, error] = std::from_chars(begin, textEnd, index);
+    if (error != std::errc() || end != textEnd)
       throw Error(ErrorCode::BadOverride,
                   fmt::format("`{}` is a list: `{}` is not an index", walked, part.text),
                   placeOf(part));

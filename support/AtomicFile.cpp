@@ -56,7 +56,7 @@ int createTemporary(const std::string &path, std::string &temporary) {
       return file;
     if (file < 0)
       continue;
-    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // or it knows no locks
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // or locks are unsupported
       return file;
     ::close(file); // it is being removed
   }

@@ -125,7 +125,7 @@ bool ForeignWords::touches(std::size_t index, unsigned first, unsigned second) c
 }
 
 /// Index of the token after the brackets that open at `index`, or of the end of the file.
-std::size_t ForeignWords::behindBrackets(std::size_t index) const {
+std::size_t ForeignWords::afterBrackets(std::size_t index) const {
   std::size_t depth = 0;
   for (; typeAt(index) != Token::endOfFile; ++index) {
     depth += isOpening(typeAt(index));
@@ -137,12 +137,12 @@ std::size_t ForeignWords::behindBrackets(std::size_t index) const {
 
 /// Index of the token after the statement or declaration that contains `index`: after its semicolon
 /// or block.
-std::size_t ForeignWords::behindStatement(std::size_t index) const {
+std::size_t ForeignWords::afterStatement(std::size_t index) const {
   while (typeAt(index) != Token::endOfFile && !isClosing(typeAt(index))) {
     if (typeAt(index) == RtslLexer::SEMICOLON)
       return index + 1;
     const bool isBlock = typeAt(index) == RtslLexer::LEFT_BRACE;
-    index = isOpening(typeAt(index)) ? behindBrackets(index) : index + 1;
+    index = isOpening(typeAt(index)) ? afterBrackets(index) : index + 1;
     if (isBlock)
       return typeAt(index) == RtslLexer::SEMICOLON ? index + 1 : index;
   }
@@ -150,14 +150,14 @@ std::size_t ForeignWords::behindStatement(std::size_t index) const {
 }
 
 /// Index of the token after `p.x`, `f(a)[i]` and the like.
-std::size_t ForeignWords::behindOperand(std::size_t index) const {
+std::size_t ForeignWords::afterOperand(std::size_t index) const {
   for (std::size_t begin = index; isCast(index); index += 3)
     if (index - begin > longestOperand)
       return in.size();
-  index = typeAt(index) == RtslLexer::LEFT_PAREN ? behindBrackets(index) : index + 1;
+  index = typeAt(index) == RtslLexer::LEFT_PAREN ? afterBrackets(index) : index + 1;
   for (;;) {
     if (typeAt(index) == RtslLexer::LEFT_PAREN || typeAt(index) == RtslLexer::LEFT_BRACKET)
-      index = behindBrackets(index);
+      index = afterBrackets(index);
     else if (typeAt(index) == RtslLexer::DOT && typeAt(index + 1) == RtslLexer::IDENTIFIER)
       index += 2;
     else
@@ -229,7 +229,7 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
   const std::string_view word = textOf(token);
   // `[unroll]`, `[[nodiscard]]`: no statement begins with a bracket.
   if (token.type == RtslLexer::LEFT_BRACKET && isStatementStart()) {
-    const std::size_t count = behindBrackets(index) - index;
+    const std::size_t count = afterBrackets(index) - index;
     diagnostics
         .report(Code::foreignConstruct, rangeOf(token).to(rangeOf(at(index + count - 1))),
                 "attributes")
@@ -271,12 +271,12 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
     return 2;
   }
   if (word == "layout" && next == RtslLexer::LEFT_PAREN) {
-    const std::size_t behind = behindBrackets(index + 1);
-    if (typeAt(behind) != RtslLexer::IDENTIFIER && !isQualifier(typeAt(behind)))
+    const std::size_t after = afterBrackets(index + 1);
+    if (typeAt(after) != RtslLexer::IDENTIFIER && !isQualifier(typeAt(after)))
       return 0; // a call
     diagnostics.report(Code::foreignQualifier, rangeOf(token), word)
-        .fix(removal(index, behind - index), "", true);
-    return behind - index;
+        .fix(removal(index, after - index), "", true);
+    return after - index;
   }
   // Two names in a row are a type and what it declares; the first of three is a qualifier.
   if ((next != RtslLexer::IDENTIFIER && !isQualifier(next)) ||
@@ -395,13 +395,13 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
       (next == RtslLexer::IDENTIFIER &&
        (typeAt(index + 2) == RtslLexer::LEFT_BRACE || typeAt(index + 2) == RtslLexer::COLON));
   const auto report = [&](const char *what, const char *instead, bool sure = false) {
-    const std::size_t behind = behindStatement(index + 1);
+    const std::size_t after = afterStatement(index + 1);
     Diagnostic &diagnostic = diagnostics.report(Code::foreignConstruct, rangeOf(token), what);
     if (sure)
-      diagnostic.fix(removal(index, behind - index), "", true);
+      diagnostic.fix(removal(index, after - index), "", true);
     if (*instead)
       diagnostic.note(instead);
-    return behind - index;
+    return after - index;
   };
   if (word == "using" && next == RtslLexer::IDENTIFIER && textOf(at(index + 1)) == "namespace")
     return report("namespaces", "", true);
@@ -412,7 +412,7 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
     return report("type aliases", "");
   if (word == "typedef" && next == RtslLexer::STRUCT) { // struct S { ... } T;
     const std::size_t count = report("type aliases", "write `struct Name { ... };`");
-    return typeAt(index + count) == RtslLexer::IDENTIFIER ? behindStatement(index + count) - index
+    return typeAt(index + count) == RtslLexer::IDENTIFIER ? afterStatement(index + count) - index
                                                           : count;
   }
   if (word == "enum" && (opensBlock || next == RtslLexer::CLASS))
@@ -429,8 +429,8 @@ std::size_t ForeignWords::skipConstruct(std::size_t index) {
     return 1;
   }
   if (word == "catch" && next == RtslLexer::LEFT_PAREN &&
-      typeAt(behindBrackets(index + 1)) == RtslLexer::LEFT_BRACE)
-    return behindStatement(index + 1) - index; // after a `try`, which is reported
+      typeAt(afterBrackets(index + 1)) == RtslLexer::LEFT_BRACE)
+    return afterStatement(index + 1) - index; // after a `try`, which is reported
   if (word == "throw" && isLiteral(next))
     return report("`throw`", "");
   for (std::string_view buffer :
@@ -485,11 +485,11 @@ bool ForeignWords::isCast(std::size_t index) const {
 void ForeignWords::rewriteCast(std::size_t index) {
   if (!isCast(index) || !expectsOperand() || before() == Token::endOfFile)
     return;
-  const std::size_t behind = behindOperand(index + 3);
-  if (typeAt(behind) == Token::endOfFile || behind - index > longestOperand)
+  const std::size_t after = afterOperand(index + 3);
+  if (typeAt(after) == Token::endOfFile || after - index > longestOperand)
     return;
   const Token opening = at(index), type = at(index + 1), closing = at(index + 2);
-  const std::uint32_t end = at(behind - 1).end;
+  const std::uint32_t end = at(after - 1).end;
   diagnostics.report(Code::foreignConstruct, rangeOf(opening).to(rangeOf(closing)), "casts")
       .fix({file, opening.begin, at(index + 3).begin}, fmt::format("{}(", textOf(type)), true)
       .fix({file, end, end}, ")", true);
@@ -500,11 +500,11 @@ void ForeignWords::rewriteCast(std::size_t index) {
   in[index + 1].end = closing.end;
   in[index + 1].startsLine = false;
   std::copy(in.begin() + static_cast<std::ptrdiff_t>(index) + 3,
-            in.begin() + static_cast<std::ptrdiff_t>(behind),
+            in.begin() + static_cast<std::ptrdiff_t>(after),
             in.begin() + static_cast<std::ptrdiff_t>(index) + 2);
-  in[behind - 1] = closing;
-  in[behind - 1].begin = in[behind - 1].end = end;
-  in[behind - 1].startsLine = false;
+  in[after - 1] = closing;
+  in[after - 1].begin = in[after - 1].end = end;
+  in[after - 1].startsLine = false;
 }
 
 std::size_t ForeignWords::skip(std::size_t index) {

@@ -62,9 +62,9 @@ private:
   bool isStatementStart() const;
   bool expectsOperand() const;
   bool touches(std::size_t index, unsigned first, unsigned second) const;
-  std::size_t behindBrackets(std::size_t index) const;
-  std::size_t behindStatement(std::size_t index) const;
-  std::size_t behindOperand(std::size_t index) const;
+  std::size_t afterBrackets(std::size_t index) const;
+  std::size_t afterStatement(std::size_t index) const;
+  std::size_t afterOperand(std::size_t index) const;
 
   const FileId file;
   std::vector<Token> &in;

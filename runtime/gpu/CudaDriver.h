@@ -15,7 +15,7 @@
 namespace rtsl::runtime {
 
 /// The first CUDA device of the machine. Calls throw NoDevice (no driver, one that is too old, no
-/// device, a device that refuses the code), OutOfMemory, or Internal (the code failed).
+/// device, a device that rejects the code), OutOfMemory, or Internal (the code failed).
 class CudaDevice {
 public:
   CudaDevice();

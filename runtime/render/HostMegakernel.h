@@ -18,7 +18,7 @@ namespace rtsl::runtime {
 
 class HostMegakernel final : public Megakernel {
 public:
-  /// `scene` is not relocated; the code behind `code` must stay loaded. Throws OutOfRange,
+  /// `scene` is not relocated; the code at `code` must stay loaded. Throws OutOfRange,
   /// OutOfMemory.
   HostMegakernel(const MegakernelCode &code, FlatScene scene, const RenderOptions &options);
 

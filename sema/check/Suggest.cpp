@@ -308,15 +308,15 @@ void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
     diagnostic.note(whyNot);
     return;
   }
-  const bool wrapsCall = !foreign.append.empty() || !foreign.behind.empty();
+  const bool wrapsCall = !foreign.append.empty() || !foreign.after.empty();
   if (foreign.isVariable && call.isValid()) {
     diagnostic.fix(call, foreign.replacement, foreign.sure);
   } else if (!foreign.replacement.empty() && (!wrapsCall || call.isValid())) {
     diagnostic.fix(name, foreign.replacement, foreign.sure);
     if (!foreign.append.empty())
       diagnostic.fix({call.file, call.end - 1, call.end - 1}, foreign.append, foreign.sure);
-    if (!foreign.behind.empty())
-      diagnostic.fix({call.file, call.end, call.end}, foreign.behind, foreign.sure);
+    if (!foreign.after.empty())
+      diagnostic.fix({call.file, call.end, call.end}, foreign.after, foreign.sure);
   }
   if (!foreign.advice.empty())
     diagnostic.note(foreign.advice);

@@ -16,7 +16,7 @@ struct ForeignSpelling {
   /// Same meaning and same arguments: `check --fix` may apply it.
   bool sure = false;
   std::string append = {}; // at the end of the call's arguments
-  std::string behind = {}; // after the call
+  std::string after = {};  // after the call
   bool isVariable = false; // the call becomes a variable
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.

@@ -166,7 +166,7 @@ static Statement describeClass(const Context &context, const typed::Class &defin
   for (const typed::Function *anyHit : payloadMethods(definition, "anyHit"))
     queried.push_back(context.names.of(anyHit->parameters.front()->type->structure));
   if (!queried.empty())
-    described = callMember(described, withParameters("asks", queried), {});
+    described = callMember(described, withParameters("anyHitFor", queried), {});
   return statement(described);
 }
 

@@ -298,7 +298,7 @@ public:
   }
   /// Has `anyHit` for rays with these payloads.
   template <typename... Payload>
-  ClassDescription &asks() {
+  ClassDescription &anyHitFor() {
     info.anyHit = (rtslRayTypeBit(Payload::rayType.number) | ...);
     return *this;
   }

@@ -48,6 +48,6 @@ func.func @f(%self: !rtsl.ref<"M">) {
   return
 }
 
-// MUTATION ray-graph of states/RayGraph.cpp: a last trace counts as one that is waited for
+// MUTATION ray-graph of states/RayGraph.cpp: a tail trace counts as one that is waited for
 // - (isLast ? sentLast : sent) |= 1u << kind;
 // + sent |= 1u << kind;

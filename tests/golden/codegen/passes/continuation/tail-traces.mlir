@@ -1,4 +1,4 @@
-// RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-last-traces | FileCheck %s
+// RUN: rtsl-opt %s --rtsl-insert-suspends --rtsl-tail-traces | FileCheck %s
 // RUN: rtsl-opt %s --rtsl-split="no-dispatch report=text" 2>&1 >/dev/null | FileCheck %s --check-prefix=REPORT
 
 // What the ray brings back is what this one brings back: it takes its place, through branches too.
@@ -108,6 +108,6 @@ func.func @keeps(%self: !rtsl.ref<"M">) {
   return
 }
 
-// MUTATION last-traces of suspend/TailTraces.cpp: what is left in SampleColor is not looked at
+// MUTATION tail-traces of suspend/TailTraces.cpp: what is left in SampleColor is not looked at
 // - return hasOnePath && color == result.getResult();
 // + return hasOnePath && color;
