@@ -19,6 +19,15 @@ inline mlir::Operation *baseOperation(mlir::Value address) {
   return baseAddress(address).getDefiningOp();
 }
 
+/// The operation that defines the base address, or, for a part of a buffer's element, that of the
+/// buffer; null if it is an argument.
+inline mlir::Operation *variableOperation(mlir::Value address) {
+  mlir::Operation *base = baseOperation(address);
+  while (auto element = llvm::dyn_cast_or_null<BufferElementOp>(base))
+    base = baseOperation(element.getBuffer());
+  return base;
+}
+
 /// Whether the address is in an output buffer, which the launch changes. `address` has no value that
 /// is constant for the launch then.
 inline bool isInOutputBuffer(mlir::Value address) {

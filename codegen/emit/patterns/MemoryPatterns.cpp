@@ -40,18 +40,11 @@ mlir::Type memoryType(const mlir::TypeConverter &converter, mlir::Type type) {
 bool isInvariant(Value address) {
   if (ir::isInOutputBuffer(address))
     return false;
-  while (mlir::Operation *op = address.getDefiningOp()) {
-    if (llvm::isa<ir::TableOp>(op))
-      return true;
-    if (llvm::isa<ir::MemberOp>(op)) {
-      auto function = op->getParentOfType<mlir::FunctionOpInterface>();
-      return function && !ir::attr::writesMembers.isOn(function);
-    }
-    if (!llvm::isa<ir::FieldOp, ir::ElementOp, ir::BufferElementOp>(op))
-      return false;
-    address = op->getOperand(0);
-  }
-  return false;
+  mlir::Operation *variable = ir::variableOperation(address);
+  if (!llvm::isa_and_nonnull<ir::MemberOp>(variable))
+    return llvm::isa_and_nonnull<ir::TableOp>(variable);
+  auto function = variable->getParentOfType<mlir::FunctionOpInterface>();
+  return function && !ir::attr::writesMembers.isOn(function);
 }
 
 /// `base[index]` for an index in range and elements of `size` bytes.

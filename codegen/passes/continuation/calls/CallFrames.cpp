@@ -14,6 +14,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
@@ -129,19 +130,13 @@ bool isOfMember(mlir::Value object, FuncOp state) {
   }
   if (!load)
     return false;
-  mlir::Value address = load.getAddress();
-  while (mlir::Operation *op = address.getDefiningOp()) {
-    if (auto member = llvm::dyn_cast<ir::MemberOp>(op)) {
-      mlir::Value owner = member.getObject();
-      while (auto cast = owner.getDefiningOp<ir::CastRefOp>())
-        owner = cast.getObject();
-      return owner == objectOf(state);
-    }
-    if (!llvm::isa<ir::FieldOp, ir::ElementOp, ir::BufferElementOp>(op))
-      return false;
-    address = op->getOperand(0);
-  }
-  return false;
+  auto member = llvm::dyn_cast_or_null<ir::MemberOp>(ir::variableOperation(load.getAddress()));
+  if (!member)
+    return false;
+  mlir::Value owner = member.getObject();
+  while (auto cast = owner.getDefiningOp<ir::CastRefOp>())
+    owner = cast.getObject();
+  return owner == objectOf(state);
 }
 
 void FrameCounter::read(FuncOp state) {
