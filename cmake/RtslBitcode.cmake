@@ -40,6 +40,10 @@ asm(".section .rodata.@symbol@, \"a\", @progbits\n"
     ".byte 0\n"
     ".text\n");
 ]] @ONLY)
-  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${linked}" CXX_COMPILER_LAUNCHER "")
-  target_sources(${library} PRIVATE "${embedding}")
+  # Without ccache, which does not see what .incbin reads and would return an object with earlier bytes. The launcher is a
+  # property of targets only.
+  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${linked}")
+  add_library(${symbol}Bytes OBJECT "${embedding}")
+  set_target_properties(${symbol}Bytes PROPERTIES CXX_COMPILER_LAUNCHER "")
+  target_sources(${library} PRIVATE $<TARGET_OBJECTS:${symbol}Bytes>)
 endfunction()
