@@ -1,236 +1,78 @@
 #include "runtime/accel/BvhBuilder.h"
 
+#include "runtime/accel/BinaryTree.h"
+#include "runtime/accel/WideTree.h"
 #include "runtime/device/ray/Box.h"
-#include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Traverse.h"
+#include "support/WorkerThreads.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 
 namespace rtsl::runtime {
 
 namespace {
 
-constexpr unsigned binCount = 16;
-constexpr std::size_t largestLeaf = 4;
-// In units of one item's test.
-constexpr float costOfNode = 1.0f;
-
-Bounds emptyBounds() {
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  return {{inf, inf, inf}, {-inf, -inf, -inf}};
-}
-
-void extend(Bounds &bounds, const Bounds &by) {
-  for (int i = 0; i < 3; ++i) {
-    bounds.lower[i] = std::min(bounds.lower[i], by.lower[i]);
-    bounds.upper[i] = std::max(bounds.upper[i], by.upper[i]);
+RtslTreeItem treeItem(const BvhItem &item) {
+  RtslTreeItem made{{}, item.item.instance, item.item.primitive, item.mesh != nullptr};
+  if (item.mesh) {
+    const device::TriangleVertices p = device::triangleVertices(*item.mesh, item.item.primitive);
+    device::store(made.vertices, p.v0);
+    device::store(made.vertices + 3, p.v1);
+    device::store(made.vertices + 6, p.v2);
   }
+  return made;
 }
-
-float halfArea(const Bounds &bounds) {
-  float x = bounds.upper[0] - bounds.lower[0], y = bounds.upper[1] - bounds.lower[1],
-        z = bounds.upper[2] - bounds.lower[2];
-  return x < 0 ? 0 : x * y + y * z + z * x;
-}
-
-/// Twice the centre; used only for comparisons.
-float centre(const BvhItem &item, int axis) {
-  return item.bounds.lower[axis] + item.bounds.upper[axis];
-}
-
-unsigned ceilLog2(std::size_t n) {
-  unsigned bits = 0;
-  while ((std::size_t(1) << bits) < n)
-    ++bits;
-  return bits;
-}
-
-using Iterator = std::vector<BvhItem>::iterator;
-
-struct Split {
-  float cost = std::numeric_limits<float>::infinity();
-  int axis = -1;
-  unsigned bin = 0; // items in lower bins go left
-  float first = 0, scale = 0;
-};
-
-unsigned binOf(float centre, float first, float scale) {
-  return std::min(unsigned((centre - first) * scale), binCount - 1);
-}
-
-Split bestSplit(Iterator begin, Iterator end, const Bounds &all) {
-  Split best;
-  float rootArea = halfArea(all);
-  for (int axis = 0; axis < 3; ++axis) {
-    float first = std::numeric_limits<float>::infinity(), last = -first;
-    for (Iterator item = begin; item != end; ++item) {
-      first = std::min(first, centre(*item, axis));
-      last = std::max(last, centre(*item, axis));
-    }
-    float scale = binCount / (last - first);
-    if (!(last > first) || !std::isfinite(scale))
-      continue;
-    Bounds bounds[binCount];
-    std::size_t counts[binCount] = {};
-    std::fill_n(bounds, binCount, emptyBounds());
-    for (Iterator item = begin; item != end; ++item) {
-      unsigned bin = binOf(centre(*item, axis), first, scale);
-      extend(bounds[bin], item->bounds);
-      ++counts[bin];
-    }
-    float costRight[binCount];
-    Bounds sweep = emptyBounds();
-    std::size_t count = 0;
-    for (unsigned i = binCount; i-- > 1;) {
-      extend(sweep, bounds[i]);
-      count += counts[i];
-      costRight[i] =
-          count ? float(count) * halfArea(sweep) : std::numeric_limits<float>::infinity();
-    }
-    sweep = emptyBounds();
-    count = 0;
-    for (unsigned i = 1; i < binCount; ++i) {
-      extend(sweep, bounds[i - 1]);
-      count += counts[i - 1];
-      if (count == 0)
-        continue;
-      float cost = costOfNode + (float(count) * halfArea(sweep) + costRight[i]) / rootArea;
-      if (cost < best.cost)
-        best = {cost, axis, i, first, scale};
-    }
-  }
-  return best;
-}
-
-class Builder {
-public:
-  explicit Builder(std::vector<BvhItem> items) : items(std::move(items)) {}
-
-  Bvh build() {
-    bvh.rootIsLeaf = items.size() <= largestLeaf;
-    if (!bvh.rootIsLeaf)
-      inner(items.begin(), items.end(), allBounds(items.begin(), items.end()), 0);
-    for (const BvhItem &item : items)
-      bvh.items.push_back(item.item);
-    bvh.rootItems = bvh.rootIsLeaf ? std::uint32_t(items.size()) : 0;
-    return std::move(bvh);
-  }
-
-private:
-  static Bounds allBounds(Iterator begin, Iterator end) {
-    Bounds all = emptyBounds();
-    for (Iterator item = begin; item != end; ++item)
-      extend(all, item->bounds);
-    return all;
-  }
-
-  /// Builds a node of at least two items; returns its index.
-  std::int32_t inner(Iterator begin, Iterator end, const Bounds &all, unsigned depth) {
-    std::int32_t index = std::int32_t(bvh.nodes.size());
-    bvh.nodes.emplace_back();
-    Iterator middle = divide(begin, end, all, depth);
-    child(index, 0, begin, middle, depth + 1);
-    child(index, 1, middle, end, depth + 1);
-    return index;
-  }
-
-  /// Partitions the items into left and right, both not empty.
-  Iterator divide(Iterator begin, Iterator end, const Bounds &all, unsigned depth) {
-    std::size_t count = std::size_t(end - begin);
-    // Halving needs ceil(log2(count)) levels: from here on the depth permits only even splits.
-    bool mustHalve = depth + ceilLog2(count) + 1 >= unsigned(device::maxBvhDepth);
-    if (!mustHalve) {
-      Split split = bestSplit(begin, end, all);
-      if (split.axis >= 0) {
-        Iterator middle = std::stable_partition(begin, end, [&](const BvhItem &item) {
-          return binOf(centre(item, split.axis), split.first, split.scale) < split.bin;
-        });
-        if (middle != begin && middle != end)
-          return middle;
-      }
-    }
-    // All centres coincide, or the depth is nearly used up: split at the median of the widest axis.
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-      if (all.upper[i] - all.lower[i] > all.upper[axis] - all.lower[axis])
-        axis = i;
-    Iterator middle = begin + std::ptrdiff_t(count / 2);
-    std::nth_element(begin, middle, end, [axis](const BvhItem &a, const BvhItem &b) {
-      float ca = centre(a, axis), cb = centre(b, axis);
-      if (ca != cb)
-        return ca < cb;
-      return a.item.instance != b.item.instance ? a.item.instance < b.item.instance
-                                                : a.item.primitive < b.item.primitive;
-    });
-    return middle;
-  }
-
-  void child(std::int32_t parent, int side, Iterator begin, Iterator end, unsigned depth) {
-    Bounds all = allBounds(begin, end);
-    std::size_t count = std::size_t(end - begin);
-    std::int32_t target;
-    std::uint32_t leafCount = 0;
-    if (count <= largestLeaf && (count == 1 || !(bestSplit(begin, end, all).cost < float(count)))) {
-      target = ~std::int32_t(begin - items.begin());
-      leafCount = std::uint32_t(count);
-    } else {
-      target = inner(begin, end, all, depth);
-    }
-    RtslBvhNode &node = bvh.nodes[std::size_t(parent)];
-    for (int i = 0; i < 3; ++i) {
-      node.lower[side][i] = all.lower[i];
-      node.upper[side][i] = all.upper[i];
-    }
-    node.child[side] = target;
-    node.count[side] = leafCount;
-  }
-
-  std::vector<BvhItem> items;
-  Bvh bvh;
-};
 
 } // namespace
 
 void Bvh::install(RtslLaunch &launch) const {
   launch.nodes = nodes.data();
-  launch.leafItems = items.data();
+  launch.treeItems = items.data();
   launch.meshTrees = meshTrees.empty() ? nullptr : meshTrees.data();
-  launch.rootIsLeaf = rootIsLeaf;
-  launch.nodeCount = rootIsLeaf ? rootItems : std::uint32_t(nodes.size());
+  launch.nodeCount = std::uint32_t(nodes.size());
 }
 
 unsigned Bvh::depth() const {
   unsigned deepest = 0;
-  std::vector<std::pair<std::int32_t, unsigned>> open;
-  if (!rootIsLeaf)
-    open.push_back({0, 1});
+  std::vector<std::pair<std::uint32_t, unsigned>> open = {{0, 1}};
   while (!open.empty()) {
-    auto [node, depth] = open.back();
+    const auto [number, depth] = open.back();
     open.pop_back();
     deepest = std::max(deepest, depth);
-    for (std::int32_t child : nodes[std::size_t(node)].child)
-      if (child >= 0)
-        open.push_back({child, depth + 1});
+    const RtslBvhNode &node = nodes[number];
+    for (int i = 0; i < __builtin_popcount(node.inner); ++i)
+      open.push_back({node.firstNode + std::uint32_t(i), depth + 1});
   }
   return deepest;
 }
 
-Bvh buildBvh(std::vector<BvhItem> items) {
-  return Builder(std::move(items)).build();
+Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads) {
+  std::vector<NumberedBox> boxes;
+  boxes.reserve(items.size());
+  for (const BvhItem &item : items)
+    boxes.push_back({item.bounds, std::uint32_t(boxes.size())});
+  WideTree tree = widen(buildBinaryTree(std::move(boxes), threads), threads);
+  Bvh bvh;
+  bvh.nodes = std::move(tree.nodes);
+  bvh.items.resize(items.size());
+  constexpr std::size_t atOnce = 1 << 14;
+  forEachOnThreads(threads, (items.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
+    const std::size_t end = std::min(items.size(), (part + 1) * atOnce);
+    for (std::size_t i = part * atOnce; i < end; ++i)
+      bvh.items[i] = treeItem(items[tree.contents[i]]);
+  });
+  return bvh;
 }
 
 void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
   if (meshTrees.size() <= number)
     meshTrees.resize(number + 1);
-  const auto firstNode = std::int32_t(nodes.size()), firstItem = std::int32_t(items.size());
-  meshTrees[number] = tree.rootIsLeaf ? RtslMeshTree{~firstItem, std::uint32_t(tree.items.size())}
-                                      : RtslMeshTree{firstNode, 0};
+  const auto firstNode = std::uint32_t(nodes.size()), firstItem = std::uint32_t(items.size());
+  meshTrees[number] = firstNode;
   for (RtslBvhNode node : tree.nodes) {
-    for (std::int32_t &child : node.child)
-      child = child >= 0 ? child + firstNode : ~(~child + firstItem);
+    node.firstNode += firstNode;
+    node.firstItem += firstItem;
     nodes.push_back(node);
   }
   items.insert(items.end(), tree.items.begin(), tree.items.end());
@@ -240,7 +82,7 @@ static void addTriangles(const RtslLaunch &launch, const RtslMesh &mesh, std::ui
                          std::vector<BvhItem> &items) {
   for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
     const RtslBox box = device::boxOfTriangle(launch, mesh, t);
-    BvhItem item{{}, {instance, t}};
+    BvhItem item{{}, {instance, t}, device::moves(launch, mesh) ? nullptr : &mesh};
     std::copy_n(box.lower, 3, item.bounds.lower);
     std::copy_n(box.upper, 3, item.bounds.upper);
     items.push_back(item);
@@ -252,7 +94,7 @@ static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance
                           std::uint32_t number, std::vector<BvhItem> &items) {
   for (std::uint32_t i = 0; i < instance.boxCount; ++i) {
     const RtslBox box = device::enlarged(launch.boxes[instance.firstBox + i]);
-    BvhItem item{{}, {number, i}};
+    BvhItem item{{}, {number, i}, nullptr};
     std::copy_n(box.lower, 3, item.bounds.lower);
     std::copy_n(box.upper, 3, item.bounds.upper);
     items.push_back(item);
@@ -269,7 +111,7 @@ static void addContents(const RtslLaunch &launch, const RtslInstance &instance,
     addPrimitives(launch, instance, number, items);
 }
 
-Bvh buildBvh(const Scene &scene) {
+Bvh buildBvh(const Scene &scene, unsigned threads) {
   RtslLaunch launch = scene.launch();
   std::vector<BvhItem> items;
   std::map<std::size_t, const RtslInstance *> withTree; // by number of the tree
@@ -279,15 +121,15 @@ Bvh buildBvh(const Scene &scene) {
     if (device::hasOwnSpace(launch, instance))
       withTree.emplace(device::treeNumber(launch, instance), &instance);
     if (isOnePrimitive || instance.transform != 0)
-      items.push_back({scene.instanceBounds(i), {i, 0}});
+      items.push_back({scene.instanceBounds(i), {i, 0}, nullptr});
     else
       addContents(launch, instance, i, items);
   }
-  Bvh bvh = buildBvh(std::move(items));
+  Bvh bvh = buildBvh(items, threads);
   for (const auto &[number, instance] : withTree) {
     std::vector<BvhItem> inside;
     addContents(launch, *instance, RTSL_NO_HIT, inside);
-    bvh.addMeshTree(number, buildBvh(std::move(inside)));
+    bvh.addMeshTree(number, buildBvh(inside, threads));
   }
   return bvh;
 }

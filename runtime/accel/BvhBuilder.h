@@ -1,7 +1,6 @@
-//===- BvhBuilder.h - the binary tree for the device traversal ------------===//
+//===- BvhBuilder.h - the trees of a scene for the device traversal -------===//
 //
-// Top down by the surface area heuristic over 16 bins (Wald, "On fast Construction of SAH-based
-// Bounding Volume Hierarchies", 2007). The same scene gives the same tree, on every machine.
+// The same scene gives the same trees, on every machine and any number of threads.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -14,12 +13,11 @@
 namespace rtsl::runtime {
 
 struct Bvh {
-  std::vector<RtslBvhNode> nodes; // the root is node 0, unless rootIsLeaf
-  std::vector<RtslLeafItem> items;
-  // by mesh, then by object with several primitives; empty if no instance has a transform
-  std::vector<RtslMeshTree> meshTrees;
-  bool rootIsLeaf = false;     // there are so few items that there are no nodes
-  std::uint32_t rootItems = 0; // the number of these items, from the first on
+  std::vector<RtslBvhNode> nodes; // the root is node 0
+  std::vector<RtslTreeItem> items;
+  // by mesh, then by object with several primitives: the root of its tree; empty if no instance has
+  // a transform
+  std::vector<std::uint32_t> meshTrees;
 
   /// Installs the tree in a launch, which must not outlive it.
   void install(RtslLaunch &launch) const;
@@ -33,13 +31,15 @@ struct Bvh {
 struct BvhItem {
   Bounds bounds; // finite
   RtslLeafItem item;
+  const RtslMesh *mesh = nullptr; // of a triangle, which does not move
 };
 
-Bvh buildBvh(std::vector<BvhItem> items);
+/// `threads` 0: one per core.
+Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads = 0);
 
 /// The tree of a scene: of triangles and RTSL primitives, and of instances with transforms of
 /// meshes and of objects with several primitives, each of which has another tree. Their items have
 /// no instance.
-Bvh buildBvh(const Scene &scene);
+Bvh buildBvh(const Scene &scene, unsigned threads = 0);
 
 } // namespace rtsl::runtime

@@ -9,7 +9,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// The size of a cache line; nodes have the same size.
+/// The size of a cache line. Nodes and items of trees are read 16 bytes at a time.
 constexpr std::uint64_t alignment = 64;
 
 class Flattener {
@@ -71,7 +71,7 @@ FlatScene flatten(const Scene &scene) {
   flattener.addAt(offsetof(RtslLaunch, selections), launch.selections, launch.selectionCount);
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
   flattener.addAt(offsetof(RtslLaunch, nodes), launch.nodes, bvh.nodes.size());
-  flattener.addAt(offsetof(RtslLaunch, leafItems), launch.leafItems, bvh.items.size());
+  flattener.addAt(offsetof(RtslLaunch, treeItems), launch.treeItems, bvh.items.size());
   flattener.addAt(offsetof(RtslLaunch, meshTrees), launch.meshTrees, bvh.meshTrees.size());
   flattener.addAt(offsetof(RtslLaunch, emitters), launch.emitters, launch.emitterCount);
   flattener.addAt(offsetof(RtslLaunch, partChances), launch.partChances, launch.partChanceCount);

@@ -43,6 +43,7 @@ private:
   std::uint32_t searchOwnTree(RtslState &state, std::uint32_t how) const;
 
   const Scene &scene;
+  const unsigned threads;
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal
   // the same, if rays with the usual mask and root see all instances
   const EmbreeScene *seenByAll = nullptr;

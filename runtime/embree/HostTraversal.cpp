@@ -12,7 +12,7 @@ RayCounters &rayCounters() {
 }
 
 HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
-    : ProgramHost{scene.program().slots}, scene(scene) {
+    : ProgramHost{scene.program().slots}, scene(scene), threads(threads) {
   if (!useEmbree) {
     deviceLaunch();
     return;
@@ -24,7 +24,7 @@ HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
 
 const RtslLaunch &HostScene::deviceLaunch() const {
   std::call_once(built, [this] {
-    bvh = buildBvh(scene);
+    bvh = buildBvh(scene, threads);
     launch = scene.launch();
     launch.host = this;
     bvh.install(launch);
@@ -44,12 +44,12 @@ std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree 
 std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) const {
   const RtslLaunch *given = state.launch;
   if (given->nodeCount != 0)
-    return search(state, how, device::LaunchTree());
+    return search(state, how, device::LaunchTree{false});
   deviceLaunch();
   RtslLaunch withNodes = *given;
   bvh.install(withNodes);
   state.launch = &withNodes;
-  std::uint32_t answer = search(state, how, device::LaunchTree());
+  std::uint32_t answer = search(state, how, device::LaunchTree{false});
   state.launch = given;
   return answer;
 }

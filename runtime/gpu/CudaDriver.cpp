@@ -76,6 +76,10 @@ struct CudaDevice::Functions {
                 unsigned blockY, unsigned blockZ, unsigned sharedBytes, void *stream,
                 void **arguments, void **extra);
   int (*synchronize)();
+  int (*eventCreate)(void **event, unsigned flags);
+  int (*eventDestroy)(void *event);
+  int (*eventRecord)(void *event, void *stream);
+  int (*eventElapsedTime)(float *milliseconds, void *from, void *to);
 };
 
 template <typename Function>
@@ -122,6 +126,10 @@ void CudaDevice::open() {
   find(f.occupancy, "cuOccupancyMaxActiveBlocksPerMultiprocessor");
   find(f.launch, "cuLaunchKernel");
   find(f.synchronize, "cuCtxSynchronize");
+  find(f.eventCreate, "cuEventCreate");
+  find(f.eventDestroy, "cuEventDestroy_v2");
+  find(f.eventRecord, "cuEventRecord");
+  find(f.eventElapsedTime, "cuEventElapsedTime");
 
   int driver = 0;
   check(f.driverGetVersion(&driver), "cuDriverGetVersion");
@@ -146,6 +154,8 @@ void CudaDevice::open() {
         "cuDeviceGetAttribute");
   check(f.primaryContextRetain(&context, device), "cuDevicePrimaryCtxRetain");
   check(f.contextSetCurrent(context), "cuCtxSetCurrent");
+  for (void *&event : events)
+    check(f.eventCreate(&event, 0), "cuEventCreate");
 }
 
 CudaDevice::CudaDevice() {
@@ -167,6 +177,9 @@ void CudaDevice::close() {
       functions->hostFree(pageLocked);
     if (stream)
       functions->streamDestroy(stream);
+    for (void *event : events)
+      if (event)
+        functions->eventDestroy(event);
     if (module)
       functions->moduleUnload(module);
     functions->primaryContextRelease(device);
@@ -280,12 +293,17 @@ int CudaDevice::blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) con
   return blocks;
 }
 
-void CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
-                        void **arguments) {
+double CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
+                          void **arguments) {
+  check(functions->eventRecord(events[0], nullptr), "cuEventRecord");
   check(functions->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1, 0, nullptr,
                           arguments, nullptr),
         "cuLaunchKernel");
+  check(functions->eventRecord(events[1], nullptr), "cuEventRecord");
   check(functions->synchronize(), "cuCtxSynchronize");
+  float milliseconds = 0;
+  check(functions->eventElapsedTime(&milliseconds, events[0], events[1]), "cuEventElapsedTime");
+  return double(milliseconds) * 1e-3;
 }
 
 } // namespace rtsl::runtime

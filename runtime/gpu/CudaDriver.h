@@ -55,7 +55,8 @@ public:
   /// How many blocks of the kernel run at once on a multiprocessor.
   int blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const;
   /// Runs a kernel and waits for it. `arguments` points to as many pointers to arguments as it has.
-  void launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock, void **arguments);
+  /// Returns the seconds that the kernel took, by the device's clock.
+  double launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock, void **arguments);
 
 private:
   struct Functions;
@@ -73,6 +74,7 @@ private:
   // For copies while a kernel runs: a stream that does not wait for the kernel, and page-locked
   // host memory.
   void *stream = nullptr, *pageLocked = nullptr;
+  void *events[2] = {}; // before and after a kernel
   std::string deviceName;
   int computeCapability = 0, multiprocessorCount = 0;
 };

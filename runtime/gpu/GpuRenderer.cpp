@@ -50,6 +50,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
                          const RenderOptions &options)
     : Megakernel(std::move(scene), options), device(device) {
   const Clock::time_point start = Clock::now();
+  figures.treeNodes = launch().nodeCount;
   device.load(code.ptx, code.maxRegisters ? code.maxRegisters : defaultRegisters);
   kernel = device.kernel("rtsl_render");
   figures.device = device.name();
@@ -137,9 +138,9 @@ void GpuRenderer::fetchSums() {
   });
 }
 
-void GpuRenderer::runLanes(Address job) {
+double GpuRenderer::runLanes(Address job) {
   void *arguments[] = {&job};
-  device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
+  return device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
 }
 
 std::uint64_t GpuRenderer::get(Address number) {

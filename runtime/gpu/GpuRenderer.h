@@ -25,6 +25,8 @@ struct GpuStatistics {
   std::uint64_t laneBytes = 0;
   double loadSeconds = 0;   // the driver's compiler, on PTX that it has not seen
   double uploadSeconds = 0; // the scene
+  double treeSeconds = 0;   // building its trees on the host, if that was not done before
+  std::uint32_t treeNodes = 0;
 };
 
 class GpuRenderer final : public Megakernel {
@@ -48,7 +50,7 @@ private:
   void fetchPixels() override;
   RtslPixelSums placeSums() override;
   void fetchSums() override;
-  void runLanes(Address job) override;
+  double runLanes(Address job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 

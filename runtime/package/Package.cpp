@@ -16,7 +16,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 4;
+constexpr std::uint32_t formatVersion = 5;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -45,8 +45,9 @@ static_assert(sizeof(Section) == 24);
 /// What runs and what is run must mean the same by a launch.
 struct Layouts {
   std::uint32_t launch = sizeof(RtslLaunch), state = sizeof(RtslState), status = sizeof(RtslStatus),
-                job = sizeof(RtslJob), node = sizeof(RtslBvhNode), instance = sizeof(RtslInstance),
-                mesh = sizeof(RtslMesh), statusOffset = offsetof(RtslLaunch, status);
+                job = sizeof(RtslJob), node = sizeof(RtslBvhNode), item = sizeof(RtslTreeItem),
+                instance = sizeof(RtslInstance), mesh = sizeof(RtslMesh),
+                statusOffset = offsetof(RtslLaunch, status);
 };
 
 struct Info {
@@ -55,7 +56,7 @@ struct Info {
   std::uint32_t stateCount, frameBytes, hostStackBytes;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
-static_assert(sizeof(Info) == 80);
+static_assert(sizeof(Info) == 88);
 
 std::string_view bytesOf(const void *data, std::size_t size) {
   return {static_cast<const char *>(data), size};

@@ -50,8 +50,9 @@ Megakernel::Address HostMegakernel::clearedPixels() { // of a new picture
   return reinterpret_cast<Address>(picture.pixels.data());
 }
 
-void HostMegakernel::runLanes(Address job) {
+double HostMegakernel::runLanes(Address job) {
   threads.run([&](unsigned lane) { code.runLane(reinterpret_cast<const RtslJob *>(job), lane); });
+  return 0;
 }
 
 std::uint64_t HostMegakernel::get(Address number) {

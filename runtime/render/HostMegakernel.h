@@ -31,7 +31,7 @@ private:
   Address clearedPixels() override;
   void fetchPixels() override {} // lanes write directly to the picture
   RtslPixelSums placeSums() override { return sums->pointers(); } // or to the sums
-  void runLanes(Address job) override;
+  double runLanes(Address job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 

@@ -91,7 +91,7 @@ void Megakernel::run(Watch &watch) {
   const Watch::Poll poll(
       watch, [&] { return double(get(statusAddress + offsetof(RtslStatus, nextPixel))) / all; },
       [&] { set(statusAddress + offsetof(RtslStatus, stop), 1); });
-  runLanes(jobAddress);
+  kernelSeconds = runLanes(jobAddress);
 }
 
 RenderStatistics Megakernel::finish() {
@@ -100,6 +100,7 @@ RenderStatistics Megakernel::finish() {
   RenderOptions ofRun = options;
   ofRun.samplesPerPixel = samplesOfPixel;
   RenderStatistics statistics = readStatus(status, ofRun);
+  statistics.kernelSeconds = kernelSeconds;
   if (!sums)
     fetchPixels();
   for (const FlatScene::Output &output : outputs)

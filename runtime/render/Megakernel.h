@@ -31,6 +31,8 @@ protected:
   /// and program are available.
   Megakernel(FlatScene scene, const RenderOptions &options);
 
+  /// The scene's launch, before prepare().
+  RtslLaunch launch() const { return scene.launch(); }
   /// Copies the scene and the job to the device. Throws OutOfMemory.
   void prepare();
 
@@ -49,8 +51,8 @@ private:
   virtual void fetchPixels() = 0;
   /// Copies `sums` to the device, and gives their addresses there.
   virtual RtslPixelSums placeSums() = 0;
-  /// Runs all lanes of the job and waits for them.
-  virtual void runLanes(Address job) = 0;
+  /// Runs all lanes of the job and waits for them. Returns RenderStatistics::kernelSeconds.
+  virtual double runLanes(Address job) = 0;
   // Read and write a number in the status while lanes run, from another thread.
   virtual std::uint64_t get(Address number) = 0;
   virtual void set(Address number, std::uint32_t value) = 0;
@@ -67,6 +69,7 @@ private:
   Address statusAddress = 0, jobAddress = 0;
   RtslJob job{};
   RtslPixelSums placedSums{};
+  double kernelSeconds = 0; // of the last run
 };
 
 } // namespace rtsl::runtime

@@ -74,6 +74,7 @@ struct RenderStatistics {
   bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
   double buildSeconds = 0;               // acceleration structures
   double renderSeconds = 0;              // samples
+  double kernelSeconds = 0;              // of these, on a GPU, by its own clock; otherwise 0
   std::uint64_t badRays = 0;             // not finite or without a direction: they saw color 0
   std::uint64_t retracedRays = 0;        // beyond what Embree can follow: by our own tree
   std::uint64_t rescaledRays = 0;        // directions too long or short for Embree

@@ -304,26 +304,19 @@ void World::place(RtslInstance &instance, std::uint32_t number, std::uint32_t pr
   }
   const bool hasParts = instance.primitive == 0 || instance.boxCount != 0;
   const bool hasOwnSpace = hasParts && instance.transform != 0;
+  const auto add = [&](std::vector<runtime::BvhItem> &items, const RtslLeafItem &item) {
+    items.push_back(
+        {{{-1e18f, -1e18f, -1e18f}, {1e18f, 1e18f, 1e18f}}, // nothing is culled
+         item,
+         instance.primitive == 0 && !(hasOwnSpace && &items == &worldItems) ? &mesh : nullptr});
+  };
   for (std::uint32_t primitive = 0; primitive != primitives; ++primitive)
     if (hasOwnSpace)
-      treeItems[instance.primitive == 0 ? 0 : instance.mesh + 1].push_back({0, primitive});
+      add(treeItems[instance.primitive == 0 ? 0 : instance.mesh + 1], {RTSL_NO_HIT, primitive});
     else
-      worldItems.push_back({number, primitive});
+      add(worldItems, {number, primitive});
   if (hasOwnSpace)
-    worldItems.push_back({number, 0});
-}
-
-/// One list for the launch.
-void World::listItems() {
-  items = worldItems;
-  trees.clear();
-  for (const std::vector<RtslLeafItem> &tree : treeItems) {
-    trees.push_back(
-        {~static_cast<std::int32_t>(items.size()), static_cast<std::uint32_t>(tree.size())});
-    items.insert(items.end(), tree.begin(), tree.end());
-  }
-  launch.leafItems = items.data();
-  launch.meshTrees = trees.data();
+    add(worldItems, {number, 0});
 }
 
 /// One in three is not there for some rays. Its bounds are what the primitive says, and never used
@@ -427,9 +420,7 @@ World::World(const runtime::Program &code, const Program &program)
   launch.selectionCount = static_cast<std::uint32_t>(selections.size());
   launch.boxes = boxes.data();
   launch.boxCount = static_cast<std::uint32_t>(boxes.size());
-  listItems();
-  launch.rootIsLeaf = 1;
-  launch.nodeCount = static_cast<std::uint32_t>(worldItems.size());
+  makeTree();
   launch.needs = code.needs | RTSL_HAS_ALL;
   launch.host = &host;
 }
@@ -447,11 +438,18 @@ World::World(const runtime::Program &bound, const World &made)
   launch.host = &host;
 }
 
+void World::makeTree() {
+  tree = runtime::buildBvh(worldItems, 1);
+  for (std::size_t i = 0; i != treeItems.size(); ++i)
+    tree.addMeshTree(i, runtime::buildBvh(treeItems[i], 1));
+  tree.install(launch);
+}
+
 void World::reverseOrder() {
   std::reverse(worldItems.begin(), worldItems.end());
-  for (std::vector<RtslLeafItem> &tree : treeItems)
-    std::reverse(tree.begin(), tree.end());
-  listItems();
+  for (std::vector<runtime::BvhItem> &contents : treeItems)
+    std::reverse(contents.begin(), contents.end());
+  makeTree();
 }
 
 runtime::SceneFacts World::facts() const {

@@ -3,6 +3,7 @@
 
 #include "Program.h"
 
+#include "runtime/accel/BvhBuilder.h"
 #include "runtime/program/ProgramHost.h"
 
 #include <cstdint>
@@ -42,13 +43,13 @@ public:
   static std::vector<std::pair<std::string, std::string>> surfaces(const Program &program);
 
 private:
+  void makeTree();
   void addObjects(const std::vector<std::string> &classes, std::vector<RtslRef> *references);
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
   void addSelections(RtslRef selector);
   void place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives);
-  void listItems();
   void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
   std::uint32_t needsOf(const runtime::ClassInfo &info,
                         std::set<const runtime::ClassInfo *> &seen) const;
@@ -76,10 +77,9 @@ private:
   std::vector<RtslSelection> selections;
   std::vector<RtslBox> boxes;
   // of the world, and of the mesh and each object with several primitives, in their own spaces
-  std::vector<RtslLeafItem> worldItems;
-  std::vector<std::vector<RtslLeafItem>> treeItems;
-  std::vector<RtslLeafItem> items; // all of them
-  std::vector<RtslMeshTree> trees;
+  std::vector<runtime::BvhItem> worldItems;
+  std::vector<std::vector<runtime::BvhItem>> treeItems;
+  runtime::Bvh tree; // of all of them
   RtslMesh mesh{};
   RtslLaunch launch{};
 };

@@ -89,9 +89,9 @@ std::string toJson(const runtime::Package &package, const runtime::RenderOptions
   if (gpu)
     text += fmt::format(
         ",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
-        " \"loadSeconds\": {}, \"uploadSeconds\": {}",
+        " \"loadSeconds\": {}, \"uploadSeconds\": {}, \"kernelSeconds\": {}",
         gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
-        gpu->uploadSeconds);
+        gpu->uploadSeconds, statistics.kernelSeconds);
   return text + "}\n";
 }
 

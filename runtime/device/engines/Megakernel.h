@@ -129,7 +129,8 @@ inline void writePixel(const RtslJob &job, const Lane &lane) {
   if (count == 0)
     countUp(&job.status->pixelsWithoutSample);
   forEachComponent(rtsl_color_components(job.launch), [&](uint32_t i) {
-    pixel[i] = count ? float(lane.sum[i] / double(count)) : 0.0f;
+    // Of one sample it is that; a GPU takes long for a division.
+    pixel[i] = count > 1 ? float(lane.sum[i] / double(count)) : count ? float(lane.sum[i]) : 0.0f;
   });
 }
 
@@ -148,11 +149,14 @@ inline void leavePixel(const RtslJob &job, Lane &lane) {
 /// Takes the next free pixel that is not done. False if there is none, or the job is to stop.
 inline bool takePixel(const RtslJob &job, Lane &lane) {
   do {
-    if (isToStop(job))
-      return false;
     lane.pixel = countUp(&job.status->nextPixel);
+    const bool stops = isToStop(job); // a GPU does both at the same time
     if (lane.pixel >= uint64_t(job.width) * job.height)
       return false;
+    if (stops) {
+      countUp(&job.status->unfinishedPixels);
+      return false;
+    }
     loadPixel(job, lane);
   } while (lane.sample >= job.samplesPerPixel);
   return true;
@@ -168,8 +172,9 @@ inline void nextSample(const RtslJob &job, Lane &lane, Rays &rays) {
     rays.next = nothingLeft;
     return;
   }
-  startRays(rays, *job.launch, job.left + uint32_t(lane.pixel % job.width),
-            job.top + uint32_t(lane.pixel / job.width), lane.sample);
+  const auto pixel = uint32_t(lane.pixel); // no launch has more than 2^32
+  startRays(rays, *job.launch, job.left + pixel % job.width, job.top + pixel / job.width,
+            lane.sample);
 }
 
 inline void endSample(const RtslJob &job, Lane &lane, Rays &rays) {

@@ -108,24 +108,37 @@ typedef struct RtslMesh {
   uint32_t keyCount, unused;
 } RtslMesh;
 
-/// A node of the plain binary tree: bounds of both children. `child` >= 0 is an inner node;
-/// otherwise ~child is the first of `count` leaf items.
+/// A node of the tree: up to eight children, in slots. Their boxes are on a grid of the node's own,
+/// rounded outwards, so that a child has 10 bytes (Ylitie, Karras, Laine, "Efficient Incoherent Ray
+/// Traversal on GPUs Through Compressed Wide BVHs", HPG 2017). An empty slot has a box that no ray
+/// enters, from 255 to 0, and a `child` of 0.
 typedef struct RtslBvhNode {
-  float lower[2][3], upper[2][3];
-  int32_t child[2];
-  uint32_t count[2];
+  float origin[3];     // a corner of the grid, exactly
+  uint8_t exponent[3]; // a step of the grid along an axis is 2^(exponent - 127); 1 to 254
+  uint8_t inner;       // bit s: the child in slot s is a node. Others have items
+  uint32_t firstNode;  // of the children that are nodes, in the order of their slots
+  uint32_t firstItem;  // of the children that have items
+  uint8_t child[8];    // RTSL_INNER_CHILD + slot, or RTSL_LEAF(first item - firstItem, count)
+  uint8_t lower[3][8], upper[3][8]; // by axis and slot: steps from the origin
 } RtslBvhNode;
 
-/// A leaf entry: primitive `primitive` of instance `instance`.
+/// The items of a child: one to RTSL_MOST_LEAF_ITEMS. The three upper bits are as many ones, the
+/// five lower ones are the position of these ones in a set of 24 bits, one for each item of a node.
+#define RTSL_MOST_LEAF_ITEMS 3u
+#define RTSL_LEAF(first, count) ((uint8_t)(((1u << (count)) - 1u) << 5 | (first)))
+#define RTSL_INNER_CHILD 0x38u // one bit, from position 24 on
+
+/// A primitive of an instance.
 typedef struct RtslLeafItem {
   uint32_t instance, primitive;
 } RtslLeafItem;
 
-/// The root of a tree of triangles: a node, or leaf items, as RtslBvhNode::child and count.
-typedef struct RtslMeshTree {
-  int32_t child;
-  uint32_t count;
-} RtslMeshTree;
+/// An item of a tree. Its triangle is here, too, so that a traversal reads nothing else.
+typedef struct RtslTreeItem {
+  float vertices[9];            // in the space of the tree
+  uint32_t instance, primitive; // instance: RTSL_NO_HIT in the tree of a mesh or of an object
+  uint32_t hasVertices;         // 1: it is a triangle. 0: the instance tells what it is
+} RtslTreeItem;
 
 /// An instance that shines, as a light: its material has `emission`, and points on it can be chosen.
 typedef struct RtslEmitter {
@@ -166,18 +179,17 @@ typedef struct RtslLaunch {
   uint32_t width, height;
   uint32_t seed;
   uint32_t needs;           // RTSL_NEEDS_*: what the classes of the scene read
-  const RtslBvhNode *nodes; // device traversal; null if the host's own is used
-  const RtslLeafItem *leafItems;
-  // by mesh: the tree of a mesh that has instances with transforms, in its object space; then those
-  // of objects that hold several primitives, likewise
-  const RtslMeshTree *meshTrees;
+  const RtslBvhNode *nodes; // device traversal, the root first; null if the host's own is used
+  const RtslTreeItem *treeItems;
+  // by mesh: the root of the tree of a mesh that has instances with transforms, in its object
+  // space; then those of objects that hold several primitives, likewise
+  const uint32_t *meshTrees;
   const RtslEmitter *emitters; // in the order of their instances
   // of the triangles of an emitter's mesh, or of its primitives: the probability that this one or
   // one before it is chosen
   const float *partChances;
   uint32_t emitterCount, partChanceCount;
-  uint32_t rootIsLeaf,
-      nodeCount; // rootIsLeaf: there are no nodes, and nodeCount leaf items are tested one by one
+  uint32_t nodeCount;
   const void *host; // the host's own (for example its Embree scene); never read by device code
   struct RtslStatus
       *status; // of the job or the rendering that runs the launch; null while a scene is built

@@ -50,6 +50,24 @@ inline float minimum(float a, float b) {
   return a < b ? a : b;
 }
 
+/// The larger of two numbers, or `limit` if the other one is NaN. If both are 0, the sign depends
+/// on the processor; no distance of a hit is 0.
+inline float raised(float limit, float x) {
+#ifdef __NVPTX__
+  return __builtin_fmaxf(limit, x); // one instruction
+#else
+  return x > limit ? x : limit;
+#endif
+}
+/// The smaller one, likewise.
+inline float lowered(float limit, float x) {
+#ifdef __NVPTX__
+  return __builtin_fminf(limit, x);
+#else
+  return x < limit ? x : limit;
+#endif
+}
+
 inline float dot(Vec3 a, Vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
@@ -74,6 +92,17 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
           differenceOfProducts(a.x, b.y, a.y, b.x)};
 }
 
+inline unsigned bitsOf(float number) {
+  unsigned bits;
+  __builtin_memcpy(&bits, &number, sizeof bits);
+  return bits;
+}
+inline float floatOf(unsigned bits) {
+  float number;
+  __builtin_memcpy(&number, &bits, sizeof number);
+  return number;
+}
+
 constexpr float infinity = __builtin_inff();
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 constexpr float roundingUnit = 0x1p-24f;
@@ -85,17 +114,12 @@ inline bool isFinite(Vec3 a) {
 
 /// 2^exponent for -126 <= exponent <= 127.
 inline float powerOfTwo(int exponent) {
-  unsigned bits = unsigned(exponent + 127) << 23;
-  float value;
-  __builtin_memcpy(&value, &bits, sizeof value);
-  return value;
+  return floatOf(unsigned(exponent + 127) << 23);
 }
 
 /// e such that 2^e <= |a| < 2^(e+1), for normal numbers; -127 for smaller ones.
 inline int exponentOf(float a) {
-  unsigned bits;
-  __builtin_memcpy(&bits, &a, sizeof bits);
-  return int((bits >> 23) & 255) - 127;
+  return int((bitsOf(a) >> 23) & 255) - 127;
 }
 
 /// A vector of length 1, for any length of `a` (except 0, which stays 0).

@@ -94,8 +94,8 @@ public:
   }
 
   /// Tests one leaf item, in its space, and commits it if it wins. It must not be the hit so far.
-  template <typename Ray>
-  bool test(const RtslLeafItem &item, const Ray &ray) const {
+  template <typename Item, typename Ray>
+  bool test(const Item &item, const Ray &ray) const {
     return testItem(state, ray, item, intersect());
   }
 
@@ -110,7 +110,7 @@ public:
   template <typename Limit, typename Visit>
   void forEach(Limit limit, Visit visit) const {
     const auto sees = [&](const RtslInstance &instance) { return isSeen(state, instance, slots); };
-    tree.forEach(state, triangleRay, limit, sees, [&](const RtslLeafItem &item, const auto &ray) {
+    tree.forEach(state, triangleRay, limit, sees, [&](const auto &item, const auto &ray) {
       return isSeen(state, item, ray, slots) && visit(item, ray);
     });
   }
@@ -165,7 +165,7 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
   for (;;) {
     NearestCandidates nearest;
     search.forEach([&] { return nearest.limit(state.HitDistance); },
-                   [&](const RtslLeafItem &item, const auto &ray) {
+                   [&](const auto &item, const auto &ray) {
                      search.forgetHit();
                      if (search.test(item, ray)) {
                        Candidate candidate = {state.nearest, item.instance, item.primitive};
@@ -219,7 +219,7 @@ template <typename Slots, typename Tree>
 uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const Tree &tree) {
   const Search<Slots, Tree> search(state, slots, tree);
   search.forEach([&] { return state.nearest; },
-                 [&](const RtslLeafItem &item, const auto &ray) {
+                 [&](const auto &item, const auto &ray) {
                    if (!search.hasAnyHit(item))
                      return search.test(item, ray) && first;
                    const CommittedHit before(state);
@@ -246,7 +246,8 @@ uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const
 /// The same for any ray, with the tree of the launch.
 template <typename Slots>
 uint32_t traverseAsking(RtslState &state, uint32_t how, const Slots &slots) {
-  return isGoodRay(state) ? findHitAsking(state, how, slots, LaunchTree()) : RTSL_BAD_RAY;
+  return isGoodRay(state) ? findHitAsking(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)})
+                          : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

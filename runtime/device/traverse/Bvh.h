@@ -1,132 +1,231 @@
-//===- Bvh.h - traversal of the binary tree -------------------------------===//
+//===- Bvh.h - traversal of the tree --------------------------------------===//
+//
+// Nodes have up to eight children, whose boxes are on a grid (RtslBvhNode). A child is entered
+// wherever rangeInBox finds a range in the box of an item in it; docs/gpu.md has the proof. So what
+// was said of nested boxes at rangeShare (BoxRange.h) holds, and the grid affects only the time.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/ray/Warp.h"
+#include "runtime/device/traverse/BoxRange.h"
 #include "runtime/device/traverse/Triangle.h"
 
 namespace rtsl::device {
 
-/// No path from the root is longer, as the builder guarantees (runtime/accel/BvhBuilder.h). Each
-/// step down pushes one child at most.
+/// No path from the root is longer, as the builder guarantees (runtime/accel/BinaryTree.h). Each
+/// step down pushes one entry at most.
 constexpr int maxBvhDepth = 64;
 
-/// A ray meets a box if it leaves it no earlier than it enters it, within this factor. That covers
-/// three roundings of each distance (Ize, "Robust BVH Ray Traversal", JCGT 2(2), 2013: 1 + 2
-/// gamma(3)), and as much again for those of intersectTriangle.
-constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
+/// Items are put off if fewer than one in this many lanes would test them; and only if this many
+/// entries are on the stack at most.
+constexpr int fewLanes = 5, mostPutOff = 32;
 
-/// The contents of a box are hit within the ray's range in the box, up to this share of the
-/// distance: hits of triangles are moved into it (Traverse.h), those of RTSL primitives are
-/// compared as if they were in it (Hit.h). So a box that begins beyond the nearest hit by more than
-/// two such shares contains nothing that could win, and the result does not depend on which boxes a
-/// traversal enters, in any tree and any order. That holds for outer boxes too, because rounding is
-/// monotonic: of two nested boxes, the outer one begins no later and ends no earlier, to the bit.
-constexpr float rangeShare = 0x1p-12f;
-constexpr float cullSlack = 1.0f + 2 * rangeShare;
-
-/// The part of a ray in a box.
-struct Range {
-  float near, far;
-
-  bool isEmpty() const { return !(near <= far * bvhSlack); }
-  /// By rangeShare of its distances on both sides: where hits in the box may be.
-  Range widened() const { return {near * (1.0f - rangeShare), far * (1.0f + rangeShare)}; }
+/// Sixteen bytes of memory that nobody writes while the program runs.
+struct Words {
+  uint32_t word[4];
 };
 
-/// The point of a range that is nearest to t.
-inline float movedInto(Range range, float t) {
-  return t < range.near ? range.near : t > range.far ? range.far : t;
-}
-
-/// The larger of two numbers, or `limit` if the other one is NaN. If both are 0, the sign depends
-/// on the processor; no distance of a hit is 0.
-inline float raised(float limit, float x) {
+/// Loaded at once: the compiler would divide a load of which it reads only parts.
+inline Words wordsAt(const void *address, int number) {
+  Words words;
+  const char *from = static_cast<const char *>(address) + sizeof words * size_t(number);
 #ifdef __NVPTX__
-  return __builtin_fmaxf(limit, x); // one instruction
+  asm("ld.global.nc.v4.b32 {%0, %1, %2, %3}, [%4];"
+      : "=r"(words.word[0]), "=r"(words.word[1]), "=r"(words.word[2]), "=r"(words.word[3])
+      : "l"((const __attribute__((address_space(1))) char *)from));
 #else
-  return x > limit ? x : limit;
+  __builtin_memcpy(&words, from, sizeof words);
 #endif
+  return words;
 }
-/// The smaller one, likewise.
-inline float lowered(float limit, float x) {
-#ifdef __NVPTX__
-  return __builtin_fminf(limit, x);
-#else
-  return x < limit ? x : limit;
+
+inline uint32_t byteOf(uint32_t word, int i) {
+  return word >> (8 * i) & 0xff;
+}
+
+/// The words of a node.
+struct NodeWords {
+  Words words[5];
+
+  explicit NodeWords(const RtslBvhNode &node) {
+    for (int i = 0; i < 5; ++i)
+      words[i] = wordsAt(&node, i);
+  }
+
+  uint32_t word(int i) const { return words[i / 4].word[i % 4]; }
+  float origin(int axis) const { return floatOf(word(axis)); }
+  /// As RtslBvhNode::exponent, by axis.
+  uint32_t exponent(int axis) const { return byteOf(word(3), axis); }
+  uint32_t inner() const { return word(3) >> 24; }
+  uint32_t firstNode() const { return word(4); }
+  uint32_t firstItem() const { return word(5); }
+  // Of four slots, the lower ones or the upper ones:
+  uint32_t children(int half) const { return word(6 + half); }
+  uint32_t sides(int axis, int half, bool isUpper) const {
+    const uint32_t lower = word(8 + 2 * axis + half), upper = word(14 + 2 * axis + half);
+    return isUpper ? upper : lower;
+  }
+};
+static_assert(offsetof(RtslBvhNode, inner) == 15 && offsetof(RtslBvhNode, firstNode) == 16 &&
+              offsetof(RtslBvhNode, child) == 24 && offsetof(RtslBvhNode, lower) == 32 &&
+              offsetof(RtslBvhNode, upper) == 56 && sizeof(RtslBvhNode) == 80);
+
+inline float stepOfGrid(uint32_t exponent) {
+  return floatOf(exponent << 23);
+}
+
+/// The distances at which a ray crosses the planes of a grid, along one axis: plane n at
+/// fused(n, step, near), or far.
+struct GridAxis {
+  float step;
+  float near, far; // of plane 0, for sides where the ray enters and leaves
+  float size;      // if this is not too large, no other number is
+
+  GridAxis(const NodeWords &node, int axis, float origin, float inverse) {
+    step = stepOfGrid(node.exponent(axis)) * inverse;
+    const float corner = (node.origin(axis) - origin) * inverse;
+    // More than all that rounding changes, here and in rangeInBox, and than bvhSlack.
+    const float slack =
+        fused(absolute(step), 0x1p-11f, fused(absolute(corner), 0x1p-19f, 0x1p-140f));
+    near = corner - slack;
+    far = corner + slack;
+    size = absolute(step) + absolute(corner);
+  }
+
+  float enters(uint32_t planes, int i) const { return fused(float(byteOf(planes, i)), step, near); }
+  float leaves(uint32_t planes, int i) const { return fused(float(byteOf(planes, i)), step, far); }
+};
+
+/// For positions of children in sets: the slots are flipped so that nearer ones come later.
+inline uint32_t flippedSlots(const TriangleRay &ray) {
+  return (ray.inverse.x < 0 ? 0u : 1u) | (ray.inverse.y < 0 ? 0u : 2u) |
+         (ray.inverse.z < 0 ? 0u : 4u);
+}
+
+/// What the ray may enter of a child of the node, as a set of bits: its items, from bit 0 on, or
+/// bit 24 + (its slot with bits flipped) if it is a node.
+inline uint32_t childBits(uint8_t child, uint32_t flipped) {
+  const uint32_t position = child & 0x1fu;
+  return uint32_t(child >> 5) << (position < 24 ? position : position ^ flipped);
+}
+
+/// The children that the ray may enter between tMin and tMax, by rangeInBox for the boxes as
+/// floats: for numbers of any size, and slower than enteredChildren.
+inline uint32_t enteredExactly(const RtslBvhNode &node, const TriangleRay &ray, uint32_t flipped,
+                               float tMin, float tMax) {
+  uint32_t entered = 0;
+#ifdef __clang__
+#pragma clang loop unroll(disable)
 #endif
-}
-
-/// The range of the ray in the box and between tMin and tMax. If a component of the direction is 0,
-/// `inverse` is infinite, and 0 * inf is NaN for an origin in the plane of a side: comparisons are
-/// written so that this leaves the range as it is.
-inline Range rangeInBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
-                        float tMin, float tMax) {
-  float near = tMin, far = tMax;
-  // All are loaded, so that a GPU can load several at once.
-  const Vec3 low = load(lower), high = load(upper);
-  float x0 = ((inverse.x < 0 ? high.x : low.x) - origin.x) * inverse.x;
-  float x1 = ((inverse.x < 0 ? low.x : high.x) - origin.x) * inverse.x;
-  float y0 = ((inverse.y < 0 ? high.y : low.y) - origin.y) * inverse.y;
-  float y1 = ((inverse.y < 0 ? low.y : high.y) - origin.y) * inverse.y;
-  float z0 = ((inverse.z < 0 ? high.z : low.z) - origin.z) * inverse.z;
-  float z1 = ((inverse.z < 0 ? low.z : high.z) - origin.z) * inverse.z;
-  near = raised(raised(raised(near, x0), y0), z0);
-  far = lowered(lowered(lowered(far, x1), y1), z1);
-  return {near, far};
-}
-
-/// Where the ray enters the box, or infinity if it does not between tMin and tMax.
-inline float enterBox(const float lower[3], const float upper[3], Vec3 origin, Vec3 inverse,
-                      float tMin, float tMax) {
-  Range range = rangeInBox(lower, upper, origin, inverse, tMin, tMax);
-  return range.isEmpty() ? infinity : range.near;
-}
-
-/// Calls test(item) for every leaf item below `root` that may have hits between tMin and tMax(),
-/// nearer boxes first. tMax() may shrink meanwhile. test returns true to stop; then so does this.
-template <typename Limit, typename Test>
-bool traverseBvh(const RtslLaunch &launch, RtslMeshTree root, const TriangleRay &ray, float tMin,
-                 Limit tMax, Test test) {
-  const Vec3 origin = ray.origin, inverse = ray.inverse;
-  tMin *= 1.0f - 2 * rangeShare;
-  struct Entry {
-    int32_t child;
-    uint32_t count;
-    float near;
-  };
-  Entry stack[maxBvhDepth];
-  int top = 0;
-  Entry current = {root.child, root.count, tMin};
-  for (;;) {
-    if (current.child >= 0) {
-      const auto &node = *static_cast<const RtslBvhNode *>(
-          __builtin_assume_aligned(launch.nodes + current.child, 16));
-      float limit = tMax() * cullSlack;
-      float near0 = enterBox(node.lower[0], node.upper[0], origin, inverse, tMin, limit);
-      float near1 = enterBox(node.lower[1], node.upper[1], origin, inverse, tMin, limit);
-      bool enter0 = near0 < infinity, enter1 = near1 < infinity;
-      if (enter0 && enter1) {
-        int nearer = near1 < near0;
-        stack[top++] = {node.child[1 - nearer], node.count[1 - nearer], nearer ? near0 : near1};
-        current = {node.child[nearer], node.count[nearer], nearer ? near1 : near0};
-        continue;
-      }
-      if (enter0 || enter1) {
-        current = {node.child[enter1], node.count[enter1], enter1 ? near1 : near0};
-        continue;
-      }
-    } else {
-      uint32_t first = uint32_t(~current.child);
-      for (uint32_t i = first; i < first + current.count; ++i)
-        if (test(launch.leafItems[i]))
-          return true;
+  for (int slot = 0; slot < 8; ++slot) {
+    float lower[3], upper[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float step = stepOfGrid(node.exponent[axis]);
+      lower[axis] = fused(float(node.lower[axis][slot]), step, node.origin[axis]);
+      upper[axis] = fused(float(node.upper[axis][slot]), step, node.origin[axis]);
     }
-    do {
+    if (enterBox(lower, upper, ray.origin, ray.inverse, tMin, tMax) < infinity)
+      entered |= childBits(node.child[slot], flipped);
+  }
+  return entered;
+}
+
+/// The children that the ray may enter between tMin and tMax. `inMemory` is the same node.
+inline uint32_t enteredChildren(const NodeWords &node, const RtslBvhNode &inMemory,
+                                const TriangleRay &ray, uint32_t flipped, float tMin, float tMax) {
+  const GridAxis x(node, 0, ray.origin.x, ray.inverse.x), y(node, 1, ray.origin.y, ray.inverse.y),
+      z(node, 2, ray.origin.z, ray.inverse.z);
+  if (!((x.size + y.size) + z.size < 0x1p100f))
+    return enteredExactly(inMemory, ray, flipped, tMin, tMax);
+  const bool isDownX = ray.inverse.x < 0, isDownY = ray.inverse.y < 0, isDownZ = ray.inverse.z < 0;
+  uint32_t entered = 0;
+#ifdef __clang__
+#pragma clang loop unroll(full)
+#endif
+  for (int half = 0; half < 2; ++half) {
+    const uint32_t nearX = node.sides(0, half, isDownX), farX = node.sides(0, half, !isDownX),
+                   nearY = node.sides(1, half, isDownY), farY = node.sides(1, half, !isDownY),
+                   nearZ = node.sides(2, half, isDownZ), farZ = node.sides(2, half, !isDownZ);
+    // childBits for four children at once
+    const uint32_t children = node.children(half);
+    const uint32_t isInner = (children & children << 1) & 0x10101010u;
+    const uint32_t positions =
+        (children ^ (flipped * 0x01010101u & (isInner >> 4) * 0xffu)) & 0x1f1f1f1fu;
+    const uint32_t bits = children >> 5 & 0x07070707u;
+#ifdef __clang__
+#pragma clang loop unroll(full)
+#endif
+    for (int i = 0; i < 4; ++i) {
+      const float near =
+          raised(raised(raised(tMin, x.enters(nearX, i)), y.enters(nearY, i)), z.enters(nearZ, i));
+      const float far =
+          lowered(lowered(lowered(tMax, x.leaves(farX, i)), y.leaves(farY, i)), z.leaves(farZ, i));
+      if (near <= far)
+        entered |= byteOf(bits, i) << byteOf(positions, i);
+    }
+  }
+  return entered;
+}
+
+/// Of a traversal: bits 31 to 24 of `bits` are children of a node that are to be visited, the
+/// largest first, bits 7 to 0 are the slots of all its children that are nodes, and `first` is the
+/// first of these in memory. If bits 31 to 24 are 0, the others are items from `first` on.
+struct alignas(8) Open {
+  uint32_t first, bits;
+
+  bool hasNodes() const { return bits >> 24 != 0; }
+};
+
+/// Calls test(item) for every item below the node `root` that may have hits between tMin and
+/// tMax(), those of nearer boxes first on the whole. tMax() may shrink meanwhile; it is called once
+/// a node. test returns true to stop; then so does this. If it `putsOff` items, those that only few
+/// lanes of a warp would test wait for others.
+template <typename Limit, typename Test>
+bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray, float tMin,
+                 Limit tMax, bool putsOff, Test test) {
+  // Covers cullSlack, and bvhSlack on top.
+  constexpr float slack = cullSlack + 0x1p-18f;
+  tMin *= 1.0f - 2 * rangeShare;
+  const uint32_t flipped = flippedSlots(ray);
+  const RtslBvhNode *const nodes = launch.nodes;
+  const RtslTreeItem *const treeItems = launch.treeItems;
+  Open stack[maxBvhDepth + mostPutOff];
+  int top = 0;
+  Open open = {root, 1u << (24 + flipped)};
+  for (;;) {
+    uint32_t firstItem = open.first, items = open.bits;
+    if (open.hasNodes()) {
+      const uint32_t next = 31u - uint32_t(__builtin_clz(open.bits));
+      const uint32_t slot = (next & 7) ^ flipped;
+      const uint32_t before = uint32_t(__builtin_popcount(open.bits & ((1u << slot) - 1)));
+      const RtslBvhNode &inMemory = nodes[open.first + before];
+      open.bits &= ~(1u << next);
+      if (open.hasNodes())
+        stack[top++] = open;
+      const NodeWords node(inMemory);
+      const uint32_t entered = enteredChildren(node, inMemory, ray, flipped, tMin, tMax() * slack);
+      firstItem = node.firstItem();
+      items = entered & 0x00ffffffu;
+      open = {node.firstNode(), (entered & 0xff000000u) | node.inner()};
+    } else {
+      open.bits = 0;
+    }
+    for (const int lanes = lanesHere(); items != 0; items &= items - 1) {
+      if (putsOff && open.hasNodes() && top < mostPutOff && lanesHere() * fewLanes < lanes) {
+        stack[top++] = {firstItem, items};
+        break;
+      }
+      if (test(treeItems[firstItem + uint32_t(__builtin_ctz(items))]))
+        return true;
+    }
+    if (!open.hasNodes()) {
       if (top == 0)
         return false;
-      current = stack[--top];
-    } while (!(current.near <= tMax() * cullSlack));
+      open = stack[--top];
+    }
   }
 }
 

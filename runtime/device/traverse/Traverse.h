@@ -73,14 +73,41 @@ inline TriangleVertices triangleVertices(const RtslLaunch &launch, const RtslMes
           vertexAt(mesh, mesh.positions, index[2], time)};
 }
 
+/// The words of an item of the tree.
+struct ItemWords {
+  Words words[3];
+
+  explicit ItemWords(const RtslTreeItem &item)
+      : words{wordsAt(&item, 0), wordsAt(&item, 1), wordsAt(&item, 2)} {}
+
+  uint32_t word(int i) const { return words[i / 4].word[i % 4]; }
+  Vec3 vertex(int i) const {
+    return {floatOf(word(3 * i)), floatOf(word(3 * i + 1)), floatOf(word(3 * i + 2))};
+  }
+  RtslLeafItem leafItem() const { return {word(9), word(10)}; }
+  bool hasVertices() const { return word(11) != 0; }
+};
+static_assert(offsetof(RtslTreeItem, instance) == 36 && offsetof(RtslTreeItem, primitive) == 40 &&
+              offsetof(RtslTreeItem, hasVertices) == 44 && sizeof(RtslTreeItem) == 48);
+
+/// An item of the tree, of the instance that the ray is in.
+struct TreeItem : RtslLeafItem {
+  ItemWords stored;
+
+  bool hasVertices() const { return stored.hasVertices(); }
+  TriangleVertices vertices() const {
+    return {stored.vertex(0), stored.vertex(1), stored.vertex(2)};
+  }
+};
+
 /// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
 /// box, within rangeShare. False if the ray misses the box: then it does in every traversal.
 inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float &t) {
   float lower[3], upper[3];
   for (int i = 0; i < 3; ++i) {
     float a = p.v0[i], b = p.v1[i], c = p.v2[i];
-    lower[i] = minimum(minimum(a, b), c);
-    upper[i] = maximum(maximum(a, b), c);
+    lower[i] = lowered(lowered(a, b), c);
+    upper[i] = raised(raised(a, b), c);
   }
   Range range = rangeInBox(lower, upper, ray.origin, ray.inverse, 0, infinity);
   if (range.isEmpty())
@@ -89,22 +116,28 @@ inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float
   return true;
 }
 
-/// Tests one triangle and commits it if it wins. `Ray` is a TriangleRay in world space or an
-/// InstanceRay.
-template <typename Ray>
+/// Tests one triangle and commits it if it wins and isSeen(), which is called only then. `Ray` is a
+/// TriangleRay in world space or an InstanceRay.
+template <typename Ray, typename Seen>
 bool testTriangle(RtslState &state, const Ray &ray, const TriangleVertices &vertices,
-                  uint32_t instance, uint32_t triangle) {
+                  uint32_t instance, uint32_t triangle, Seen isSeen) {
   TriangleHit hit;
   if (!intersectTriangle(ray, vertices.v0, vertices.v1, vertices.v2, hit) ||
       !moveIntoBox(ray, vertices, hit.t))
     return false;
   hit.t = moveIntoInstance(ray, hit.t);
-  if (!(hit.t > state.Epsilon) || !wins(state, hit.t, instance, triangle))
+  if (!(hit.t > state.Epsilon) || !wins(state, hit.t, instance, triangle) || !isSeen())
     return false;
   commit(state, hit.t, hit.t, instance, triangle);
   state.u = hit.u;
   state.v = hit.v;
   return true;
+}
+
+template <typename Ray>
+bool testTriangle(RtslState &state, const Ray &ray, const TriangleVertices &vertices,
+                  uint32_t instance, uint32_t triangle) {
+  return testTriangle(state, ray, vertices, instance, triangle, [] { return true; });
 }
 
 template <typename Ray>
@@ -193,6 +226,27 @@ bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Inters
                                                 item.instance, item.primitive)
                                  : testPrimitive(state, ray, instance, item, intersect);
 }
+template <typename Ray, typename Intersect>
+bool testItem(RtslState &state, const Ray &ray, const TreeItem &item, Intersect intersect) {
+  if (!item.hasVertices())
+    return testItem(state, ray, static_cast<const RtslLeafItem &>(item), intersect);
+  return testTriangle(state, ray, item.vertices(), item.instance, item.primitive);
+}
+
+/// The same for one that the ray may not see.
+template <typename Ray, typename Slots, typename Intersect>
+bool testIfSeen(RtslState &state, const Ray &ray, const RtslLeafItem &item, const Slots &slots,
+                Intersect intersect) {
+  return isSeen(state, item, ray, slots) && testItem(state, ray, item, intersect);
+}
+template <typename Ray, typename Slots, typename Intersect>
+bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Slots &slots,
+                Intersect intersect) {
+  if (!item.hasVertices())
+    return testIfSeen(state, ray, static_cast<const RtslLeafItem &>(item), slots, intersect);
+  return testTriangle(state, ray, item.vertices(), item.instance, item.primitive,
+                      [&] { return isSeen(state, item, ray, slots); });
+}
 
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
 /// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
@@ -227,6 +281,8 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
 /// true. `ray` is the ray in world space, or the InstanceRay for items that have their own space.
 /// It passes over instances with a space that enter(instance) is false for.
 struct LaunchTree {
+  bool putsOff; // as in traverseBvh
+
   template <typename Limit, typename Enter, typename Visit>
   void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Enter enter,
                Visit visit) const {
@@ -236,10 +292,10 @@ struct LaunchTree {
       forEachListed(launch, count, ray, tMin, limit, visit);
       return;
     }
-    const RtslMeshTree world =
-        launch.rootIsLeaf ? RtslMeshTree{~0, launch.nodeCount} : RtslMeshTree{0, 0};
-    traverseBvh(launch, world, ray, tMin, limit, [&](const RtslLeafItem &item) {
-      if (!hasTransforms(launch))
+    traverseBvh(launch, 0, ray, tMin, limit, putsOff, [&](const RtslTreeItem &inMemory) {
+      const ItemWords stored(inMemory);
+      const TreeItem item = {stored.leafItem(), stored};
+      if (!hasTransforms(launch) || stored.hasVertices())
         return visit(item, ray);
       const RtslInstance &instance = instanceAt(launch, item.instance);
       if (!hasOwnSpace(launch, instance))
@@ -248,10 +304,12 @@ struct LaunchTree {
       if (!enter(instance) ||
           !enterInstance(launch, ray, item.instance, state.Time, state.Epsilon, limit(), entered))
         return false;
-      return traverseBvh(launch, launch.meshTrees[treeNumber(launch, instance)], entered, tMin,
-                         limit, [&](const RtslLeafItem &inside) {
-                           return visit(RtslLeafItem{item.instance, inside.primitive}, entered);
-                         });
+      return traverseBvh(
+          launch, launch.meshTrees[treeNumber(launch, instance)], entered, tMin, limit, putsOff,
+          [&](const RtslTreeItem &inMemory) {
+            const ItemWords inside(inMemory);
+            return visit(TreeItem{{item.instance, inside.leafItem().primitive}, inside}, entered);
+          });
     });
   }
 };
@@ -268,9 +326,8 @@ uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &
   tree.forEach(
       state, ray, [&] { return state.nearest; },
       [&](const RtslInstance &instance) { return isSeen(state, instance, slots); },
-      [&](const RtslLeafItem &item, const auto &inItsSpace) {
-        return isSeen(state, item, inItsSpace, slots) &&
-               testItem(state, inItsSpace, item, intersect) && anyHit;
+      [&](const auto &item, const auto &inItsSpace) {
+        return testIfSeen(state, inItsSpace, item, slots, intersect) && anyHit;
       });
   if (!anyHit)
     findLostAttributes(state, ray, intersect);
@@ -280,7 +337,8 @@ uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &
 /// rtsl_traverse with the tree of the launch.
 template <typename Slots>
 uint32_t traverseDevice(RtslState &state, bool anyHit, const Slots &slots) {
-  return isGoodRay(state) ? findHit(state, anyHit, slots, LaunchTree()) : RTSL_BAD_RAY;
+  // A ray that ends at its first hit gains more from an early one.
+  return isGoodRay(state) ? findHit(state, anyHit, slots, LaunchTree{!anyHit}) : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

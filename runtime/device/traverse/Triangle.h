@@ -24,7 +24,29 @@ struct TriangleRay {
   Vec3 turned;      // the origin along these axes
   float sx, sy, sz; // shear and scale, of the direction scaled by 2^-exponent
   int directionExponent;
+#ifdef __NVPTX__
+  // All bits are 1 if kz is 0, or 1, otherwise 0: to select components without jumps.
+  uint32_t isX, isY;
+#endif
 };
+
+/// The number for kz = 0, 1, or 2.
+#ifdef __NVPTX__
+inline float numberFor(const TriangleRay &ray, float x, float y, float z) {
+  return floatOf((bitsOf(x) & ray.isX) |
+                 (((bitsOf(y) & ray.isY) | (bitsOf(z) & ~ray.isY)) & ~ray.isX));
+}
+#endif
+
+/// A vector's components along kx, ky and kz.
+inline Vec3 alongRay(const TriangleRay &ray, Vec3 v) {
+#ifdef __NVPTX__
+  return {numberFor(ray, v.y, v.z, v.x), numberFor(ray, v.z, v.x, v.y),
+          numberFor(ray, v.x, v.y, v.z)};
+#else
+  return {v[ray.kx], v[ray.ky], v[ray.kz]};
+#endif
+}
 
 struct TriangleHit {
   float t, u, v; // u, v: weights of vertices 1 and 2
@@ -40,7 +62,12 @@ inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
   ray.kz = x > y ? (x > z ? 0 : 2) : (y > z ? 1 : 2);
   ray.kx = ray.kz == 2 ? 0 : ray.kz + 1;
   ray.ky = ray.kx == 2 ? 0 : ray.kx + 1;
-  ray.turned = {origin[ray.kx], origin[ray.ky], origin[ray.kz]};
+#ifdef __NVPTX__
+  ray.isX = ray.kz == 0 ? ~0u : 0u;
+  ray.isY = ray.kz == 1 ? ~0u : 0u;
+  asm("" : "+r"(ray.isX), "+r"(ray.isY)); // or the compiler would make jumps of them again
+#endif
+  ray.turned = alongRay(ray, origin);
   ray.directionExponent = 0;
   float length = largest(direction);
   if (!(length > 0x1p-30f && length < 0x1p30f)) {
@@ -55,11 +82,10 @@ inline TriangleRay makeTriangleRay(Vec3 origin, Vec3 direction) {
     direction = direction * powerOfTwo(-down);
     ray.directionExponent += down;
   }
-  // Three selects, because indexing registers would go through memory.
-  float dx = direction[ray.kx], dy = direction[ray.ky], dz = direction[ray.kz];
-  ray.sz = 1.0f / dz;
-  ray.sx = dx * ray.sz;
-  ray.sy = dy * ray.sz;
+  const Vec3 turned = alongRay(ray, direction);
+  ray.sz = 1.0f / turned.z;
+  ray.sx = turned.x * ray.sz;
+  ray.sy = turned.y * ray.sz;
   return ray;
 }
 
@@ -81,11 +107,11 @@ inline float scaledBy(float a, int exponent) {
 /// units of itself over the cosine. `depth` is the result if the ray is parallel to the plane.
 __attribute__((cold, noinline)) inline float
 depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, float depth) {
-  int kx = ray.kx, ky = ray.ky, kz = ray.kz;
-  double ax = double(v0[kx]) - ray.origin[kx], ay = double(v0[ky]) - ray.origin[ky],
-         az = double(v0[kz]) - ray.origin[kz];
-  double bx = double(v1[kx]) - v0[kx], by = double(v1[ky]) - v0[ky], bz = double(v1[kz]) - v0[kz];
-  double cx = double(v2[kx]) - v0[kx], cy = double(v2[ky]) - v0[ky], cz = double(v2[kz]) - v0[kz];
+  const Vec3 o = alongRay(ray, ray.origin), a = alongRay(ray, v0), b = alongRay(ray, v1),
+             c = alongRay(ray, v2);
+  double ax = double(a.x) - o.x, ay = double(a.y) - o.y, az = double(a.z) - o.z;
+  double bx = double(b.x) - a.x, by = double(b.y) - a.y, bz = double(b.z) - a.z;
+  double cx = double(c.x) - a.x, cy = double(c.y) - a.y, cz = double(c.z) - a.z;
   double nx = by * cz - bz * cy, ny = bz * cx - bx * cz, nz = bx * cy - by * cx;
   double down = (nx * ray.sx + ny * ray.sy) + nz;
   if (!(down != 0))
@@ -102,17 +128,19 @@ constexpr float nearShare = 0x1p-9f;
 /// The caller compares t, which is in units of the direction given to makeTriangleRay and may have
 /// any sign.
 inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, TriangleHit &hit) {
-  Vec3 a = v0 - ray.origin, b = v1 - ray.origin, c = v2 - ray.origin;
-  float az = a[ray.kz], bz = b[ray.kz], cz = c[ray.kz];
-  float ax = a[ray.kx] - ray.sx * az, ay = a[ray.ky] - ray.sy * az;
-  float bx = b[ray.kx] - ray.sx * bz, by = b[ray.ky] - ray.sy * bz;
-  float cx = c[ray.kx] - ray.sx * cz, cy = c[ray.ky] - ray.sy * cz;
+  const Vec3 a = alongRay(ray, v0 - ray.origin), b = alongRay(ray, v1 - ray.origin),
+             c = alongRay(ray, v2 - ray.origin);
+  float az = a.z, bz = b.z, cz = c.z;
+  float ax = a.x - ray.sx * az, ay = a.y - ray.sy * az;
+  float bx = b.x - ray.sx * bz, by = b.y - ray.sy * bz;
+  float cx = c.x - ray.sx * cz, cy = c.y - ray.sy * cz;
 
   // Far from 1 the products would leave the range of a float. Powers of two do not change signs.
+  // Where one of them is NaN, two of the edge functions are.
   float size =
-      maximum(maximum(maximum(absolute(ax), absolute(ay)), maximum(absolute(bx), absolute(by))),
-              maximum(absolute(cx), absolute(cy)));
-  float depth = maximum(maximum(absolute(az), absolute(bz)), absolute(cz));
+      raised(raised(raised(absolute(ax), absolute(ay)), raised(absolute(bx), absolute(by))),
+             raised(absolute(cx), absolute(cy)));
+  float depth = raised(raised(absolute(az), absolute(bz)), absolute(cz));
   int depthExponent = 0;
   float depthScale = 1;
   if (!(size > 0x1p-30f && size < 0x1p30f)) {

@@ -142,6 +142,25 @@ class OutputBuffers(Case):
                          render={"engine": "programs", "size": [3], "spp": 4})
         self.assertEqual(found["last"], ((3,), (15, 15, 15)))
 
+    def test_a_launch_that_is_repeated_gives_what_it_gave_first(self):
+        self.scene(start={"class": "Counts", "n": [0]}, size=(3, 1), **{"import": ["counts.rtsl"], "objects": [], "materials": {}})
+        self.write("counts.rtsl", """class Counts : rt_RayGeneration {
+  public inout int n[];
+  void generate() { atomicAdd(n[0], 1); print("once"); }
+};""")
+        for way, options in PATHS.items():
+            out, _ = self.run_rtslc("run", "scene.json", "--repeat=5", "--json", "--print", "--out=n=n.csv", *options)
+            self.assertEqual((self.folder / "n.csv").read_text(), "3\n", way)
+            figures = json.loads(out)
+            repeats = figures["launches"][0]["repeats"]
+            self.assertEqual((len(repeats), sorted(repeats)), (5, repeats), way)
+            self.assertEqual([text.split(": ")[1] for text in figures["printed"]], ["once"] * 3, way)
+        _, error = self.run_rtslc("run", "scene.json", "--repeat=2")
+        self.assertRegex(error, r"repeated 2 times: \d+\.\d{3} ms in the median")
+        self.assertNotIn("repeats", self.run_rtslc("run", "scene.json", "--json")[0])
+        for value in ("-1", "x", "1.5", "1000001"):
+            self.assertIn("--repeat", self.run_rtslc("run", "scene.json", f"--repeat={value}", status=USAGE)[1])
+
     def test_passes_share_buffers(self):
         self.write("passes.rtsl", """
 class Scatter : rt_RayGeneration {

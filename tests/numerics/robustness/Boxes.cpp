@@ -50,7 +50,7 @@ Outcome runEqualCentroids(std::uint64_t cases, std::uint32_t seed) {
   }
   const runtime::Bvh tree = runtime::buildBvh(items);
   std::vector<int> seen(cases, 0);
-  for (const RtslLeafItem &item : tree.items)
+  for (const RtslTreeItem &item : tree.items)
     if (item.primitive < cases)
       ++seen[item.primitive];
   for (std::uint64_t i = 0; i < cases; ++i)

@@ -114,9 +114,9 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 5;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 5, and this program reads format "
-                            "4: use a newer rtsl-run");
+  newer[8] = 6;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 6, and this program reads format "
+                            "5: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
@@ -136,7 +136,7 @@ std::string forged(std::size_t offset, std::uint32_t word) {
 
 TEST(Package, ContentsThatContradictEachOtherAreRefused) {
   constexpr std::size_t sections = 64, sectionBytes = 24, info = 256;
-  EXPECT_EQ(refusal(forged(info + 32, 30)), ""); // the width, as it was
+  EXPECT_EQ(refusal(forged(info + 36, 30)), ""); // the width, as it was
   EXPECT_NE(refusal(forged(12, 1000000)), "");   // sections
   for (int i = 0; i < 6; ++i) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes, 77)), "") << i;              // kind
@@ -144,7 +144,7 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 64, 3)), ""); // an entry after the code
+  EXPECT_NE(refusal(forged(info + 72, 3)), ""); // an entry after the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);

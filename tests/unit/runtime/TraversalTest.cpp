@@ -344,7 +344,7 @@ TEST(BvhBuilder, DepthIsBoundedWhateverTheItems) {
   EXPECT_LE(bvh.depth(), unsigned(rtsl::device::maxBvhDepth));
   ASSERT_EQ(bvh.items.size(), items.size());
   std::vector<bool> seen(items.size());
-  for (const RtslLeafItem &item : bvh.items)
+  for (const RtslTreeItem &item : bvh.items)
     seen[item.primitive] = true;
   EXPECT_EQ(std::count(seen.begin(), seen.end(), true), std::ptrdiff_t(items.size()));
 }

@@ -3,6 +3,7 @@
 #include "tools/common/Interruption.h"
 #include "tools/common/Outcome.h"
 #include "tools/common/Output.h"
+#include "tools/rtslc/render/RenderTarget.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,17 +31,6 @@ nlohmann::ordered_json toJson(const SampleNotFinite &one) {
     document["place"] = {
         {"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
   return document;
-}
-
-nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
-  return {{"device", gpu.device},
-          {"registers", gpu.registers},
-          {"localBytes", gpu.localBytes},
-          {"blocks", gpu.blocks},
-          {"threadsPerBlock", gpu.threadsPerBlock},
-          {"laneBytes", gpu.laneBytes},
-          {"loadSeconds", gpu.loadSeconds},
-          {"uploadSeconds", gpu.uploadSeconds}};
 }
 
 std::string toJson(const RenderCommandOptions &options, const PictureSummary &summary) {
@@ -80,7 +70,7 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
     if (statistics.exceptions[i])
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
   if (summary.gpu)
-    document["gpu"] = toJson(*summary.gpu);
+    (document["gpu"] = tool::toJson(*summary.gpu))["kernelSeconds"] = statistics.kernelSeconds;
   return document.dump(2) + "\n";
 }
 

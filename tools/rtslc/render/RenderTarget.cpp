@@ -9,6 +9,8 @@
 #include "tools/rtslc/common/GpuArchitectures.h"
 #include "tools/rtslc/common/ScenePackage.h"
 
+#include <chrono>
+
 namespace rtsl::tool {
 
 namespace {
@@ -56,9 +58,13 @@ public:
     const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
     const std::uint64_t laneBytes =
         host.entries().laneBytes(options.maxDepth, scene.launch().referenceChain);
+    const auto start = std::chrono::steady_clock::now();
+    runtime::FlatScene flat = runtime::flatten(scene);
+    const std::chrono::duration<double> treeTime = std::chrono::steady_clock::now() - start;
     auto renderer = std::make_unique<runtime::GpuRenderer>(
-        device, runtime::GpuCode{package.ptx, laneBytes}, runtime::flatten(scene), options);
+        device, runtime::GpuCode{package.ptx, laneBytes}, std::move(flat), options);
     figures = renderer->gpu();
+    figures->treeSeconds = treeTime.count();
     return renderer;
   }
 
@@ -72,6 +78,19 @@ private:
 };
 
 } // namespace
+
+nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
+  return {{"device", gpu.device},
+          {"registers", gpu.registers},
+          {"localBytes", gpu.localBytes},
+          {"blocks", gpu.blocks},
+          {"threadsPerBlock", gpu.threadsPerBlock},
+          {"laneBytes", gpu.laneBytes},
+          {"loadSeconds", gpu.loadSeconds},
+          {"uploadSeconds", gpu.uploadSeconds},
+          {"treeSeconds", gpu.treeSeconds},
+          {"treeNodes", gpu.treeNodes}};
+}
 
 void addTargetOption(CLI::App &command, TargetName &target) {
   addChoice(command, "--target", target,

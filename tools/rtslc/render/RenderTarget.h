@@ -10,6 +10,7 @@
 #include "runtime/render/Backend.h"
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 #include <memory>
 #include <optional>
@@ -36,6 +37,9 @@ public:
 };
 
 enum class TargetName : std::uint8_t { Host, HostMegakernel, Gpu };
+
+/// What ran on the GPU, for --json.
+nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu);
 
 /// Adds --target.
 void addTargetOption(CLI::App &command, TargetName &target);

@@ -35,6 +35,8 @@ namespace rtsl::tool {
 
 namespace {
 
+constexpr std::uint32_t mostRepeats = 1000000;
+
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
@@ -44,8 +46,15 @@ struct Launch {
   runtime::RenderOptions render;
   runtime::RenderStatistics statistics;
   double compileSeconds = 0;
+  std::vector<double> repeatSeconds; // ascending
+  std::optional<runtime::GpuStatistics> gpu;
   std::vector<runtime::OutputBuffer> outputs;
 };
+
+/// Of the launch alone: by the clock of the GPU, if that runs it.
+double secondsOf(const runtime::RenderStatistics &statistics) {
+  return statistics.kernelSeconds > 0 ? statistics.kernelSeconds : statistics.renderSeconds;
+}
 
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -193,18 +202,39 @@ private:
     Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
     if (!options.quiet)
       launch.render.progress = [&](double share) { progress.update(share); };
-    picture = target->prepare(*scene, launch.render)->render(&launch.statistics);
-    progress.finish();
-    launch.render.progress = nullptr;
+    const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, launch.render);
+    if (target->gpu())
+      launch.gpu = *target->gpu();
+    picture = backend->render(&launch.statistics);
     for (const std::string &line : runtime::takePrintLog().texts(scene->program().prints))
       printed.push_back(line);
     launch.outputs = scene->outputs();
+    repeat(*backend, launch);
+    progress.finish();
+    launch.render.progress = nullptr;
     warn(launch);
     launches.push_back(std::move(launch));
     // The scene owns the elements of buffers without a name.
     scenes.push_back(std::make_unique<runtime::Scene>(std::move(*scene)));
     targets.push_back(std::move(target));
     return true;
+  }
+
+  /// Runs the launch again, and keeps what it wrote and printed before.
+  void repeat(runtime::Backend &backend, Launch &launch) const {
+    std::vector<std::vector<std::uint8_t>> written;
+    if (options.repeats > 0)
+      for (const runtime::OutputBuffer &output : launch.outputs)
+        written.emplace_back(output.elements, output.elements + output.bytes);
+    for (std::uint32_t i = 0; i < options.repeats; ++i) {
+      runtime::RenderStatistics statistics;
+      backend.render(&statistics);
+      launch.repeatSeconds.push_back(secondsOf(statistics));
+      runtime::takePrintLog();
+    }
+    std::sort(launch.repeatSeconds.begin(), launch.repeatSeconds.end());
+    for (std::size_t i = 0; i < written.size(); ++i)
+      std::copy(written[i].begin(), written[i].end(), launch.outputs[i].elements);
   }
 
   void warn(const Launch &launch) const {
@@ -232,7 +262,7 @@ std::string fileOf(const RunOptions &options, const std::string &buffer) {
 
 std::string toJson(const RunOptions &options, const Launches &all) {
   Json document = {{"version", 1}, {"launches", Json::array()}, {"buffers", Json::array()}};
-  for (const Launch &launch : all.launches)
+  for (const Launch &launch : all.launches) {
     document["launches"].push_back({{"rayGeneration", launch.rayGeneration},
                                     {"size", {launch.render.width, launch.render.height}},
                                     {"spp", launch.render.samplesPerPixel},
@@ -243,6 +273,11 @@ std::string toJson(const RunOptions &options, const Launches &all) {
                                     {"samples", launch.statistics.samples},
                                     {"badRays", launch.statistics.badRays},
                                     {"raysTooDeep", launch.statistics.raysTooDeep}});
+    if (options.repeats > 0)
+      document["launches"].back()["repeats"] = launch.repeatSeconds;
+    if (launch.gpu)
+      document["launches"].back()["gpu"] = tool::toJson(*launch.gpu);
+  }
   for (const std::string &name : all.names()) {
     const runtime::OutputBuffer buffer = *all.find(name);
     document["buffers"].push_back(
@@ -267,6 +302,9 @@ void printSummary(const RunOptions &options, const Launches &all) {
                launch.rayGeneration.empty() ? "camera" : launch.rayGeneration, launch.render.width,
                launch.render.height, launch.render.samplesPerPixel, launch.compileSeconds * 1e3,
                launch.statistics.renderSeconds);
+    if (options.repeats > 0)
+      fmt::print(stderr, "repeated {} times: {:.3f} ms in the median\n", options.repeats,
+                 launch.repeatSeconds[launch.repeatSeconds.size() / 2] * 1e3);
     for (const std::string &text : exceptionTexts(launch.statistics, launch.render))
       fmt::print(stderr, "{}\n", text);
   }
@@ -360,6 +398,9 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
            "threads; default: all cores");
   addTraversalOption(command, options.traversal);
   addTargetOption(command, options.target);
+  addWhole(command, "--repeat", options.repeats, 0, mostRepeats,
+           "run each launch N more times, and print how long these took; outputs are those of the "
+           "first run");
   command.add_flag("--json", options.json, "write times and buffers to standard output as JSON");
   command.add_flag("-q,--quiet", options.quiet, "no progress and no summary");
   addCompileOptions(command, options.common);

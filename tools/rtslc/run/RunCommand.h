@@ -21,6 +21,7 @@ struct RunOptions {
   std::vector<BufferFile> inputs, outputs;
   std::vector<std::string> overrides;
   std::uint32_t threads = 0;
+  std::uint32_t repeats = 0; // further runs of each launch, to measure it
   runtime::Traversal traversal = runtime::Traversal::Embree;
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
