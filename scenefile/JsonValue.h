@@ -17,7 +17,7 @@ struct JsonValue;
 struct JsonKey {
   std::string text;
   std::uint32_t line = 0, column = 0, length = 0;
-  std::shared_ptr<const std::string> file; // null: that of its object
+  std::shared_ptr<const std::string> file = nullptr; // null: that of its object
 };
 
 struct JsonValue {

@@ -61,8 +61,9 @@ extern "C" {
 #include "language/Slots.def"
 
 uint32_t rtsl_features(RtslState *state) {
-  return state->launch->host ? slotsOf(state).features
-                             : 0; // while a scene is built there is no host
+  return state->launch && state->launch->host
+             ? slotsOf(state).features
+             : 0; // while a scene is built there is no host, and for methods called alone no launch
 }
 
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
