@@ -20,7 +20,7 @@ struct ObjectValues {
   std::vector<NamedValue> members;
   std::optional<Place> place; // of the object, for messages
   /// Where variables could set members that are not set, as "`car` or the scene"; empty: nowhere.
-  std::string variablePlaces;
+  std::string variablePlaces = {};
 };
 
 /// Where an instance is, and for which rays.
