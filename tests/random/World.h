@@ -13,6 +13,13 @@
 
 namespace rtsl::random {
 
+/// A hash of two numbers.
+inline std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
+  std::uint32_t h = (a ^ b) * 0x9e3779b1u;
+  h = (h ^ h >> 15) * 0x85ebca6bu;
+  return h ^ h >> 13;
+}
+
 /// The objects of a program with values made from its seed, a few instances, and the launch. What a
 /// ray meets is what the program's own primitives say, tested one by one.
 class World {
@@ -48,6 +55,9 @@ private:
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
+  static std::vector<RtslTransform> someTransforms();
+  static RtslMesh someMesh();
+  void addMotion();
   void addSelections(RtslRef selector);
   void place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives);
   void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
@@ -74,6 +84,9 @@ private:
   std::vector<RtslRef> lights, primitives, materials, others;
   std::vector<RtslInstance> instances;
   std::vector<RtslTransform> transforms;
+  std::vector<RtslMotion> motions;
+  std::vector<RtslMotionFactor> motionFactors;
+  std::vector<RtslMotionKey> motionKeys;
   std::vector<RtslSelection> selections;
   std::vector<RtslBox> boxes;
   // of the world, and of the mesh and each object with several primitives, in their own spaces
