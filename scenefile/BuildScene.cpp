@@ -1,8 +1,8 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
-#include "scenefile/MeshFiles.h"
 #include "scenefile/SceneFile.h"
-#include "scenefile/VariablePlaces.h"
-#include "scenefile/Variables.h"
+#include "scenefile/files/MeshFiles.h"
+#include "scenefile/graph/VariablePlaces.h"
+#include "scenefile/graph/Variables.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 

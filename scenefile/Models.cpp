@@ -1,10 +1,10 @@
 #include "scenefile/Models.h"
 
-#include "scenefile/Reader.h"
-#include "scenefile/TransformReader.h"
 #include "scenefile/gltf/Model.h"
 #include "scenefile/gltf/Nodes.h"
 #include "scenefile/gltf/Parts.h"
+#include "scenefile/graph/TransformReader.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

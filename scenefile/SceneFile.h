@@ -15,10 +15,10 @@
 
 #include "runtime/render/RenderOptions.h"
 #include "runtime/scene/Scene.h"
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
-#include "scenefile/BufferFiles.h"
-#include "scenefile/Images.h"
+#include "scenefile/files/BufferFiles.h"
+#include "scenefile/files/Images.h"
 
 #include <array>
 #include <cstdint>

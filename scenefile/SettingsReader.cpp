@@ -1,8 +1,8 @@
 //===- SettingsReader.cpp - size, samples, depth and seed -----------------===//
 #include "scenefile/SettingsReader.h"
 
-#include "scenefile/BufferFiles.h"
-#include "scenefile/Reader.h"
+#include "scenefile/files/BufferFiles.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "scenefile/BufferFiles.h"
+#include "scenefile/files/BufferFiles.h"
 
-#include "scenefile/NumberFiles.h"
-#include "scenefile/PlyColumns.h"
-#include "scenefile/Reader.h"
+#include "scenefile/files/NumberFiles.h"
+#include "scenefile/files/PlyColumns.h"
+#include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
 
 #include <fmt/format.h>

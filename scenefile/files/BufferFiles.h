@@ -7,7 +7,7 @@
 #pragma once
 
 #include "runtime/scene/ValueStore.h"
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "scenefile/BufferOutput.h"
+#include "scenefile/files/BufferOutput.h"
 
 #include "support/AtomicFile.h"
 #include "support/Error.h"

@@ -1,9 +1,9 @@
-#include "scenefile/Images.h"
+#include "scenefile/files/Images.h"
 
 #include "scenefile/Models.h"
-#include "scenefile/Reader.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/gltf/Textures.h"
+#include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/WorkerThreads.h"

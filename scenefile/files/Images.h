@@ -8,7 +8,7 @@
 
 #include "runtime/image/Texels.h"
 #include "runtime/scene/Samplers.h"
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <cstddef>
 #include <cstdint>

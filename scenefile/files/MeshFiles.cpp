@@ -1,4 +1,4 @@
-#include "scenefile/MeshFiles.h"
+#include "scenefile/files/MeshFiles.h"
 
 #include "scenefile/Models.h"
 #include "scenefile/gltf/Mesh.h"

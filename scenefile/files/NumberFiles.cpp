@@ -1,4 +1,4 @@
-#include "scenefile/NumberFiles.h"
+#include "scenefile/files/NumberFiles.h"
 
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"

@@ -1,4 +1,4 @@
-#include "scenefile/PlyColumns.h"
+#include "scenefile/files/PlyColumns.h"
 
 #include "runtime/geometry/PlyFormat.h"
 #include "support/AtomicFile.h"

@@ -1,7 +1,7 @@
 //===- PlyColumns.h - numbers in PLY files --------------------------------===//
 #pragma once
 
-#include "scenefile/NumberFiles.h"
+#include "scenefile/files/NumberFiles.h"
 
 #include <cstddef>
 #include <string>

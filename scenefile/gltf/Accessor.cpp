@@ -1,6 +1,6 @@
 #include "scenefile/gltf/Accessor.h"
 
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 //===- CameraAndLights.cpp - cameras and punctual lights ------------------===//
-#include "scenefile/Reader.h"
 #include "scenefile/gltf/Nodes.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,6 +1,6 @@
 #include "scenefile/gltf/File.h"
 
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorCollector.h"
 

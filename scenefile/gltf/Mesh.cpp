@@ -1,7 +1,7 @@
 #include "scenefile/gltf/Mesh.h"
 
-#include "scenefile/Reader.h"
 #include "scenefile/gltf/Accessor.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

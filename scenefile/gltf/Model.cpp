@@ -1,9 +1,9 @@
 #include "scenefile/gltf/Model.h"
 
-#include "scenefile/Reader.h"
 #include "scenefile/gltf/Material.h"
 #include "scenefile/gltf/Mesh.h"
 #include "scenefile/gltf/Nodes.h"
+#include "scenefile/json/Reader.h"
 #include "support/ErrorCollector.h"
 
 #include <fmt/format.h>

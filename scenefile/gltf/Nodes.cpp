@@ -1,8 +1,8 @@
 #include "scenefile/gltf/Nodes.h"
 
-#include "scenefile/Reader.h"
 #include "scenefile/gltf/Accessor.h"
 #include "scenefile/gltf/Mesh.h"
+#include "scenefile/json/Reader.h"
 #include "support/ErrorCollector.h"
 
 #include <fmt/format.h>

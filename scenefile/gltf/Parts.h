@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <initializer_list>
 #include <set>

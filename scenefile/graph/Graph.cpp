@@ -1,10 +1,10 @@
-#include "scenefile/Graph.h"
+#include "scenefile/graph/Graph.h"
 
 #include "runtime/scene/InstanceTransform.h"
-#include "scenefile/NodeLights.h"
-#include "scenefile/Reader.h"
-#include "scenefile/TransformReader.h"
 #include "scenefile/gltf/File.h"
+#include "scenefile/graph/NodeLights.h"
+#include "scenefile/graph/TransformReader.h"
+#include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>

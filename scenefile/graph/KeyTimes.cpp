@@ -1,6 +1,6 @@
-#include "scenefile/KeyTimes.h"
+#include "scenefile/graph/KeyTimes.h"
 
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 //===- KeyTimes.h - "times" of keys in a scene file -----------------------===//
 #pragma once
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <string>
 #include <vector>

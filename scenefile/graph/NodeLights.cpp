@@ -1,6 +1,6 @@
-#include "scenefile/NodeLights.h"
+#include "scenefile/graph/NodeLights.h"
 
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
-#include "scenefile/TransformReader.h"
+#include "scenefile/graph/TransformReader.h"
 
-#include "scenefile/KeyTimes.h"
-#include "scenefile/Reader.h"
+#include "scenefile/graph/KeyTimes.h"
+#include "scenefile/json/Reader.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/geometry/Motion.h"
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 namespace rtsl::scene {
 

@@ -1,4 +1,4 @@
-#include "scenefile/VariablePlaces.h"
+#include "scenefile/graph/VariablePlaces.h"
 
 #include "scenefile/References.h"
 #include "scenefile/gltf/File.h"

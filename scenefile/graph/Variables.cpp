@@ -1,4 +1,4 @@
-#include "scenefile/Variables.h"
+#include "scenefile/graph/Variables.h"
 
 #include "scenefile/References.h"
 

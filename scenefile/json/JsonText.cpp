@@ -1,4 +1,4 @@
-#include "scenefile/JsonText.h"
+#include "scenefile/json/JsonText.h"
 
 #include <nlohmann/json.hpp>
 

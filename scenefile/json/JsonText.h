@@ -1,7 +1,7 @@
 //===- JsonText.h - JSON as text ------------------------------------------===//
 #pragma once
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <string>
 

@@ -5,7 +5,7 @@
 // each event has them; it can be simple, because the parser has already checked the token.
 //
 //===----------------------------------------------------------------------===//
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

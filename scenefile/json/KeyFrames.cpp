@@ -1,6 +1,6 @@
-#include "scenefile/KeyFrames.h"
+#include "scenefile/json/KeyFrames.h"
 
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 #include "support/Error.h"
 
 #include <fmt/format.h>

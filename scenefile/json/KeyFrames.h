@@ -1,7 +1,7 @@
 //===- KeyFrames.h - values that change from frame to frame ----------------===//
 #pragma once
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 #include "support/ErrorCollector.h"
 
 namespace rtsl::scene {

@@ -1,6 +1,6 @@
 //===- Override.cpp - values given on the command line --------------------===//
 #include "runtime/scene/Scene.h"
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 #include "support/ClosestName.h"
 
 #include <fmt/format.h>

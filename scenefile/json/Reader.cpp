@@ -1,4 +1,4 @@
-#include "scenefile/Reader.h"
+#include "scenefile/json/Reader.h"
 
 #include "runtime/scene/Scene.h"
 #include "support/ClosestName.h"

@@ -1,7 +1,7 @@
 //===- Reader.h - reading JSON values, with error messages ----------------===//
 #pragma once
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <initializer_list>
 #include <string>

@@ -1,6 +1,6 @@
 #include "ErrorText.h"
 
-#include "scenefile/JsonValue.h"
+#include "scenefile/json/JsonValue.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #include "ErrorText.h"
 
-#include "scenefile/JsonText.h"
-#include "scenefile/KeyFrames.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/json/JsonText.h"
+#include "scenefile/json/KeyFrames.h"
 
 #include <gtest/gtest.h>
 

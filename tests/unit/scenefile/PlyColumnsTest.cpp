@@ -2,8 +2,8 @@
 #include "ErrorText.h"
 #include "Folder.h"
 
-#include "scenefile/BufferFiles.h"
-#include "scenefile/PlyColumns.h"
+#include "scenefile/files/BufferFiles.h"
+#include "scenefile/files/PlyColumns.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "ErrorText.h"
 
 #include "scenefile/SceneFile.h"
-#include "scenefile/VariablePlaces.h"
+#include "scenefile/graph/VariablePlaces.h"
 
 #include <gtest/gtest.h>
 

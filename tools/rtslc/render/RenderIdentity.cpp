@@ -1,7 +1,7 @@
 #include "RenderIdentity.h"
 
 #include "runtime/render/Crc64.h"
-#include "scenefile/JsonText.h"
+#include "scenefile/json/JsonText.h"
 #include "support/AtomicFile.h"
 
 #include <fmt/format.h>

@@ -6,8 +6,8 @@
 #include "RunCommand.h"
 
 #include "runtime/program/PrintLog.h"
-#include "scenefile/BufferOutput.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/files/BufferOutput.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "tools/common/Interruption.h"

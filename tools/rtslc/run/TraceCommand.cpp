@@ -5,7 +5,7 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 #include "codegen/driver/StandardLibrary.h"
-#include "scenefile/NumberFiles.h"
+#include "scenefile/files/NumberFiles.h"
 #include "support/Error.h"
 #include "tools/rtslc/common/Messages.h"
 
