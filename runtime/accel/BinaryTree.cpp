@@ -12,8 +12,6 @@ namespace rtsl::runtime {
 namespace {
 
 constexpr unsigned binCount = 16;
-// Of the parts of a tree that threads build, whatever their number.
-constexpr std::size_t smallestSubtree = 4096, mostSubtrees = 256;
 // In units of one item's test.
 constexpr float costOfNode = 0.3f;
 
@@ -271,8 +269,7 @@ BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads) {
   if (tree.boxes.empty())
     return tree;
   // The upper part by all threads together, then each subtree by one of them.
-  const std::size_t smallest = std::max(smallestSubtree, tree.boxes.size() / mostSubtrees);
-  Builder top(tree.boxes, smallest, threads);
+  Builder top(tree.boxes, largestForOneThread(tree.boxes.size()), threads);
   top.node(tree.boxes.begin(), tree.boxes.end(), 0);
   tree.nodes = std::move(top.nodes);
   std::vector<Builder::Nodes> subtrees(top.later.size());

@@ -11,6 +11,7 @@
 #include "runtime/scene/SceneData.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -38,6 +39,12 @@ struct BinaryTree {
 /// No path from the root is longer than device::maxBvhDepth. `threads` 0: one per core; the tree does
 /// not depend on their number.
 BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads);
+
+/// Of a tree of so many boxes: subtrees of up to this many are left to one thread each, whatever the
+/// number of threads.
+inline std::size_t largestForOneThread(std::size_t boxes) {
+  return std::max<std::size_t>(4096, boxes / 256);
+}
 
 /// Bounds of nothing, to be extended.
 inline Bounds emptyBounds() {

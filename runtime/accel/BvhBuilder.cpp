@@ -81,11 +81,8 @@ void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
 static void addTriangles(const RtslLaunch &launch, const RtslMesh &mesh, std::uint32_t instance,
                          std::vector<BvhItem> &items) {
   for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
-    const RtslBox box = device::boxOfTriangle(launch, mesh, t);
-    BvhItem item{{}, {instance, t}, device::moves(launch, mesh) ? nullptr : &mesh};
-    std::copy_n(box.lower, 3, item.bounds.lower);
-    std::copy_n(box.upper, 3, item.bounds.upper);
-    items.push_back(item);
+    const Bounds bounds = boundsOf(device::boxOfTriangle(launch, mesh, t));
+    items.push_back({bounds, {instance, t}, device::moves(launch, mesh) ? nullptr : &mesh});
   }
 }
 
@@ -94,10 +91,7 @@ static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance
                           std::uint32_t number, std::vector<BvhItem> &items) {
   for (std::uint32_t i = 0; i < instance.boxCount; ++i) {
     const RtslBox box = device::enlarged(launch.boxes[instance.firstBox + i]);
-    BvhItem item{{}, {number, i}, nullptr};
-    std::copy_n(box.lower, 3, item.bounds.lower);
-    std::copy_n(box.upper, 3, item.bounds.upper);
-    items.push_back(item);
+    items.push_back({boundsOf(box), {number, i}, nullptr});
   }
 }
 

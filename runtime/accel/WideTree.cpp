@@ -20,9 +20,8 @@ constexpr float costOfNode = 1.0f, costOfItem = 1.0f;
 // Which nodes become one
 //===----------------------------------------------------------------------===//
 
-/// Subtrees of up to this many boxes are left to one thread.
 bool isForOneThread(const BinaryTree &tree, std::size_t boxes) {
-  return boxes <= std::max<std::size_t>(4096, tree.boxes.size() / 256);
+  return boxes <= largestForOneThread(tree.boxes.size());
 }
 
 /// The best ways to replace a node of the binary tree by up to eight subtrees.

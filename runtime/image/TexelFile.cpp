@@ -117,7 +117,7 @@ Pixels readByOpenImageIO(const std::string &path, const std::string *bytes, bool
 
 const std::string pngSignature = "\x89PNG";
 
-/// Gives pixels the color space that is asked for.
+/// Converts pixels to the requested color space.
 Pixels inSpace(Pixels pixels, ColorSpace space, bool isEncoded, const std::string &name) {
   const bool isFloat =
       pixels.format == TexelFormat::Float16 || pixels.format == TexelFormat::Float32;

@@ -64,10 +64,7 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
                                     isPoint ? "a single point" : "a line without width"),
                         info.place});
   }
-  Bounds bounds;
-  std::copy_n(box.lower, 3, bounds.lower);
-  std::copy_n(box.upper, 3, bounds.upper);
-  return bounds;
+  return boundsOf(box);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 //===- SceneData.h - plain structs in the interface of scenes -------------===//
 #pragma once
 
+#include "runtime/device/ray/Abi.h"
 #include "runtime/geometry/Motion.h"
 #include "runtime/program/Program.h"
 #include "runtime/scene/Value.h"
@@ -37,6 +38,9 @@ struct Placement {
 struct Bounds {
   float lower[3], upper[3];
 };
+inline Bounds boundsOf(const RtslBox &box) {
+  return {{box.lower[0], box.lower[1], box.lower[2]}, {box.upper[0], box.upper[1], box.upper[2]}};
+}
 
 /// Normals or texture coordinates of a mesh, and whether the program reads them.
 struct MeshAttribute {
