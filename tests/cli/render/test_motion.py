@@ -111,6 +111,39 @@ class EveryPath(MotionCase):
         for options in (["--trace=recurse"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"]):
             self.assert_same_bits(self.render(lit, *options), expected, options)
 
+    def test_points_vectors_and_normals_find_back_to_object_space(self):
+        """The ball is a ball there, and its normals are, below every transform and at every time."""
+        self.write("Spaces.rtsl", """
+            import std.spaces;
+            class Spaces : rt_Material {
+              bool near(vec3 a, vec3 b) { return distance(a, b) < 1e-4; }
+              void shade() {
+                vec3 p = pointToObject(rt_HitPoint), n = (p - vec3(0.5, 0.0, 0.0)) / 0.8;
+                vec3 along = cross(n, vec3(0.6, 0.0, 0.8));
+                bool points = near(p - n * 0.8 / length(n), vec3(0.5, 0.0, 0.0)) && near(pointToWorld(p), rt_HitPoint);
+                bool vectors = near(vectorToWorld(along), pointToWorld(p + along) - rt_HitPoint)
+                    && near(vectorToObject(vectorToWorld(along)), along);
+                bool normals = near(normalize(normalToObject(rt_GeometricNormal)), n)
+                    && near(normalize(normalToWorld(n)), rt_GeometricNormal)
+                    && abs(dot(normalToWorld(n), vectorToWorld(along))) < 1e-4;
+                rt_SampleColor = color(1.0, points && vectors && normals ? 1.0 : 0.0, 0.5 + 0.5 * sin(8.0 * p.y));
+              }
+            };""")
+        moving = scene(materials={"paint": {"class": "Spaces"}}, background=0)
+        moving["import"].append("Spaces.rtsl")
+        nodes = moving["nodes"]
+        nodes["turning"]["children"] = ["ball", {"child": "ball", "transform": {"scale": [-2, 1, 0.5], "translate": [2, 0, 0]}}]
+        nodes["sheared"]["child"] = "ball"
+        nodes["chosen"]["children"] = ["ball", "ball"]
+        nodes["world"]["children"].remove("strip")
+        picture = self.render(moving)
+        said, _ = self.run_rtslc("compare", picture, picture, "--json")
+        hit, right, _ = json.loads(said)["means"][0]
+        self.assertGreater(hit, 0.05)
+        self.assertEqual(right, hit)
+        for options in (["--trace=recurse"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"]):
+            self.assert_same_bits(self.render(moving, *options), picture, options)
+
     def test_what_a_scene_does_not_have_is_left_out(self):
         parts = {"transforms", "motion", "mesh keys", "shutter"}
         plain = scene({"one": {"mesh": "flat.obj", "material": "paint"}}, root="one")
