@@ -32,7 +32,7 @@ SourceRange firstPrint(const typed::Module &module, const LinkRequest &request) 
       if (function->body && std::count(request.classes.begin(), request.classes.end(), one->name))
         forEachExpr(*function->body, [&](const typed::Expr &expr) {
           const auto *call = dynCast<typed::BuiltinExpr>(&expr);
-          if (call && call->builtin == typed::Builtin::Print && !range.isValid())
+          if (call && has(call->builtin, typed::effect::Prints) && !range.isValid())
             range = call->range;
         });
   return range;

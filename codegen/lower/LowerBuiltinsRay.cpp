@@ -10,72 +10,60 @@ namespace rtsl::lowering {
 using typed::Builtin;
 
 std::optional<Parts> FunctionLowering::lowerRayBuiltin(const typed::BuiltinExpr &expr) {
-  mlir::Location location = module.location(expr.range);
   switch (expr.builtin) {
-  case Builtin::Trace: {
-    Value origin = value(*expr.args[0]);
-    Value direction = value(*expr.args[1]);
-    emitter.setLoc(location);
-    return Parts{emitter.make<ir::TraceOp>(module.type(expr.type), origin, direction)};
-  }
-  case Builtin::Hit: {
-    Value t = value(*expr.args[0]);
-    Value error = expr.args.size() > 1 ? value(*expr.args[1]) : Value();
-    emitter.setLoc(location);
-    Value nearest = emitter.make<ir::HitOp>(emitter.getI1Type(), t, error);
-    if (accepted)
-      emitter.store(num(emitter.load(accepted)) | num(nearest), accepted);
-    return Parts{nearest};
-  }
-  case Builtin::Rand:
-  case Builtin::RandOpen:
-    emitter.setLoc(location);
-    return Parts{emitter.make<ir::RandOp>(emitter.getF32Type(), expr.builtin == Builtin::RandOpen)};
-  case Builtin::Ambient:
-    emitter.setLoc(location);
-    return Parts{emitter.make<ir::AmbientOp>(module.type(expr.type))};
-  case Builtin::LightCount:
-    emitter.setLoc(location);
-    return Parts{emitter.make<ir::LightCountOp>(emitter.getI32Type())};
-  case Builtin::Illuminate:
-    return lowerIlluminate(expr);
-  case Builtin::IlluminateBySurface: {
-    Value point = value(*expr.args[0]);
-    emitter.setLoc(location);
-    return Parts{
-        emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, Value(), Value())};
-  }
-  case Builtin::TracePayload:
-    lowerTracePayload(expr);
-    return Parts();
-  case Builtin::VisitChild: {
-    Value child = value(*expr.args[0]);
-    emitter.setLoc(location);
-    emitter.make<ir::VisitChildOp>(child);
-    return Parts();
-  }
-  case Builtin::Print:
-    if (module.options.prints)
-      lowerPrint(expr);
-    return Parts();
-  case Builtin::AtomicAdd:
-  case Builtin::AtomicMin:
-  case Builtin::AtomicMax:
-  case Builtin::AtomicAnd:
-  case Builtin::AtomicOr:
-  case Builtin::AtomicXor:
-  case Builtin::AtomicExchange:
-  case Builtin::AtomicCompSwap:
-    return lowerAtomic(expr);
-  case Builtin::IgnoreIntersection:
-  case Builtin::TerminateRay:
-    emitter.setLoc(location);
-    // In the middle of an expression unreachable code may follow.
-    emitter.ifThen(emitter.boolConstant(true), [&] { answerHit(expr.builtin); });
-    return Parts();
+#define RTSL_BUILTIN(...)
+#define RTSL_RAY_BUILTIN(id, name, effects, cost, where, lowering, ...)                            \
+  case Builtin::id:                                                                                \
+    return lowering(expr);
+#include "language/Builtins.def"
   default:
     return std::nullopt;
   }
+}
+
+Parts FunctionLowering::lowerTrace(const typed::BuiltinExpr &expr) {
+  Value origin = value(*expr.args[0]);
+  Value direction = value(*expr.args[1]);
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::TraceOp>(module.type(expr.type), origin, direction)};
+}
+
+Parts FunctionLowering::lowerHit(const typed::BuiltinExpr &expr) {
+  Value t = value(*expr.args[0]);
+  Value error = expr.args.size() > 1 ? value(*expr.args[1]) : Value();
+  emitter.setLoc(module.location(expr.range));
+  Value nearest = emitter.make<ir::HitOp>(emitter.getI1Type(), t, error);
+  if (accepted)
+    emitter.store(num(emitter.load(accepted)) | num(nearest), accepted);
+  return {nearest};
+}
+
+Parts FunctionLowering::lowerRand(const typed::BuiltinExpr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::RandOp>(emitter.getF32Type(), expr.builtin == Builtin::RandOpen)};
+}
+
+Parts FunctionLowering::lowerAmbient(const typed::BuiltinExpr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::AmbientOp>(module.type(expr.type))};
+}
+
+Parts FunctionLowering::lowerLightCount(const typed::BuiltinExpr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::LightCountOp>(emitter.getI32Type())};
+}
+
+Parts FunctionLowering::lowerVisitChild(const typed::BuiltinExpr &expr) {
+  Value child = value(*expr.args[0]);
+  emitter.setLoc(module.location(expr.range));
+  emitter.make<ir::VisitChildOp>(child);
+  return {};
+}
+
+Parts FunctionLowering::lowerIlluminateBySurface(const typed::BuiltinExpr &expr) {
+  Value point = value(*expr.args[0]);
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, Value(), Value())};
 }
 
 // The argument that turns shadows on or off is mostly a constant. RTSL_NO_SHADOWS, which is no
@@ -96,7 +84,7 @@ Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
 }
 
 // The payload is an `inout` argument: a temporary is passed with the ray, and copied back.
-void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
+Parts FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
   constexpr unsigned payload = 4, first = 5; // the optional arguments come last
   llvm::SmallVector<Value, 8> arguments;
   Lvalue target;
@@ -124,9 +112,12 @@ void FunctionLowering::lowerTracePayload(const typed::BuiltinExpr &expr) {
                                    arguments[first + 2], mlir::IntegerAttr(), mlir::IntegerAttr());
   if (arguments[payload] != target.address)
     copyOut({{target, arguments[payload]}});
+  return {};
 }
 
-void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
+Parts FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
+  if (!module.options.prints)
+    return {};
   llvm::SmallVector<llvm::StringRef> items;
   std::vector<std::string> names; // of types; references are not printed
   names.reserve(expr.args.size());
@@ -146,26 +137,18 @@ void FunctionLowering::lowerPrint(const typed::BuiltinExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   emitter.make<ir::PrintOp>(emitter.getStrArrayAttr(items), emitter.getDenseI32ArrayAttr(words),
                             values, mlir::IntegerAttr());
+  return {};
 }
 
 static ir::AtomicKind kindOf(Builtin atomic, bool isSigned) {
   switch (atomic) {
-  case Builtin::AtomicMin:
-    return isSigned ? ir::AtomicKind::MinSigned : ir::AtomicKind::MinUnsigned;
-  case Builtin::AtomicMax:
-    return isSigned ? ir::AtomicKind::MaxSigned : ir::AtomicKind::MaxUnsigned;
-  case Builtin::AtomicAnd:
-    return ir::AtomicKind::And;
-  case Builtin::AtomicOr:
-    return ir::AtomicKind::Or;
-  case Builtin::AtomicXor:
-    return ir::AtomicKind::Xor;
-  case Builtin::AtomicExchange:
-    return ir::AtomicKind::Exchange;
-  case Builtin::AtomicCompSwap:
-    return ir::AtomicKind::CompareExchange;
+#define RTSL_BUILTIN(...)
+#define RTSL_ATOMIC(id, name, kind, kindOfUint, ...)                                               \
+  case Builtin::id:                                                                                \
+    return isSigned ? ir::AtomicKind::kind : ir::AtomicKind::kindOfUint;
+#include "language/Builtins.def"
   default:
-    return ir::AtomicKind::Add;
+    llvm_unreachable("not an atomic function");
   }
 }
 
@@ -185,6 +168,13 @@ Parts FunctionLowering::lowerAtomic(const typed::BuiltinExpr &expr) {
   const Value old = temporary("old", expr.type);
   emitter.ifThen(place.guard, [&] { emitter.store(change(), old); });
   return {emitter.load(old)};
+}
+
+Parts FunctionLowering::lowerHitAnswer(const typed::BuiltinExpr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  // In the middle of an expression unreachable code may follow.
+  emitter.ifThen(emitter.boolConstant(true), [&] { answerHit(expr.builtin); });
+  return {};
 }
 
 void FunctionLowering::answerHit(Builtin builtin) {

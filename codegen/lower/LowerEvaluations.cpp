@@ -232,7 +232,7 @@ static bool isOneStep(const typed::Expr &expr) {
   if (typed::mayTrace(expr))
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
-    return typed::isPure(builtin->builtin) || builtin->builtin == typed::Builtin::Print ||
+    return typed::isPure(builtin->builtin) || has(builtin->builtin, typed::effect::Prints) ||
            outputsOf(builtin->builtin).second != 0 || typed::isAtomic(builtin->builtin);
   return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
 }
@@ -288,7 +288,7 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
   if (!evaluation.changed.empty())
     ir::attr::changes.set(op, emitter.getDenseI32ArrayAttr(evaluation.changed));
   const bool isPrint = expr.kind == ExprKind::Builtin &&
-                       cast<typed::BuiltinExpr>(expr).builtin == typed::Builtin::Print;
+                       has(cast<typed::BuiltinExpr>(expr).builtin, typed::effect::Prints);
   if (evaluation.isNested)
     ir::attr::nested.set(op);
   else if (!isPrint && !outputOf(expr) &&
@@ -308,10 +308,10 @@ static bool isBetweenRays(const typed::Expr &expr) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
-      found =
-          found && (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
-                    builtin->builtin == typed::Builtin::Print ||
-                    typed::drawsRandom(builtin->builtin) || typed::isAtomic(builtin->builtin));
+      found = found &&
+              (typed::isPure(builtin->builtin) || outputsOf(builtin->builtin).second != 0 ||
+               has(builtin->builtin, typed::effect::Prints) ||
+               has(builtin->builtin, typed::effect::Random) || typed::isAtomic(builtin->builtin));
     else
       found = found && !typed::mayTrace(inner);
   });

@@ -171,11 +171,11 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   if (livesInMemory(expr.type) || expr.kind == ExprKind::String)
     return std::nullopt;
   auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
-  if (builtin && builtin->builtin == typed::Builtin::Print && !module.options.prints)
+  if (builtin && has(builtin->builtin, typed::effect::Prints) && !module.options.prints)
     return Parts();
   if ((isCall && !isKept(expr)) || isInOutputBuffer(expr) ||
       (builtin && (outputsOf(builtin->builtin).second != 0 || typed::isAtomic(builtin->builtin) ||
-                   builtin->builtin == typed::Builtin::Print)))
+                   has(builtin->builtin, typed::effect::Prints))))
     return lowerEvaluation(expr);
   if (expr.type->is(TypeKind::Void) ||
       (expr.kind == ExprKind::Literal && expr.type->is(TypeKind::Bool)))

@@ -28,8 +28,7 @@ void FunctionLowering::lower(const typed::Stmt &stmt) {
     return;
   case StmtKind::Expression:
     if (auto *builtin = dynCast<typed::BuiltinExpr>(cast<typed::ExpressionStmt>(stmt).expr.get());
-        builtin && (builtin->builtin == typed::Builtin::IgnoreIntersection ||
-                    builtin->builtin == typed::Builtin::TerminateRay)) {
+        builtin && has(builtin->builtin, typed::effect::EndsHit)) {
       emitter.setLoc(module.location(builtin->range));
       return answerHit(builtin->builtin);
     }

@@ -262,10 +262,19 @@ private:
   // LowerBuiltins.cpp, LowerBuiltinsRay.cpp
   Parts lowerBuiltin(const typed::BuiltinExpr &expr);
   std::optional<Parts> lowerRayBuiltin(const typed::BuiltinExpr &expr);
-  void lowerTracePayload(const typed::BuiltinExpr &expr);
-  Parts lowerIlluminate(const typed::BuiltinExpr &expr);
-  void lowerPrint(const typed::BuiltinExpr &expr);
+  // ... and the functions that Builtins.def names
+  Parts lowerAmbient(const typed::BuiltinExpr &expr);
   Parts lowerAtomic(const typed::BuiltinExpr &expr);
+  Parts lowerHit(const typed::BuiltinExpr &expr);
+  Parts lowerHitAnswer(const typed::BuiltinExpr &expr);
+  Parts lowerIlluminate(const typed::BuiltinExpr &expr);
+  Parts lowerIlluminateBySurface(const typed::BuiltinExpr &expr);
+  Parts lowerLightCount(const typed::BuiltinExpr &expr);
+  Parts lowerPrint(const typed::BuiltinExpr &expr);
+  Parts lowerRand(const typed::BuiltinExpr &expr);
+  Parts lowerTrace(const typed::BuiltinExpr &expr);
+  Parts lowerTracePayload(const typed::BuiltinExpr &expr);
+  Parts lowerVisitChild(const typed::BuiltinExpr &expr);
   void answerHit(typed::Builtin builtin);
   void returnIfHitAnswered();
 

@@ -401,7 +401,7 @@ ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
   if (const std::optional<Ability> ability = abilityNeeded(typed::name(builtin));
       ability && !recordSpecial(*ability, expr.callee.text, expr.callee.range))
     return errorExpr(expr.range);
-  isLit |= builtin == Builtin::Illuminate || builtin == Builtin::IlluminateBySurface;
+  isLit |= has(builtin, typed::effect::Lights);
   convertArguments(signature, args);
   auto node = makeExpr<typed::BuiltinExpr>(signature.result, expr.range);
   node->builtin = builtin;

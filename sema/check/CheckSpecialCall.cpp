@@ -83,7 +83,7 @@ static bool isWordOfBuffer(const typed::Expr &place) {
 
 /// `atomicAdd(counts[i], 1)`: the old value.
 ExprPtr FunctionChecker::checkAtomic(const ast::CallExpr &expr, Builtin atomic) {
-  const std::size_t count = atomic == Builtin::AtomicCompSwap ? 3 : 2;
+  const std::size_t count = typed::parameterCount(atomic);
   if (expr.args.size() != count) {
     diagnostics.report(Code::wrongArgumentCount, expr.range, expr.callee.text,
                        fmt::format("{} arguments", count), expr.args.size());

@@ -185,9 +185,8 @@ private:
   void visitLast(const Expr &expr) {
     if (const auto *builtin =
             dynCast<BuiltinExpr>(&expr)) { // with the payload parameter of the method
-      const auto *payload = builtin->builtin == Builtin::TracePayload
-                                ? dynCast<VariableExpr>(builtin->args[4].get())
-                                : nullptr;
+      const Expr *argument = payloadOf(*builtin);
+      const auto *payload = argument ? dynCast<VariableExpr>(argument) : nullptr;
       if (payload && payload->variable->kind == Variable::Kind::Parameter)
         tails.push_back(&expr);
       return;

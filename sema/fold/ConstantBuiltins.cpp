@@ -14,7 +14,7 @@ using typed::Constant;
 
 std::optional<Constant> evaluateBuiltin(const typed::BuiltinExpr &call,
                                         const std::vector<Constant> &args) {
-  if (typed::info(call.builtin).effect != typed::BuiltinEffect::Pure || args.empty())
+  if (!typed::isFoldable(call.builtin) || args.empty())
     return std::nullopt;
   formulas::Call<fold::Number> formula;
   for (std::size_t i = 0; i != args.size(); ++i) {

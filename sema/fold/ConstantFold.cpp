@@ -523,7 +523,7 @@ bool isConstantExpression(const typed::Expr &expr, const typed::Expr **obstacle)
     return all(cast<typed::ConstructExpr>(expr).args);
   case typed::ExprKind::Builtin: {
     const auto &call = cast<typed::BuiltinExpr>(expr);
-    if (typed::info(call.builtin).effect == typed::BuiltinEffect::Pure)
+    if (typed::isFoldable(call.builtin))
       return all(call.args);
     break;
   }

@@ -1,9 +1,7 @@
 //===- Builtins.cpp - the signatures of the built-in functions ------------===//
 #include "sema/model/Builtins.h"
-#include "sema/typed/Walk.h"
 
 #include <algorithm>
-#include <initializer_list>
 #include <string_view>
 
 namespace rtsl {
@@ -14,18 +12,17 @@ namespace {
 /// A built-in function and one of its signatures, as in Builtins.def.
 struct Row {
   Builtin builtin;
-  const char *signature;
+  std::string_view signature;
 };
 } // namespace
 
 static const std::vector<Row> &allRows() {
   static const std::vector<Row> rows = [] {
     std::vector<Row> all;
-    const auto add = [&](Builtin builtin, std::initializer_list<const char *> signatures) {
-      for (const char *signature : signatures)
-        all.push_back({builtin, signature});
-    };
-#define RTSL_BUILTIN(id, name, effect, cost, where, formula, ...) add(Builtin::id, {__VA_ARGS__});
+#define RTSL_BUILTIN(id, ...)                                                                      \
+  for (const char *signature : typed::info(Builtin::id).signatures)                                \
+    if (signature)                                                                                 \
+      all.push_back({Builtin::id, signature});
 #include "language/Builtins.def"
     return all;
   }();
@@ -38,25 +35,6 @@ std::optional<Builtin> atomicNamed(std::string_view name) {
     return Builtin::id;
 #include "language/Builtins.def"
   return std::nullopt;
-}
-
-bool isOutArgument(Builtin builtin, std::size_t index) {
-  if (builtin == Builtin::TracePayload)
-    return index == 4;
-  if (typed::isAtomic(builtin))
-    return index == 0;
-  if (typed::info(builtin).effect != typed::BuiltinEffect::Outputs)
-    return false;
-  for (const Row &row : allRows())
-    if (row.builtin == builtin) { // "F F >F": the result, then one letter per parameter
-      const std::string_view signature = row.signature;
-      for (std::size_t at = signature.find(' '); at != signature.npos;
-           at = signature.find(' ', at + 1))
-        if (index-- == 0)
-          return signature[at + 1] == '>';
-      return false;
-    }
-  return false;
 }
 
 //===----------------------------------------------------------------------===//
@@ -114,7 +92,7 @@ static const Type *typeOfLetter(char letter, Shape shape, TypeContext &types) {
   }
 }
 
-static Signature expand(const std::string &row, Shape shape, TypeContext &types) {
+static Signature expand(std::string_view row, Shape shape, TypeContext &types) {
   Signature signature;
   ast::Direction direction = ast::Direction::In;
   for (char letter : row) {
@@ -135,10 +113,8 @@ static Signature expand(const std::string &row, Shape shape, TypeContext &types)
 }
 
 /// The shapes to which the letters of a row expand.
-static std::vector<Shape> shapesOf(const std::string &row) {
-  auto hasOneOf = [&](const char *letters) {
-    return row.find_first_of(letters) != std::string::npos;
-  };
+static std::vector<Shape> shapesOf(std::string_view row) {
+  auto hasOneOf = [&](const char *letters) { return row.find_first_of(letters) != row.npos; };
   std::vector<Shape> shapes;
   if (hasOneOf("MTpq")) {
     for (std::uint32_t columns = 2; columns <= 4; ++columns)
@@ -164,12 +140,17 @@ static bool sameParameters(const Signature &a, const Signature &b) {
                     });
 }
 
+/// Any struct is a payload, so such a call is checked by code of its own.
+static bool takesPayload(const Row &row) {
+  return row.signature.find('P') != row.signature.npos;
+}
+
 const BuiltinOverloads *BuiltinTable::find(const std::string &name) {
   if (auto found = expanded.find(name); found != expanded.end())
     return found->second.signatures.empty() ? nullptr : &found->second;
   BuiltinOverloads overloads;
   for (const Row &row : allRows()) {
-    if (name != typed::name(row.builtin))
+    if (name != typed::name(row.builtin) || takesPayload(row))
       continue;
     for (Shape shape : shapesOf(row.signature)) {
       Signature signature = expand(row.signature, shape, types);
@@ -202,7 +183,7 @@ std::vector<std::string> colorFunctionNames() {
   std::vector<std::string> names;
   for (const Row &row : allRows())
     if (const std::string name = typed::name(row.builtin);
-        std::string(row.signature).find(" c") != std::string::npos &&
+        row.signature.find(" c") != row.signature.npos &&
         std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
   return names;

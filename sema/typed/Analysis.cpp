@@ -15,18 +15,6 @@ using ast::StmtKind;
 // Queries
 //===----------------------------------------------------------------------===//
 
-std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin) {
-  constexpr std::size_t mostArguments = 4;
-  if (info(builtin).effect != BuiltinEffect::Outputs)
-    return {0, 0};
-  std::size_t first = 0, count = 0;
-  while (first < mostArguments && !isOutArgument(builtin, first))
-    ++first;
-  while (first + count < mostArguments && isOutArgument(builtin, first + count))
-    ++count;
-  return {first, count};
-}
-
 bool isWholeVector(const SwizzleExpr &expr) {
   const Type *type = expr.base->type;
   if (!type->isVector() || expr.components.size() != type->componentCount())
@@ -186,9 +174,7 @@ const Function &resolve(const CallExpr &call, const Class *concrete) {
 
 SentRays raysOf(const Expr &expr) {
   if (auto *builtin = dynCast<BuiltinExpr>(&expr))
-    return {builtin->builtin == Builtin::Trace || builtin->builtin == Builtin::TracePayload,
-            builtin->builtin == Builtin::Illuminate ||
-                builtin->builtin == Builtin::IlluminateBySurface};
+    return {has(builtin->builtin, effect::Traces), has(builtin->builtin, effect::Lights)};
   if (auto *call = dynCast<CallExpr>(&expr))
     return call->isOfBase ? call->function->sends : call->function->callSends;
   auto *method = dynCast<MethodCallExpr>(&expr);
@@ -199,6 +185,14 @@ bool mayTrace(const Expr &expr) {
   return raysOf(expr).traced;
 }
 
+const Expr *payloadOf(const BuiltinExpr &call) {
+  if (has(call.builtin, effect::Traces))
+    for (std::size_t i = 0; i < call.args.size(); ++i)
+      if (isOutArgument(call.builtin, i))
+        return call.args[i].get();
+  return nullptr;
+}
+
 static bool takesPart(const Function &function, const Class *concrete,
                       std::set<const Function *> &visited) {
   if (!function.body || !visited.insert(&function).second)
@@ -206,7 +200,7 @@ static bool takesPart(const Function &function, const Class *concrete,
   bool found = false;
   forEachExpr(*function.body, [&](const Expr &expr) {
     if (auto *builtin = dynCast<BuiltinExpr>(&expr))
-      found = found || builtin->builtin == Builtin::Hit;
+      found = found || has(builtin->builtin, effect::Hits);
     else if (auto *member = dynCast<MemberExpr>(&expr))
       found = found || member->member->access == ast::Access::Scratch;
     else if (auto *call = dynCast<CallExpr>(&expr))
@@ -226,8 +220,7 @@ bool takesPayload(const Function &function) {
 
 bool isHitAnswer(const Expr &expr) {
   auto *builtin = dynCast<BuiltinExpr>(&expr);
-  return builtin && (builtin->builtin == Builtin::IgnoreIntersection ||
-                     builtin->builtin == Builtin::TerminateRay);
+  return builtin && has(builtin->builtin, effect::EndsHit);
 }
 
 /// Does any expression of a function of the module satisfy `condition`?

@@ -5,14 +5,9 @@
 
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace rtsl::typed {
-
-/// The arguments that a built-in function writes: the index of the first, and their number; none:
-/// 0, 0.
-std::pair<std::size_t, std::size_t> outputsOf(Builtin builtin);
 
 /// Is it a variable or a parameter of the function?
 bool isLocal(const Expr &expr);
@@ -51,6 +46,9 @@ SentRays raysOf(const Expr &expr);
 
 /// May it send rays with `trace`?
 bool mayTrace(const Expr &expr);
+
+/// The payload of a call of `trace`; null without one.
+const Expr *payloadOf(const BuiltinExpr &call);
 
 /// Does `function`, or one of its callees, report hits or use scratch members? `concrete` is the
 /// class of the object; null for a free function.

@@ -43,7 +43,7 @@ const void *EffectsOf::place(StateVariable variable) {
 
 bool EffectsOf::isSilent(const Expr &expr) const {
   auto *builtin = dynCast<BuiltinExpr>(&expr);
-  return !prints && builtin && builtin->builtin == Builtin::Print;
+  return !prints && builtin && has(builtin->builtin, effect::Prints);
 }
 
 EffectsOf::EffectsOf(const Module &module, bool prints, bool raises)
@@ -55,7 +55,7 @@ EffectsOf::EffectsOf(const Module &module, bool prints, bool raises)
         if (method->body)
           forEachExpr(*method->body, [&](const Expr &expr) {
             if (auto *builtin = dynCast<BuiltinExpr>(&expr))
-              texturesDraw |= drawsRandom(builtin->builtin);
+              texturesDraw |= has(builtin->builtin, effect::Random);
             if (auto *call = dynCast<CallExpr>(&expr))
               texturesDraw |= !call->function->owner && function(*call->function).random;
           });
@@ -213,47 +213,23 @@ void EffectsOf::collectCall(const Function &callee, const std::vector<ExprPtr> &
 }
 
 void EffectsOf::collectBuiltin(const BuiltinExpr &builtin, Effects &effects) {
-  switch (builtin.builtin) {
-  case Builtin::Rand:
-  case Builtin::RandOpen:
-  case Builtin::Trace:
-    effects.usesRay = effects.random = true;
-    break;
-  case Builtin::TracePayload:
-    collectWrite(*builtin.args[4], effects);
-    effects.usesRay = effects.random = true;
-    break;
-  case Builtin::Hit:
-    effects.usesRay = effects.reportsHit = true;
+  const auto hasEffect = [&](effect::Effect effect) { return has(builtin.builtin, effect); };
+  for (std::size_t i = 0; i < builtin.args.size(); ++i)
+    if (isOutArgument(builtin.builtin, i))
+      collectWrite(*builtin.args[i], effects);
+  effects.usesRay |= !isFoldable(builtin.builtin) && !hasEffect(effect::Outputs) &&
+                     !hasEffect(effect::Atomic); // writing a buffer does, where there is one
+  effects.random |= hasEffect(effect::Random) || hasEffect(effect::Traces);
+  effects.hasOutput |=
+      hasEffect(effect::EndsHit) || hasEffect(effect::Visits) || hasEffect(effect::Prints);
+  if (hasEffect(effect::Hits)) {
+    effects.reportsHit = true;
     effects.writes.insert(place(StateVariable::HitDistance));
-    break;
-  case Builtin::Ambient:
-  case Builtin::LightCount:
-    effects.usesRay = true;
-    break;
-  case Builtin::IlluminateBySurface:
-    effects.writes.insert(place(StateVariable::PDF));
-    [[fallthrough]];
-  case Builtin::Illuminate:
-    collectLights(effects);
-    break;
-  case Builtin::IgnoreIntersection:
-  case Builtin::TerminateRay:
-  case Builtin::VisitChild:
-    effects.usesRay = effects.hasOutput = true;
-    break;
-  case Builtin::Print:
-    effects.usesRay = effects.hasOutput = true;
-    break;
-  default:
-    if (isAtomic(builtin.builtin))
-      collectWrite(*builtin.args.front(), effects);
-    if (info(builtin.builtin).effect == BuiltinEffect::Outputs)
-      for (std::size_t i = 0; i < builtin.args.size(); ++i)
-        if (isOutArgument(builtin.builtin, i))
-          collectWrite(*builtin.args[i], effects);
-    break;
   }
+  if (hasEffect(effect::Lights))
+    collectLights(effects);
+  if (hasEffect(effect::Samples))
+    effects.writes.insert(place(StateVariable::PDF));
 }
 
 void EffectsOf::collect(const Expr &expr, Effects &effects) {

@@ -1,22 +1,7 @@
-//===- TypedAst.cpp - names of built-ins and state, lookup in classes -----===//
+//===- TypedAst.cpp - names of state, lookup in classes -----------------===//
 #include "sema/typed/TypedAst.h"
 
-#include "language/Costs.h"
-
 namespace rtsl::typed {
-
-const BuiltinInfo &info(Builtin builtin) {
-  using namespace cost;
-  static const BuiltinInfo table[] = {
-#define RTSL_BUILTIN(id, name, effect, cost, ...) {name, BuiltinEffect::effect, cost},
-#include "language/Builtins.def"
-  };
-  return table[static_cast<std::size_t>(builtin)];
-}
-
-const char *name(Builtin builtin) {
-  return info(builtin).name;
-}
 
 const char *name(StateVariable variable) {
   static const char *const names[] = {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "frontend/syntax/Ast.h"
+#include "sema/typed/Builtin.h"
 #include "sema/typed/Type.h"
 
 #include <memory>
@@ -22,38 +23,6 @@ struct Function;
 struct Class;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
-
-enum class Builtin : std::uint8_t {
-#define RTSL_BUILTIN(id, name, effect, cost, ...) id,
-#include "language/Builtins.def"
-};
-const char *name(Builtin builtin);
-
-/// The effect of calling a built-in function, beside its value (Builtins.def).
-enum class BuiltinEffect : std::uint8_t { Pure, Reads, Outputs, Effects };
-
-/// The properties of a built-in function in Builtins.def, except its signatures (Builtins.h).
-struct BuiltinInfo {
-  const char *name;
-  BuiltinEffect effect;
-  unsigned cost; // approximate number of instructions per component
-};
-const BuiltinInfo &info(Builtin builtin);
-
-/// No side effects, and the same value for the same arguments during a ray.
-inline bool isPure(Builtin builtin) {
-  const BuiltinEffect effect = info(builtin).effect;
-  return effect == BuiltinEffect::Pure || effect == BuiltinEffect::Reads;
-}
-/// Does it draw the next random number of the ray?
-inline bool drawsRandom(Builtin builtin) {
-  return builtin == Builtin::Rand || builtin == Builtin::RandOpen;
-}
-
-/// Does it change an element of an output buffer, its first argument, in one step?
-inline bool isAtomic(Builtin builtin) {
-  return builtin >= Builtin::AtomicAdd && builtin <= Builtin::AtomicCompSwap;
-}
 
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {

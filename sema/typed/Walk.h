@@ -25,9 +25,6 @@ void forEachStmt(const typed::Stmt &stmt, const StmtVisitor &visit);
 /// The variable that an lvalue is, or is part of; null if it is not part of a variable.
 const typed::Variable *rootVariable(const typed::Expr &place);
 
-/// Is this argument of a built-in function written to?
-bool isOutArgument(typed::Builtin builtin, std::size_t index);
-
 /// The variables that are assigned somewhere in a statement or expression, as a whole or in part.
 std::set<const typed::Variable *> assignedVariables(const typed::Stmt &stmt);
 std::set<const typed::Variable *> assignedVariables(const typed::Expr &expr);

@@ -5,27 +5,7 @@ namespace rtsl::random {
 
 /// These need a ray, a place or a statement of their own.
 static bool standsAnywhere(typed::Builtin builtin) {
-  using typed::Builtin;
-  if (typed::isAtomic(builtin))
-    return false;
-  switch (builtin) {
-  case Builtin::Rand:
-  case Builtin::RandOpen:
-  case Builtin::Trace:
-  case Builtin::TracePayload:
-  case Builtin::Hit:
-  case Builtin::Ambient:
-  case Builtin::LightCount:
-  case Builtin::Illuminate:
-  case Builtin::IlluminateBySurface:
-  case Builtin::IgnoreIntersection:
-  case Builtin::TerminateRay:
-  case Builtin::VisitChild:
-  case Builtin::Print:
-    return false;
-  default:
-    return true;
-  }
+  return typed::isFoldable(builtin) || typed::has(builtin, typed::effect::Outputs);
 }
 
 Vocabulary &Vocabulary::get() {

@@ -8,26 +8,21 @@ namespace rtsl::cpp {
 
 using typed::Builtin;
 
-/// The runtime header's name, where it is not the language's.
-static std::string nameInCpp(Builtin builtin) {
+/// The function of the runtime header.
+static std::string calleeOf(Builtin builtin) {
   switch (builtin) {
-  case Builtin::PowInt:
-    return "powi";
-  case Builtin::MixSelect:
-    return "mixSelect";
-  case Builtin::MinComponent:
-    return "minComponent";
-  case Builtin::MaxComponent:
-    return "maxComponent";
-  case Builtin::Not:
-    return "logicalNot";
+#define RTSL_BUILTIN(...)
+#define RTSL_NAME_IN_CPP(id, name)                                                                 \
+  case Builtin::id:                                                                                \
+    return "rtsl::" name;
+#include "language/Builtins.def"
   default:
-    return typed::name(builtin);
+    return std::string("rtsl::") + typed::name(builtin);
   }
 }
 
 // The place comes first; its indices are evaluated with the values.
-Code Builtins::atomic(const std::string &callee, const typed::BuiltinExpr &expr) {
+Code Builtins::atomic(const typed::BuiltinExpr &expr) {
   std::vector<const typed::Expr *> values;
   for (std::size_t i = 1; i < expr.args.size(); ++i)
     values.push_back(expr.args[i].get());
@@ -35,12 +30,12 @@ Code Builtins::atomic(const std::string &callee, const typed::BuiltinExpr &expr)
   const Code place = printer.lvalues.of(*expr.args.front(), storesIndices);
   std::vector<Code> codes = printer.expressions.operands(values, Binding::Assignment);
   codes.insert(codes.begin(), place);
-  return cpp::call(callee, std::move(codes));
+  return cpp::call(calleeOf(expr.builtin), std::move(codes));
 }
 
 // Results of `out` parameters follow the operands.
-Code Builtins::withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
-                           std::size_t firstOutput) {
+Code Builtins::withOutputs(const typed::BuiltinExpr &expr) {
+  const std::size_t firstOutput = typed::outputsOf(expr.builtin).first;
   std::vector<const typed::Expr *> inputs;
   for (std::size_t i = 0; i < firstOutput; ++i)
     inputs.push_back(expr.args[i].get());
@@ -67,12 +62,14 @@ Code Builtins::withOutputs(const std::string &callee, const typed::BuiltinExpr &
     printer.assignments.assignComponents(printer.lvalues.of(*vector, true), parts, name(result),
                                          after);
   }
-  const Code call = cpp::call(callee, std::move(codes));
+  const Code call = cpp::call(calleeOf(expr.builtin), std::move(codes));
   return after.empty() ? call
                        : printer.calls.valueThen(expr.type, typed::name(expr.builtin), call, after);
 }
 
 Code Builtins::print(const typed::BuiltinExpr &expr) {
+  if (!context.options.prints)
+    return {};
   std::vector<Code> values = printer.expressions.arguments(expr.args);
   values.insert(values.begin(), name("rt"));
   return cpp::call("rtsl::print", std::move(values));
@@ -123,47 +120,35 @@ Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
   return {};
 }
 
+Code Builtins::hit(const typed::BuiltinExpr &expr) {
+  const bool takesScratch = printer.function && context.signatures.takesScratch(*printer.function);
+  return takesScratch ? callWith({name("rt"), name("scratch")}, expr) : withRay(expr);
+}
+
+Code Builtins::hitAnswer(const typed::BuiltinExpr &expr) {
+  return printer.hitAnswers.endOfAnyHit(expr);
+}
+
+Code Builtins::withRay(const typed::BuiltinExpr &expr) {
+  return callWith({name("rt")}, expr);
+}
+
+Code Builtins::callWith(std::vector<Code> first, const typed::BuiltinExpr &expr) {
+  const std::vector<Code> own = printer.expressions.arguments(expr.args);
+  first.insert(first.end(), own.begin(), own.end());
+  return cpp::call(calleeOf(expr.builtin), std::move(first));
+}
+
 Code Builtins::builtin(const typed::BuiltinExpr &expr) {
-  const std::string callee = "rtsl::" + nameInCpp(expr.builtin);
-  auto with = [&](std::vector<Code> codes) {
-    const std::vector<Code> own = printer.expressions.arguments(expr.args);
-    codes.insert(codes.end(), own.begin(), own.end());
-    return cpp::call(callee, std::move(codes));
-  };
   switch (expr.builtin) {
-  case Builtin::Trace:
-  case Builtin::Rand:
-  case Builtin::RandOpen:
-  case Builtin::Ambient:
-  case Builtin::LightCount:
-  case Builtin::Illuminate:
-  case Builtin::IlluminateBySurface:
-  case Builtin::VisitChild:
-    return with({name("rt")});
-  case Builtin::Hit:
-    return printer.function && context.signatures.takesScratch(*printer.function)
-               ? with({name("rt"), name("scratch")})
-               : with({name("rt")});
-  case Builtin::TracePayload:
-    return tracePayload(expr);
-  case Builtin::IgnoreIntersection:
-  case Builtin::TerminateRay:
-    return printer.hitAnswers.endOfAnyHit(expr);
-  case Builtin::Print:
-    return context.options.prints ? print(expr) : Code{};
-  case Builtin::AtomicAdd:
-  case Builtin::AtomicMin:
-  case Builtin::AtomicMax:
-  case Builtin::AtomicAnd:
-  case Builtin::AtomicOr:
-  case Builtin::AtomicXor:
-  case Builtin::AtomicExchange:
-  case Builtin::AtomicCompSwap:
-    return atomic(callee, expr);
+#define RTSL_BUILTIN(...)
+#define RTSL_RAY_BUILTIN(id, name, effects, cost, where, lowering, printing, ...)                  \
+  case Builtin::id:                                                                                \
+    return printing(expr);
+#include "language/Builtins.def"
   default:
-    if (typed::info(expr.builtin).effect == typed::BuiltinEffect::Outputs)
-      return withOutputs(callee, expr, typed::outputsOf(expr.builtin).first);
-    return with({});
+    return typed::has(expr.builtin, typed::effect::Outputs) ? withOutputs(expr)
+                                                            : callWith({}, expr);
   }
 }
 

@@ -12,11 +12,16 @@ public:
   Code builtin(const typed::BuiltinExpr &expr);
 
 private:
-  Code withOutputs(const std::string &callee, const typed::BuiltinExpr &expr,
-                   std::size_t firstOutput);
+  // The functions that Builtins.def names
+  Code atomic(const typed::BuiltinExpr &expr);
+  Code hit(const typed::BuiltinExpr &expr);
+  Code hitAnswer(const typed::BuiltinExpr &expr);
   Code print(const typed::BuiltinExpr &expr);
-  Code atomic(const std::string &callee, const typed::BuiltinExpr &expr);
   Code tracePayload(const typed::BuiltinExpr &expr);
+  Code withRay(const typed::BuiltinExpr &expr);
+
+  Code withOutputs(const typed::BuiltinExpr &expr);
+  Code callWith(std::vector<Code> first, const typed::BuiltinExpr &expr);
 };
 
 } // namespace rtsl::cpp

@@ -56,6 +56,18 @@ std::optional<Interval> IntRanges::range(BinaryOp op, const typed::Expr &left,
   return result;
 }
 
+static std::optional<Interval> rangeOf(typed::Builtin builtin) {
+  switch (builtin) {
+#define RTSL_BUILTIN(...)
+#define RTSL_RESULT_RANGE(id, low, high)                                                           \
+  case typed::Builtin::id:                                                                         \
+    return Interval{low, high};
+#include "language/Builtins.def"
+  default:
+    return std::nullopt;
+  }
+}
+
 std::optional<Interval> IntRanges::range(const typed::Expr &expr) {
   if (!expr.type->is(TypeKind::Int))
     return std::nullopt;
@@ -92,17 +104,7 @@ std::optional<Interval> IntRanges::range(const typed::Expr &expr) {
       return Interval{0, 1};
     return std::nullopt;
   case ExprKind::Builtin:
-    switch (cast<typed::BuiltinExpr>(expr).builtin) {
-    case typed::Builtin::DominantAxis:
-      return Interval{0, 3};
-    case typed::Builtin::BitCount:
-      return Interval{0, 32};
-    case typed::Builtin::FindLSB:
-    case typed::Builtin::FindMSB:
-      return Interval{-1, 31};
-    default:
-      return std::nullopt;
-    }
+    return rangeOf(cast<typed::BuiltinExpr>(expr).builtin);
   default:
     return std::nullopt;
   }

@@ -28,7 +28,7 @@ SourceRange findHit(const typed::Module &module, const SourceManager &sources,
       return;
     forEachExpr(*function.body, [&](const typed::Expr &expr) {
       const auto *call = dynCast<typed::BuiltinExpr>(&expr);
-      if (!call || call->builtin != typed::Builtin::Hit || range.isValid())
+      if (!call || !has(call->builtin, typed::effect::Hits) || range.isValid())
         return;
       const ShownPlace shown = shownBegin(sources, call->range);
       if (shown.file == place.file && shown.at.line == place.line &&
