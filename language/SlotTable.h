@@ -20,8 +20,11 @@ constexpr Slot samplingSlots[] = {
 };
 
 /// Those of the sampling slots that the runtime itself calls, to choose a point on a surface that
-/// shines.
-constexpr Slot surfaceSlots[] = {
-    {"rt_Primitive", "generateSample"}, {"rt_Primitive", "samplePDF"}, {"rt_Material", "emission"}};
+/// shines, or a direction of the background.
+constexpr Slot surfaceSlots[] = {{"rt_Primitive", "generateSample"},
+                                 {"rt_Primitive", "samplePDF"},
+                                 {"rt_Material", "emission"},
+                                 {"rt_Miss", "sampleDirection"},
+                                 {"rt_Miss", "directionPDF"}};
 
 } // namespace rtsl

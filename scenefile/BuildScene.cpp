@@ -34,7 +34,7 @@ public:
       : description(description), program(*program), variables(description, *program),
         variablePlaces(description), buffers(buffers), scene(std::move(program)),
         files(description), images(description, [this](const std::string &className) {
-          return readsLevels(className);
+          return readsOfImages(className, "levelStarts");
         }) {}
 
   Scene build() {
@@ -239,11 +239,12 @@ private:
     return value.at(json.place());
   }
 
-  /// Whether the program reads more of an image than level 0.
-  bool readsLevels(const std::string &className) const {
+  /// Whether the program reads a member of images of a class: `levelStarts` if it reads more than
+  /// level 0.
+  bool readsOfImages(const std::string &className, const std::string &name) const {
     const ClassInfo *sampler = program.find(className);
-    const MemberInfo *starts = sampler ? find(sampler->members, "levelStarts") : nullptr;
-    return starts && starts->isRead;
+    const MemberInfo *member = sampler ? find(sampler->members, name) : nullptr;
+    return member && member->isRead;
   }
 
   /// Equal images are one object.
@@ -258,12 +259,12 @@ private:
         scene.addWarning({fmt::format("{}: {} numbers of the image are not finite, and count as 0",
                                       name, notFinite),
                           image.place()});
-      return samplers[number] =
-                 scene.addObject(className,
-                                 runtime::samplerValues(std::move(texels),
-                                                        description.imageValues.at(&image).sampling,
-                                                        className == "sampler3D"),
-                                 name);
+      return samplers[number] = scene.addObject(
+                 className,
+                 runtime::samplerValues(
+                     std::move(texels), description.imageValues.at(&image).sampling,
+                     className == "sampler3D", readsOfImages(className, "directionChances")),
+                 name);
     } catch (Error &error) {
       error.place = image.place();
       throw;

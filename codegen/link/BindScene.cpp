@@ -194,7 +194,7 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   findings.push_back(ambient);
 }
 
-/// One thing that a scene graph may have.
+/// One thing that a scene may have.
 struct GraphPart {
   std::uint32_t need; // RTSL_HAS_*
   const char *subject, *present, *absent;
@@ -210,6 +210,8 @@ constexpr GraphPart graphParts[] = {
     {RTSL_HAS_MESH_KEYS, "mesh keys", "some mesh has several", "no mesh has several"},
     {RTSL_HAS_SHUTTER, "shutter", "each sample has a time of its own",
      "nothing moves: the time of all rays is 0"},
+    {RTSL_HAS_SAMPLED_BACKGROUND, "directions of the background",
+     "it has `sampleDirection` and `directionPDF`", "the background cannot choose any"},
 };
 
 } // namespace

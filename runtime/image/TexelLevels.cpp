@@ -1,85 +1,16 @@
 //===- TexelLevels.cpp - the smaller levels of an image -------------------===//
 #include "runtime/image/Texels.h"
 
-#include "runtime/image/Image.h"
 #include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
-#include <half.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
 
 namespace rtsl::runtime {
 
 namespace {
-
-/// One channel of a texel as a number, and back.
-class Codec {
-public:
-  explicit Codec(TexelFormat format) : format(format) {
-    for (std::size_t i = 0; i < linear.size(); ++i)
-      linear[i] = decodeSrgb(static_cast<float>(i) / 255.0f);
-  }
-
-  double decode(const std::uint8_t *bytes, bool isAlpha) const {
-    switch (format) {
-    case TexelFormat::Unorm8:
-      return *bytes / 255.0;
-    case TexelFormat::Srgb8:
-      return isAlpha ? *bytes / 255.0 : double(linear[*bytes]);
-    case TexelFormat::Unorm16:
-      return load<std::uint16_t>(bytes) / 65535.0;
-    case TexelFormat::Float16: {
-      half value;
-      value.setBits(load<std::uint16_t>(bytes));
-      return double(float(value));
-    }
-    case TexelFormat::Float32:
-      return double(load<float>(bytes));
-    }
-    return 0;
-  }
-
-  void encode(double value, bool isAlpha, std::uint8_t *bytes) const {
-    switch (format) {
-    case TexelFormat::Unorm8:
-      *bytes = static_cast<std::uint8_t>(std::nearbyint(value * 255.0));
-      break;
-    case TexelFormat::Srgb8: {
-      const double encoded = isAlpha ? value : double(encodeSrgb(static_cast<float>(value)));
-      *bytes = static_cast<std::uint8_t>(std::nearbyint(encoded * 255.0));
-      break;
-    }
-    case TexelFormat::Unorm16:
-      store(static_cast<std::uint16_t>(std::nearbyint(value * 65535.0)), bytes);
-      break;
-    case TexelFormat::Float16:
-      store(half(static_cast<float>(value)).bits(), bytes);
-      break;
-    case TexelFormat::Float32:
-      store(static_cast<float>(value), bytes);
-      break;
-    }
-  }
-
-private:
-  template <typename Number>
-  static Number load(const std::uint8_t *bytes) {
-    Number number;
-    std::memcpy(&number, bytes, sizeof number);
-    return number;
-  }
-  template <typename Number>
-  static void store(Number number, std::uint8_t *bytes) {
-    std::memcpy(bytes, &number, sizeof number);
-  }
-
-  TexelFormat format;
-  std::array<float, 256> linear;
-};
 
 /// The texels of a level that one of the next level covers along an axis, with the share of its
 /// length in each. Twice as many, of odd sizes up to three times as many: at most four.
@@ -112,7 +43,7 @@ struct Level {
 
 /// The level after one, whose memory has space.
 void shrink(const Level &from, const Level &to, std::uint32_t channels, std::uint32_t channelBytes,
-            const Codec &codec) {
+            const ChannelCodec &codec) {
   const std::vector<Cover> columns = coversOf(from.width, to.width);
   const std::vector<Cover> rows = coversOf(from.height, to.height);
   const std::vector<Cover> slices = coversOf(from.depth, to.depth);
@@ -167,7 +98,7 @@ void addLevels(Texels &texels) {
   auto *bytes = reinterpret_cast<std::uint8_t *>(texels.words.data());
   for (std::size_t i = 0; i < levels.size(); ++i)
     levels[i].bytes = bytes + std::size_t(starts[i]) * texels.channels * channelBytes;
-  const Codec codec(texels.format);
+  const ChannelCodec codec(texels.format);
   for (std::size_t i = 1; i < levels.size(); ++i)
     shrink(levels[i - 1], levels[i], texels.channels, channelBytes, codec);
   texels.levelStarts = std::move(starts);

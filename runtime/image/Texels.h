@@ -8,6 +8,7 @@
 
 #include "support/Error.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -20,6 +21,20 @@ enum class TexelFormat : std::uint8_t { Unorm8 = 0, Srgb8, Unorm16, Float16, Flo
 
 /// 1, 2 or 4.
 std::uint32_t bytesOf(TexelFormat format);
+
+/// One channel of a texel as a number, and back.
+class ChannelCodec {
+public:
+  explicit ChannelCodec(TexelFormat format);
+
+  /// Linear.
+  double decode(const std::uint8_t *bytes, bool isAlpha) const;
+  void encode(double value, bool isAlpha, std::uint8_t *bytes) const;
+
+private:
+  TexelFormat format;
+  std::array<float, 256> linear; // by value in sRGB
+};
 
 struct Texels {
   TexelFormat format = TexelFormat::Float32;

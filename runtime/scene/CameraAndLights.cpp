@@ -40,6 +40,8 @@ void CameraAndLights::setRayGeneration(const Objects &objects, RtslRef object) {
 void CameraAndLights::setBackground(const Objects &objects, RtslRef miss) {
   objects.requireRole(miss, "rt_Miss", ifClassic(objects.program(), "miss"));
   background = miss;
+  const ClassInfo &info = *objects.at(miss).classInfo;
+  isBackgroundSampled = hasMethod(info, "sampleDirection") && hasMethod(info, "directionPDF");
 }
 
 void CameraAndLights::setException(const Objects &objects, RtslRef object) {
@@ -50,6 +52,7 @@ void CameraAndLights::setException(const Objects &objects, RtslRef object) {
 void CameraAndLights::setBackgroundColor(const Objects &objects, const std::vector<float> &color) {
   setColor(objects.program().colorComponents, color, backgroundColor, "background");
   background = 0;
+  isBackgroundSampled = false;
 }
 
 void CameraAndLights::setAmbient(const Objects &objects, const std::vector<float> &color) {
@@ -79,6 +82,7 @@ void CameraAndLights::fill(RtslLaunch &launch) const {
   launch.camera = camera;
   launch.rayGeneration = rayGeneration;
   launch.background = background;
+  launch.needs |= isBackgroundSampled ? RTSL_HAS_SAMPLED_BACKGROUND : 0;
   launch.exception = exception;
   std::copy_n(backgroundColor, RTSL_MAX_COLOR, launch.backgroundColor);
   std::copy_n(ambient, RTSL_MAX_COLOR, launch.ambient);

@@ -41,6 +41,7 @@ public:
 private:
   std::vector<RtslRef> lights;
   RtslRef camera = 0, rayGeneration = 0, background = 0, exception = 0;
+  bool isBackgroundSampled = false; // directions of it can be chosen
   float backgroundColor[RTSL_MAX_COLOR] = {}, ambient[RTSL_MAX_COLOR] = {};
 };
 

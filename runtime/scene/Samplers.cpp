@@ -1,11 +1,15 @@
 #include "runtime/scene/Samplers.h"
 
+#include "runtime/scene/DirectionChances.h"
+
+#include <cstring>
 #include <memory>
 #include <utility>
 
 namespace rtsl::runtime {
 
-ObjectValues samplerValues(Texels texels, const Sampling &sampling, bool isVolume) {
+ObjectValues samplerValues(Texels texels, const Sampling &sampling, bool isVolume,
+                           bool withDirections) {
   using Words = Value::Words;
   ObjectValues values;
   const auto set = [&](const char *name, Value value) {
@@ -24,6 +28,13 @@ ObjectValues samplerValues(Texels texels, const Sampling &sampling, bool isVolum
   set("filter", unsigned(sampling.filter));
   if (!isVolume)
     set("anisotropy", sampling.anisotropy);
+  if (withDirections) {
+    const std::vector<float> chances = directionChances(texels, sampling);
+    auto words = std::make_shared<Words>(chances.size());
+    if (!chances.empty())
+      std::memcpy(words->data(), chances.data(), 4 * chances.size());
+    set("directionChances", Value::block(std::move(words)));
+  }
   set("levelCount", unsigned(texels.levelStarts.size()));
   set("levelStarts", Value::block(std::make_shared<Words>(std::move(texels.levelStarts))));
   set("texels", Value::block(std::make_shared<Words>(std::move(texels.words))));

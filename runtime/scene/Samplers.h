@@ -21,7 +21,8 @@ struct Sampling {
 };
 
 /// The members of a sampler2D (depth 1) or sampler3D, for Scene::addObject. Filters beyond Linear
-/// use the levels that the texels have.
-ObjectValues samplerValues(Texels texels, const Sampling &sampling, bool isVolume);
+/// use the levels that the texels have. `withDirections`: with DirectionChances.h.
+ObjectValues samplerValues(Texels texels, const Sampling &sampling, bool isVolume,
+                           bool withDirections);
 
 } // namespace rtsl::runtime

@@ -133,7 +133,7 @@ static RootModel missModel() {
   const StateSet rayOnly =
       everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection};
   // Texture coordinates are set by `miss`: there is no surface.
-  const StateSet sees = rayOnly | textureCoordinates | StateSet{S::SampleColor};
+  const StateSet sees = rayOnly | textureCoordinates | StateSet{S::SampleColor, S::PDF};
   const StateSet writes = textureCoordinates | StateSet{S::SampleColor};
   const AbilitySet abilities = {A::Trace, A::Lookup, A::Random};
   return {"rt_Miss",
@@ -141,6 +141,12 @@ static RootModel missModel() {
           {
               {"miss", sees, writes, abilities, Payload::None},
               {"miss", sees, writes, abilities | AbilitySet{A::CallColor}, Payload::Required},
+              // These two choose a direction, with its radiance, and weigh one.
+              {"sampleDirection",
+               sees,
+               writes | StateSet{S::RayDirection, S::PDF},
+               {A::Lookup, A::Random}},
+              {"directionPDF", sees, {S::PDF}, {A::Lookup, A::Random}},
           },
           false};
 }

@@ -486,6 +486,12 @@ void Generator::makeMiss(const Targets &targets) {
   for (const Type *payload : payloads)
     if (chance(70))
       addPayloadMethod(*plan, *members, "miss", payload, {}, rules);
+  if (chance(40)) {
+    addMethod(*plan, *members, "sampleDirection", {},
+              "rt_RayDirection = toVector(h); rt_SampleColor = toColor(h); rt_PDF = toUnit(h); ",
+              1 + below(2), Context());
+    addMethod(*plan, *members, "directionPDF", {}, "rt_PDF = toUnit(h); ", below(2), Context());
+  }
   program.miss = plan->name;
 }
 

@@ -410,9 +410,10 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
         words.push_back(wordOf(values[i]));
     };
     note(state.BSDFValue, code.colorComponents);
+    note(state.SampleColor, code.colorComponents);
     note(state.EmissionColor, code.colorComponents);
-    for (const float *vector : {state.LightDirection, state.HitPoint, state.GeometricNormal,
-                                state.BoundMin, state.BoundMax})
+    for (const float *vector : {state.LightDirection, state.RayDirection, state.HitPoint,
+                                state.GeometricNormal, state.BoundMin, state.BoundMax})
       note(vector, 3);
     note(&state.PDF, 1);
     words.push_back(printed);
@@ -426,6 +427,9 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
       for (Method method : {slots.rt_Primitive_generateSample, slots.rt_Primitive_samplePDF,
                             slots.rt_Primitive_computeBounds})
         call(method, primitive, number);
+    if (launch.background != 0)
+      for (Method method : {slots.rt_Miss_sampleDirection, slots.rt_Miss_directionPDF})
+        call(method, launch.background, number);
   }
 }
 

@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/engines/Background.h"
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/engines/Emitters.h"
 #include "runtime/device/engines/ShadowRay.h"
@@ -47,12 +48,11 @@ struct Arrival {
   RtslRef object;
 };
 
-/// The background: there is no surface, so the only texture coordinates are those that `miss`
-/// writes.
+/// The background.
 inline Arrival arriveAtBackground(RtslState &state) {
-  clearCoordinates(state, rtsl_needs(state.launch));
-  if (rtsl_needs(state.launch) & RTSL_NEEDS_TRANSFORMS)
-    describeTransforms(state, 0); // textures that `miss` looks up may read them
+  clearForBackground(state);
+  if (rtsl_needs(state.launch) & RTSL_NEEDS_EMITTERS)
+    state.PDF = backgroundDensity(state);
   return {Arrival::Background, state.launch->background};
 }
 

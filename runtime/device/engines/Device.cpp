@@ -49,6 +49,8 @@ __attribute__((weak)) void rtsl_rt_Selector_visit(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_generateSample(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_samplePDF(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Material_emission(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Miss_sampleDirection(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Miss_directionPDF(RtslState *, RtslRef) {}
 __attribute__((weak)) uint32_t rtsl_features(RtslState *) {
   return 0;
 }

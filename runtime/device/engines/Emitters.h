@@ -1,6 +1,6 @@
 //===- Emitters.h - surfaces that shine, as lights ------------------------===//
 //
-// `illuminate(P)` chooses one of the launch's emitters, with the probability that the table gives,
+// `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters, with the probability that the table gives,
 // and a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of an
 // object with several primitives one of them, likewise. A ray towards the point finds what is seen
 // there; only if that is the point itself does its light count, so that each direction has the
@@ -11,6 +11,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/engines/Background.h"
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
@@ -121,7 +122,7 @@ inline float emitterDensity(const RtslState &hit) {
     return 0;
   const RtslInstance &instance = instanceAt(launch, hit.instance);
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
-  float density = probabilityOf(first, chancesOfEmitters(launch));
+  float density = (1 - backgroundChance(launch)) * probabilityOf(first, chancesOfEmitters(launch));
   const float ofPart =
       partsOf(launch, instance) == 0
           ? 1
@@ -191,14 +192,6 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
              : point;
 }
 
-/// The light that arrives from an emitter.
-struct EmittedLight {
-  Vec3 direction; // of any length
-  float distance; // in units of it
-  float density;  // of the direction, by solid angle; 0: no light arrives
-  float radiance[RTSL_MAX_COLOR];
-};
-
 /// Chooses a point on an emitter and finds what is seen of it. On a GPU it is a separate function.
 #ifdef __NVPTX__
 __attribute__((noinline))
@@ -248,10 +241,17 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
   choice.u = drawNumber(state, state.dimension + 2);
   choice.v = drawNumber(state, state.dimension + 3);
   state.dimension += 4;
-  if (launch.emitterCount == 0)
+  const float ofBackground = backgroundChance(launch);
+  if (ofBackground == 0 && launch.emitterCount == 0)
     return false;
   EmittedLight light;
-  lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice, &light);
+  if (choice.emitter < ofBackground) {
+    lookAtBackground(shadowRayFrom(state, point), leftHit(state), &light);
+  } else {
+    if (ofBackground != 0) // the rest of the draw
+      choice.emitter = (choice.emitter - ofBackground) / (1 - ofBackground);
+    lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice, &light);
+  }
   const float length = squareRoot(dot(light.direction, light.direction));
   if (!(light.density > 0 && length > 0) || isBlack(light.radiance, components))
     return false;

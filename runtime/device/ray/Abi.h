@@ -352,9 +352,10 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_MOTION 1048576u    // some transform moves
 #define RTSL_HAS_MESH_KEYS 2097152u // some mesh has several keys
 #define RTSL_HAS_SHUTTER 4194304u   // each sample has a time of its own; otherwise the time is 0
+#define RTSL_HAS_SAMPLED_BACKGROUND 8388608u // directions of the background can be chosen
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
-   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER)
+   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u
