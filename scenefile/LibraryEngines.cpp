@@ -10,12 +10,14 @@ namespace {
 struct LibraryEngine {
   const char *name;
   const char *className;
-  const char *limit; // the member that limits the rays of a path; null: it is a view
+  const char *limit;        // the member that limits the rays of a path; null: it is a view
+  std::uint32_t beyond = 0; // rays that may follow the last one of a path, one after the other
 };
 constexpr LibraryEngine engines[] = {
-    {"path", "PathTracer", "bounces"},   {"occlusion", "OcclusionView", nullptr},
-    {"normals", "NormalsView", nullptr}, {"depth", "DepthView", nullptr},
-    {"id", "IdView", nullptr},           {"albedo", "AlbedoView", nullptr},
+    {"path", "PathTracer", "bounces"},       {"volume", "VolumeTracer", "bounces", 17},
+    {"occlusion", "OcclusionView", nullptr}, {"normals", "NormalsView", nullptr},
+    {"depth", "DepthView", nullptr},         {"id", "IdView", nullptr},
+    {"albedo", "AlbedoView", nullptr},
 };
 
 // And of library/std/backgrounds.
@@ -66,6 +68,7 @@ void useLibraryEngine(SceneDescription &scene, const JsonValue &engine) {
   const JsonValue *depth = scene.root->find("render")->find("depth");
   if (chosen.limit && depth && std::none_of(members.begin(), members.end(), isLimit))
     members.push_back({{chosen.limit, depth->place()}, depth});
+  scene.render.depth = std::min(scene.render.depth + chosen.beyond, runtime::maxRayDepth);
 
   if (scene.background || !scene.backgroundColor)
     return;

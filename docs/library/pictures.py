@@ -102,6 +102,18 @@ def scenes():
                  background=[0, 0, 0])
     room["render"].update(engine="path", spp=1024)
     yield "PathTracer", room
+    fog = {**room, "helpers": {"fog": {"class": "HomogeneousMedium", "scattering": 0.12, "anisotropy": 0.3}},
+           "objects": [*walls, balls[0], {"primitive": {"class": "Sphere", "center": [0.6, -0.5, 0.4], "radius": 0.5}, "material": {
+               "class": "MediumBoundary", "interior": {"class": "HomogeneousMedium", "scattering": [8, 3, 1], "absorption": [0.1, 0.3, 0.5]}}}],
+           "rayGeneration": {"class": "VolumeTracer", "medium": "fog"}, "render": {**room["render"], "engine": "volume", "spp": 512}}
+    yield "VolumeTracer", fog
+    for name, members in (("HomogeneousMedium", {"scattering": [2.2, 2.5, 2.8]}), ("GridMedium", {
+            "density": {"raw": str(ROOT / "examples/smoke/smoke.raw"), "size": [40, 64, 40], "format": "unorm8", "filter": "bilinear", "wrap": "clamp"},
+            "low": [-0.8, -1, -0.8], "high": [0.8, 1.2, 0.8], "scattering": 12, "absorption": 1})):
+        box = {"class": "Box", "low": [-0.8, -1, -0.8], "high": [0.8, 1.2, 0.8]} if name == "GridMedium" else BALL
+        one = scene([FLOOR, {"primitive": box, "material": {"class": "MediumBoundary", "interior": {"class": name, **members}}}])
+        one["render"].update(engine="volume", spp=1024)
+        yield name, one
     for name, engine, members in (("NormalsView", "normals", {}), ("DepthView", "depth", {"unit": 8}), ("IdView", "id", {}),
                                   ("AlbedoView", "albedo", {}), ("OcclusionView", "occlusion", {"reach": 2})):
         view = {**room, "rayGeneration": {"class": name, **members}}

@@ -22,13 +22,13 @@ def prose(comment):
 def class_section(path):
     text = path.read_text()
     head = re.search(r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import .*\n)*class )", text, re.M)
-    base = re.search(r"^class \w+ : (\w+)", text, re.M).group(1)
+    base = re.search(r"^class \w+(?: : (\w+))?", text, re.M).group(1)
     constructor = re.search(r"void constructor\(([^)]*)\)", text)
     yield f"### {path.stem}\n"
     if (ROOT / f"docs/library/{path.stem}.png").exists():
         yield f"![{path.stem}](library/{path.stem}.png)\n"
     yield prose(head.group(1)) + "\n"
-    yield f"A class of `{base}`." + (f" Constructor: `{constructor.group(1)}`." if constructor else "") + "\n"
+    yield (f"A class of `{base}`." if base else "A [helper class](language.md#8-classes).") + (f" Constructor: `{constructor.group(1)}`." if constructor else "") + "\n"
     rows = MEMBER.findall(text)
     if rows:
         yield "| parameter | type | default | |\n|---|---|---|---|"

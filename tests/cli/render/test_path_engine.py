@@ -437,7 +437,7 @@ class Paths(PathCase):
     def test_unknown_engines(self):
         self.scene([(BALL, {"class": "Shines"})])
         self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"), "E0808",
-                            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `occlusion`")
+                            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `volume`, `occlusion`")
 
     def test_the_camera_of_an_authors_generate(self):
         """`generate` sees the camera's ray; without a camera it is zero."""

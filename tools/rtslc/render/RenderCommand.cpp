@@ -243,8 +243,9 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
            "limit of nested `trace` calls; 0: camera rays only");
   command
-      ->add_option("--engine", options->engine,
-                   "classic, path, programs; or a view: normals, depth, id, albedo, occlusion")
+      ->add_option(
+          "--engine", options->engine,
+          "classic, path, volume, programs; or a view: normals, depth, id, albedo, occlusion")
       ->type_name("NAME");
   addAovOption(*command, options->aovs);
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");

@@ -53,7 +53,6 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
   render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(
       options.isOpenEnded() ? runtime::mostSamplesPerPixel : render.samplesPerPixel);
-  render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
   render.traversal = options.traversal;
