@@ -107,6 +107,12 @@ def scenes():
                "class": "MediumBoundary", "interior": {"class": "HomogeneousMedium", "scattering": [8, 3, 1], "absorption": [0.1, 0.3, 0.5]}}}],
            "rayGeneration": {"class": "VolumeTracer", "medium": "fog"}, "render": {**room["render"], "engine": "volume", "spp": 512}}
     yield "VolumeTracer", fog
+    balls = [{"primitive": {"class": "Sphere", "center": [3 * i - 6, 1.9, -420 - 40 * i], "radius": 1.2}, "material": CLAY} for i in range(5)]
+    road = {"primitive": {"class": "Parallelogram", "constructor": [[-4000, 0, 20], [8000, 0, 0], [0, 0, -6000]]}, "material": {"class": "Lambert"}}
+    air = scene([road, *balls], camera={"class": "PerspectiveCamera", "constructor": [[0, 1.5, 0], [0, 1.5, -500], UP], "fieldOfView": 1.4},
+                lights=[{"class": "DistantLight", "direction": [1, 2, 1]}])
+    yield "LayeredAir", {**air, "helpers": {"air": {"class": "LayeredAir", "thickness": 0.15}},
+                         "rayGeneration": {"class": "CurvedTracer", "field": "air", "reach": 2000}, "render": {**air["render"], "engine": "programs", "spp": 16}}
     for name, members in (("HomogeneousMedium", {"scattering": [2.2, 2.5, 2.8]}), ("GridMedium", {
             "density": {"raw": str(ROOT / "examples/smoke/smoke.raw"), "size": [40, 64, 40], "format": "unorm8", "filter": "bilinear", "wrap": "clamp"},
             "low": [-0.8, -1, -0.8], "high": [0.8, 1.2, 0.8], "scattering": 12, "absorption": 1})):

@@ -102,7 +102,7 @@ TEST(SceneFile, WrongTypesAndRanges) {
             "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 3");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"bdpt\"}")),
             "dir/s.json:2:23+4: notSupported: there is no engine `bdpt`; there are `classic`, "
-            "`programs`, `path`, `occlusion`, `normals`, `depth`, `id`, `albedo`");
+            "`programs`, `path`, `volume`, `occlusion`, `normals`, `depth`, `id`, `albedo`");
   EXPECT_EQ(parseError(withCamera("\"ambient\": \"red\"")),
             "dir/s.json:2:13+3: wrongType: `ambient` is a color, not a string");
   EXPECT_EQ(
