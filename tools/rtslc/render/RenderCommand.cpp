@@ -233,6 +233,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
                  "render samples until the estimated relative error of the picture is below; at "
                  "most --spp");
   addCheckpointOptions(*command, options->checkpoint);
+  addTevOption(*command, options->tev);
   addSizeOption(*command, options->size);
   addCropOption(*command, options->crop);
   command->add_option("--camera", options->camera, "one of the scene's `cameras`")

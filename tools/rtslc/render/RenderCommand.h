@@ -4,6 +4,7 @@
 #include "CheckpointFile.h"
 #include "FrameSequence.h"
 #include "RenderTarget.h"
+#include "TevViewer.h"
 #include "runtime/render/RenderOptions.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/rtslc/common/CommandLine.h"
@@ -39,8 +40,11 @@ struct RenderCommandOptions {
   std::optional<double> seconds; // --time
   double noise = 0;              // --noise; 0: not given
   CheckpointOptions checkpoint;
+  TevOptions tev;
   bool isOpenEnded() const { return seconds || noise > 0; }
-  bool isInPasses() const { return isOpenEnded() || !checkpoint.file.empty(); }
+  bool isInPasses() const {
+    return isOpenEnded() || !checkpoint.file.empty() || (!tev.host.empty() && !watches);
+  }
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
   TargetName target = TargetName::Host;

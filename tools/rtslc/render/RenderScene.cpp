@@ -151,6 +151,7 @@ private:
       ofView.seconds.reset();
       ofView.noise = 0;
       ofView.checkpoint = {};
+      ofView.tev = {};
       ofView.prints = false;
       views.push_back(std::make_unique<View>(ofView, messages, stop));
       if (!views.back()->picture->read() || !views.back()->picture->compile())
@@ -190,6 +191,8 @@ private:
   bool read() {
     runtime::checkWritable(options.output, options.format);
     checkOutputFiles();
+    if (!connectToViewer())
+      return false;
     input = readInput(options, messages);
     if (!input)
       return false;
@@ -206,6 +209,19 @@ private:
     files = withFiles(input->description, filesRead);
     checkOutputFiles(files);
     return true;
+  }
+
+  /// Early, so that nothing is waited for in vain.
+  bool connectToViewer() {
+    if (options.tev.host.empty())
+      return true;
+    viewer.emplace(options.tev, options.output == "-" ? options.scene : options.output);
+    if (viewer->failure().empty())
+      return true;
+    messages.diagnostics
+        .report(Code::viewerUnreachable, {}, options.tev.host, options.tev.port, viewer->failure())
+        .note("start tev there first; it listens on port 14158 unless told otherwise");
+    return false;
   }
 
   void checkOutputFiles(const std::vector<std::string> &filesRead = {}) const {
@@ -265,12 +281,21 @@ private:
     runtime::PassOptions passes;
     passes.seconds = options.seconds.value_or(passes.seconds);
     passes.error = options.noise;
-    if (options.output != "-")
+    const double secondsBetweenFiles = passes.secondsBetweenPictures;
+    if (viewer)
+      passes.secondsBetweenPictures = 1;
+    Clock::time_point written = Clock::now();
+    if (options.output != "-" || viewer)
       passes.picture = [&](const runtime::Image &image) {
+        if (viewer)
+          viewer->show(image);
+        if (options.output == "-" || secondsSince(written) < secondsBetweenFiles)
+          return;
         try {
           runtime::writeImage(options.output, image, options.format);
         } catch (const Error &) { // it is reported if the last picture fails too
         }
+        written = Clock::now();
       };
     runtime::PartialRendering rendering;
     if (!options.checkpoint.file.empty())
@@ -316,6 +341,8 @@ private:
   }
 
   void write(const runtime::Image &image, const std::vector<runtime::Layer> &layers) {
+    if (viewer)
+      viewer->show(image);
     const Clock::time_point begin = Clock::now();
     if (layers.empty())
       runtime::writeImage(options.output, image, options.format);
@@ -343,6 +370,9 @@ private:
     warn(summary, messages);
     if (checkpoint)
       checkpoint->report(messages);
+    if (viewer && !viewer->failure().empty())
+      messages.diagnostics.report(Code::viewerLost, {}, options.tev.host, options.tev.port,
+                                  viewer->failure());
     printSummary(options, summary);
   }
 
@@ -358,6 +388,7 @@ private:
   LinkRequest request;
   std::optional<runtime::Scene> scene;
   std::optional<CheckpointFile> checkpoint;
+  std::optional<TevViewer> viewer;
   std::vector<std::unique_ptr<View>> views;
   std::optional<std::uint32_t> samples; // of a view: per pixel
   Clock::time_point start;              // of compiling
