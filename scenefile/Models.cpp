@@ -109,7 +109,10 @@ private:
     failed.root = unreadable;
     gltf::Model &model = models.emplace(file, failed).first->second;
     const gltf::File &opened = modelsOf(scene).open(file, path.place());
-    model = gltf::modelOf(opened, freeName(path.string), {path.string, path.fromOverride}, path);
+    model = gltf::modelOf(opened, freeName(path.string),
+                          path.isIncluded ? gltf::Mention{file, true}
+                                          : gltf::Mention{path.string, path.fromOverride},
+                          path);
     modules.insert(model.modules.begin(), model.modules.end());
     std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(scene.warnings));
     return model.root;

@@ -152,6 +152,8 @@ std::vector<std::string> filesOf(const SceneDescription &description) {
     if (!file.empty() && std::find(files.begin(), files.end(), file) == files.end())
       files.push_back(file);
   };
+  for (const std::string &file : description.included)
+    add(file);
   for (const GeometryDescription &geometry : description.objects)
     for (const MeshPath &key : geometry.mesh)
       add(key.path);

@@ -1,6 +1,7 @@
 //===- SceneFile.cpp - from JSON to a description -------------------------===//
 #include "scenefile/SceneFile.h"
 
+#include "scenefile/Includes.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Models.h"
 #include "scenefile/SettingsReader.h"
@@ -35,7 +36,7 @@ public:
 
   void read() {
     expect(root, Kind::Object, "a scene");
-    readVersion();
+    checkVersion(root);
     errors.attempt([&] {
       checkKeys(root, {"$schema", "rtsl",     "import",     "camera",  "rayGeneration", "images",
                        "helpers", "textures", "materials",  "objects", "nodes",         "root",
@@ -159,19 +160,6 @@ private:
       requireCamera(fmt::format("a scene for the engine `{}`", libraryEngine->string));
     else
       require(root, "rayGeneration", "a scene for the engine `programs`");
-  }
-
-  void readVersion() const {
-    const JsonValue *version = root.find("rtsl");
-    if (!version)
-      throw Error(ErrorCode::MissingKey,
-                  "a scene begins with `\"rtsl\": 1`, the version of the format", root.place());
-    expect(*version, Kind::Number, "`rtsl`");
-    if (version->number != 1)
-      throw Error(ErrorCode::NotSupported,
-                  fmt::format("version {:g} of the scene format is not supported, only 1 is",
-                              version->number),
-                  version->place());
   }
 
   void readImports(const JsonValue &value) {
@@ -543,13 +531,15 @@ void chooseFrame(JsonValue &root) {
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides) {
   auto root = std::make_shared<JsonValue>(parseJson(text, path));
+  ErrorCollector errors;
+  std::vector<std::string> included = expandIncludes(*root, path, errors);
   for (const std::string &override : overrides)
     applyOverride(*root, override);
   chooseFrame(*root);
   SceneDescription scene;
   scene.file = path;
   scene.root = root;
-  ErrorCollector errors;
+  scene.included = std::move(included);
   expandModels(*root, scene, errors);
   SceneReader(*root, scene, std::move(errors)).read();
   return scene;

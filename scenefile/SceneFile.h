@@ -151,7 +151,8 @@ struct ImportDescription {
 };
 
 struct SceneDescription {
-  std::string file; // as given
+  std::string file;                  // as given
+  std::vector<std::string> included; // other scene files that are parts of it
   std::vector<ImportDescription> imports;
   std::optional<ObjectDescription> camera;                        // the classic engine needs it
   std::vector<std::pair<std::string, ObjectDescription>> cameras; // by name, to choose from
@@ -190,7 +191,8 @@ SceneDescription readSceneFile(const std::string &path,
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides = {});
 
-/// The files that the scene reads besides shaders, each once: meshes, images, buffers.
+/// The files that the scene reads besides shaders, each once: scene files that it includes, meshes,
+/// images, buffers.
 std::vector<std::string> filesOf(const SceneDescription &description);
 
 /// The classes that the scene names, each once, sorted. Linking keeps these.

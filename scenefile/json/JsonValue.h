@@ -37,6 +37,7 @@ struct JsonValue {
   std::shared_ptr<const std::string> file;
   std::uint32_t line = 0, column = 0, length = 0;
   bool fromOverride = false; // came from --set
+  bool isIncluded = false;   // from another file than the scene's: paths in it are relative to that
 
   Place place() const { return {*file, line, column, length}; }
   /// Of a key of this object, or of the object whose value this is.

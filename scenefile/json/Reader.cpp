@@ -78,7 +78,8 @@ std::string resolvePath(const JsonValue &value, const std::string &sceneFile) {
   const std::filesystem::path path(value.string);
   if (path.is_absolute() || value.fromOverride)
     return value.string;
-  return (std::filesystem::path(sceneFile).parent_path() / path).lexically_normal().string();
+  const std::string &from = value.isIncluded ? *value.file : sceneFile;
+  return (std::filesystem::path(from).parent_path() / path).lexically_normal().string();
 }
 
 std::vector<double> readNumbers(const JsonValue &value, std::size_t count,

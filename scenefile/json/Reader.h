@@ -28,8 +28,8 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
 /// Any 32-bit integer, for `id`.
 std::int32_t readId(const JsonValue &value);
 
-/// The file that a path of a scene file means: paths are relative to the scene's folder, those from
-/// the command line to the working directory.
+/// The file that a path of a scene file means: paths are relative to the scene's folder, those of
+/// included files to theirs, and those from the command line to the working directory.
 std::string resolvePath(const JsonValue &path, const std::string &sceneFile);
 
 /// A list of exactly `count` numbers.
