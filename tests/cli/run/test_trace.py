@@ -110,13 +110,42 @@ class Trace(Case):
             self.assert_same_bits("all.npy.hits", name + ".hits", name)
         self.assertEqual((self.folder / "all.npy.hits").stat().st_size, 16 * 200)
 
+    def test_rays_of_columns(self):
+        lines = [ray[:3] + ray[4:7] for ray in self.rays]
+        self.write("all.npy", npy("f", [200, 6], [x for line in lines for x in line]))
+        self.run_rtslc("trace", "soup.obj", "--rays", "all.npy", "--out", "wanted.npy", "-q")
+        # In another order than in the file, among others, and with lists.
+        self.write("some.csv", "dx,dy,dz,weight,ox,oy,oz\n" + "".join(",".join(map(repr, (*line[3:], 7, *line[:3]))) + "\n" for line in lines))
+        names = ("nx", "ny", "nz", "x", "y", "z")
+        header = "".join(f"property float {name}\n" for name in names)
+        rows = "".join(" ".join(map(repr, (*line[3:], *line[:3]))) + "\n" for line in lines)
+        self.write("points.ply", f"ply\nformat ascii 1.0\nelement vertex 200\n{header}element face 1\nproperty list uchar int vertex_indices\n"
+                                 f"end_header\n{rows}3 0 1 2\n")
+        self.write("rays.ply", f"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nelement ray 200\n{header}end_header\n{rows}")
+        in_order = "x,y,z,nx,ny,nz"
+        for options in (["some.csv", "--columns", "ox,oy,oz,dx,dy,dz"], ["points.ply", "--columns", in_order],
+                        ["rays.ply", "--element", "ray", "--columns", in_order]):
+            self.run_rtslc("trace", "soup.obj", "--rays", *options, "--out", "found.npy", "-q")
+            self.assert_same_bits("found.npy", "wanted.npy", options)
+        # All columns, in the order of the file: other rays.
+        self.run_rtslc("trace", "soup.obj", "--rays", "points.ply", "--out", "found.npy", "-q")
+        self.assertNotEqual((self.folder / "found.npy").read_bytes(), (self.folder / "wanted.npy").read_bytes())
+        for options, code, containing in ((["some.csv", "--columns", "ox,oy,oz,dx,dy,dw"], "E0806", "`dw`"),
+                                          (["points.ply", "--columns", "x,y,z,nx,ny,q"], "E0806", "`q`"),
+                                          (["points.ply", "--columns", "x,y,z"], "E0906", "has the shape (200, 3)"),
+                                          (["points.ply", "--element", "edge"], "E0806", "`edge`"),
+                                          (["all.npy", "--columns", "x"], "E0906", "`--columns` is for .csv and .ply")):
+            self.assert_message(self.diagnose("trace", "soup.obj", "--rays", *options, "--out", "hits.npy"), code, containing)
+        self.assert_message(self.diagnose("trace", "soup.obj", "--rays", "points.ply", "--columns", in_order, "--out", "points.ply"),
+                            "E0965", "is an input")
+
     def test_what_is_wrong(self):
         for name, content, code, containing in (
                 ("a.npy", npy("f", [3, 7], [0.0] * 21), "E0906", "rays have 6 numbers, origin and direction, or 8"),
                 ("b.npy", npy("f", [6], [0.0] * 6), "E0906", "has the shape (6)"),
                 ("c.npy", npy("f", [0, 6], []), "E0805", "has 0 indices"),
                 ("d.npy", npy("f", [3, 6], [0.0] * 18)[:-4], "E0906", "it is cut short"),
-                ("e.bin", b"", "E0906", "is neither .npy nor .csv"),
+                ("e.bin", b"", "E0906", "is neither .npy, .csv nor .ply"),
                 ("f.csv", "1,2,3,4,5,6\n1,2,3\n", "E0906", "line 2 has 3 columns")):
             self.write(name, content)
             self.assert_message(self.diagnose("trace", "soup.obj", "--rays", name, "--out", "hits.npy"), code, containing)

@@ -6,6 +6,7 @@
 #include "RunCommand.h"
 #include "codegen/driver/StandardLibrary.h"
 #include "scenefile/files/NumberFiles.h"
+#include "scenefile/files/PlyColumns.h"
 #include "support/Error.h"
 #include "tools/rtslc/common/Messages.h"
 
@@ -23,32 +24,54 @@ namespace {
 struct TraceOptions {
   RunOptions run;
   std::string mesh, rays, hits;
+  std::vector<std::string> columns;
+  std::string element = "vertex"; // of .ply
   bool isAny = false;
 };
 
+std::string extensionOf(const std::string &file) {
+  return std::filesystem::path(file).extension().string();
+}
+
+/// Of the numbers in the file, or in the chosen columns.
+std::vector<std::size_t> shapeOf(const TraceOptions &options) {
+  const std::string &file = options.rays, extension = extensionOf(file);
+  if (extension == ".csv")
+    return scene::readCsv(file, options.columns).shape;
+  if (extension == ".ply")
+    return scene::readPly(file, options.element, options.columns).shape;
+  if (extension != ".npy")
+    throw Error(ErrorCode::BadBuffer, fmt::format("`{}` is neither .npy, .csv nor .ply", file));
+  if (!options.columns.empty())
+    throw Error(
+        ErrorCode::BadBuffer,
+        fmt::format("`{}` has no columns with names: `--columns` is for .csv and .ply", file));
+  return scene::NpyFile(file, scene::NpyFile::Part::Header).shape();
+}
+
 /// How many numbers a ray of the file has: 6 or 8.
-std::size_t numbersOfRay(const std::string &file) {
-  const std::string extension = std::filesystem::path(file).extension().string();
-  if (extension != ".npy" && extension != ".csv")
-    throw Error(ErrorCode::BadBuffer, fmt::format("`{}` is neither .npy nor .csv", file));
-  const std::vector<std::size_t> shape =
-      extension == ".npy" ? scene::NpyFile(file, scene::NpyFile::Part::Header).shape()
-                          : scene::readCsv(file, {}).shape;
+std::size_t numbersOfRay(const TraceOptions &options) {
+  const std::vector<std::size_t> shape = shapeOf(options);
   if (shape.size() == 2 && (shape[1] == 6 || shape[1] == 8))
     return shape[1];
   throw Error(ErrorCode::BadBuffer,
               fmt::format("`{}` has the shape ({}): rays have 6 numbers, origin and direction, or "
                           "8, origin, tmin, direction and tmax",
-                          file, fmt::join(shape, ", ")));
+                          options.rays, fmt::join(shape, ", ")));
 }
 
 int trace(TraceOptions options) {
   RunOptions &run = options.run;
   run.scene = fmt::format("{}/queries/{}.json", libraryFolder(), options.isAny ? "any" : "nearest");
   try {
-    const char *const rays = numbersOfRay(options.rays) == 8 ? "rays" : "lines";
-    run.inputs = {{rays, options.rays}};
-    run.overrides = {fmt::format("render.size={}", rays),
+    const char *const rays = numbersOfRay(options) == 8 ? "rays" : "lines";
+    nlohmann::json buffer = {{"buffer", options.rays}};
+    if (!options.columns.empty())
+      buffer["columns"] = options.columns;
+    if (extensionOf(options.rays) == ".ply")
+      buffer["element"] = options.element;
+    run.overrides = {fmt::format("rayGeneration.{}={}", rays, buffer.dump()),
+                     fmt::format("render.size={}", rays),
                      "objects.0.mesh=" + nlohmann::json(options.mesh).dump()};
   } catch (const Error &error) {
     Messages messages(run.common);
@@ -68,10 +91,20 @@ void addTraceCommand(CLI::App &app, Action &action) {
   command->add_option("MESH", options->mesh, "a mesh: OBJ, PLY or glTF")->required();
   command
       ->add_option("--rays", options->rays,
-                   "a ray a row, .npy or .csv: origin and direction, or origin, tmin, direction "
-                   "and tmax")
+                   "a ray a row, .npy, .csv or .ply: origin and direction, or origin, tmin, "
+                   "direction and tmax")
       ->type_name("FILE")
       ->required();
+  command
+      ->add_option("--columns", options->columns,
+                   "names of the columns of .csv or .ply that hold these numbers, in their order; "
+                   "default: all columns")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  command
+      ->add_option("--element", options->element,
+                   "the element of .ply that has a ray for each of its rows; default: vertex")
+      ->type_name("NAME");
   command
       ->add_option("--out", options->hits,
                    "t, triangle, u, v of the nearest hit of each ray, -1 where there is none: "
@@ -80,7 +113,9 @@ void addTraceCommand(CLI::App &app, Action &action) {
   command->add_flag("--any", options->isAny, "only whether a ray hits anything: a bool a ray");
   addRunOptions(*command, options->run);
   command->footer("examples:\n  rtslc trace bunny.ply --rays rays.npy --out hits.npy\n"
-                  "  rtslc trace bunny.ply --rays rays.csv --any --out seen.csv --target=gpu");
+                  "  rtslc trace bunny.ply --rays rays.csv --any --out seen.csv --target=gpu\n"
+                  "  rtslc trace bunny.ply --rays points.ply --columns x,y,z,nx,ny,nz --any "
+                  "--out hidden.npy");
   command->callback([options, command, &action] {
     completeRunOptions(*command, options->run);
     action = [options] { return trace(*options); };
