@@ -63,8 +63,9 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   const std::uint32_t needs = linking::findNeeds(context);
   const std::vector<std::uint32_t> needsOfClasses = linking::findNeedsOfClasses(context, needs);
   const llvm::StringSet<> membersOfProgram = membersRead(ir);
+  RequiredMembers required(module);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
-    runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters);
+    runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters, required);
     info.id = linked.id;
     info.needs = needsOfClasses[index];
     for (runtime::MemberInfo &member : info.members)

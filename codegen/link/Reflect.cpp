@@ -84,8 +84,8 @@ runtime::ValueType reflect(const Type *type, mlir::Type irType) {
   return value;
 }
 
-runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record,
-                           ir::StructType parameters) {
+runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::StructType parameters,
+                           RequiredMembers &required) {
   runtime::ClassInfo result;
   result.name = info.name;
   result.root = info.root;
@@ -103,6 +103,7 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record,
                                                   record.findMember(member->name).getType());
     described.isPublic = member->access == ast::Access::Public;
     described.hasDefault = member->init != nullptr || member->isOptional; // no object
+    described.isRequired = required.has(info, *member);
     result.members.push_back(std::move(described));
   }
 

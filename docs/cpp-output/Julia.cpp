@@ -126,7 +126,7 @@ inline void computeNormal(RtslState *ray, RtslRef object) {
 static RtslShaders describe() {
   rtsl::Program<3> program;
   program.add<Julia>(static_cast<std::uint32_t>(Id::Julia), "Julia", "rt_Primitive", "rt_Primitive")
-      .member("center", &Julia::center, rtsl::Access::Public)
+      .member("center", &Julia::center, rtsl::Access::Public, rtsl::Default::Required)
       .member("constant", &Julia::constant, rtsl::Access::Public, rtsl::Default::Given)
       .member("iterations", &Julia::iterations, rtsl::Access::Public, rtsl::Default::Given)
       .member("tolerance", &Julia::tolerance, rtsl::Access::Public, rtsl::Default::Given)

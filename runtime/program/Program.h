@@ -41,6 +41,7 @@ struct MemberInfo {
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
   bool isPublic = false;   // the scene may set it
   bool hasDefault = false; // for a reference: it may be empty
+  bool isRequired = false; // no object may be without a value (codegen/link/RequiredMembers.h)
   bool isRead = true;      // by some function of the program
 };
 

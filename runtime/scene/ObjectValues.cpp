@@ -4,6 +4,7 @@
 #include "support/ErrorCollector.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -134,7 +135,8 @@ static std::string elsewhere(const char *before, const ObjectValues &values) {
 }
 
 void checkUnset(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
-                const std::uint8_t *record, std::vector<Warning> &warnings) {
+                const std::uint8_t *record) {
+  std::vector<std::string> missing;
   for (const MemberInfo &member : classInfo.members) {
     if (!member.isPublic || member.hasDefault)
       continue;
@@ -142,6 +144,8 @@ void checkUnset(const ClassInfo &classInfo, const std::string &name, const Objec
                              [&](const NamedValue &one) { return one.name == member.name; });
     if (given)
       continue;
+    if (member.isRequired)
+      missing.push_back(fmt::format("`{}`", member.name));
     if (member.type.kind == ValueType::Kind::Reference && member.type.bufferRank == 0 &&
         member.type.arraySizes.empty()) {
       RtslRef reference;
@@ -152,13 +156,16 @@ void checkUnset(const ClassInfo &classInfo, const std::string &name, const Objec
                                 name, member.name, classInfo.name, member.type.className,
                                 elsewhere(", or", values)),
                     values.place);
-    } else if (!classInfo.hasConstructor && member.type.bufferRank == 0) {
-      warnings.push_back({fmt::format("member `{}` of `{}` is not set and has no default: it is "
-                                      "0{}",
-                                      member.name, name, elsewhere("; set it, or", values)),
-                          values.place});
     }
   }
+  if (missing.empty())
+    return;
+  const bool isOne = missing.size() == 1;
+  throw Error(ErrorCode::MissingMember,
+              fmt::format("{} {} of `{}` {} read, but not set and without a default: set {}{}",
+                          isOne ? "member" : "members", fmt::join(missing, ", "), name,
+                          isOne ? "is" : "are", isOne ? "it" : "them", elsewhere(", or", values)),
+              values.place);
 }
 
 } // namespace rtsl::runtime

@@ -29,9 +29,9 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
 void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
                   std::uint8_t *record, const StoreContext &context);
 
-/// Checks the public members that have no default and are not given, after the object is complete:
-/// an empty reference throws MissingMember, and a member that was never written adds a warning.
+/// Checks the public members that have no default and are not given, after the object is complete,
+/// of those that are required, and of references that are empty: throws MissingMember.
 void checkUnset(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
-                const std::uint8_t *record, std::vector<Warning> &warnings);
+                const std::uint8_t *record);
 
 } // namespace rtsl::runtime

@@ -79,8 +79,7 @@ void Objects::useProgram(std::shared_ptr<const Program> program) {
 }
 
 RtslRef Objects::add(const std::string &className, const ObjectValues &values,
-                     const std::string &name, const std::function<RtslLaunch()> &launch,
-                     std::vector<Warning> &warnings) {
+                     const std::string &name, const std::function<RtslLaunch()> &launch) {
   const ClassInfo &classInfo = findClass(*code, className, values.place);
   std::size_t start = (records.size() + recordAlignment - 1) / recordAlignment * recordAlignment;
   if (start + classInfo.recordSize > std::numeric_limits<std::uint32_t>::max())
@@ -97,7 +96,7 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
                         [&](RtslState &state) { classInfo.initialize(&state, object.reference); });
     runConstructor(object, values, launch);
     storeMembers(classInfo, object.name, values, recordOf(object), storeContext());
-    checkUnset(classInfo, object.name, values, recordOf(object), warnings);
+    checkUnset(classInfo, object.name, values, recordOf(object));
     measureChain(object);
   } catch (...) { // half an object is none
     objects.pop_back();

@@ -34,7 +34,7 @@ public:
   /// Scene::addObject. `launch` returns the scene's current launch, for the code that runs. If it
   /// throws, nothing is added.
   RtslRef add(const std::string &className, const ObjectValues &values, const std::string &name,
-              const std::function<RtslLaunch()> &launch, std::vector<Warning> &warnings);
+              const std::function<RtslLaunch()> &launch);
 
   struct Object {
     RtslRef reference;

@@ -63,8 +63,7 @@ void Scene::addWarning(Warning warning) {
 
 RtslRef Scene::addObject(const std::string &className, const ObjectValues &values,
                          const std::string &name) {
-  return self->objects.add(
-      className, values, name, [this] { return self->launch(); }, self->warnings);
+  return self->objects.add(className, values, name, [this] { return self->launch(); });
 }
 
 RtslRef Scene::addObject(const std::string &className, std::vector<Value> arguments,

@@ -85,5 +85,6 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     assert printed == 2 * said["printed"], (printed, said)
     mistakes = run(folder / "c-api").splitlines()
     for line, word in zip(mistakes, ("no shaders", "Nobody", "nothing", "Code", "reference 0", "not finite", "nowhere.obj",
-                                        "no mesh number 7", "rt_Selector", "no selection number 5", "holds no primitives"), strict=True):
+                                     "no mesh number 7", "rt_Selector", "member `center` of `Sphere` is read, but not set",
+                                     "no selection number 5", "holds no primitives"), strict=True):
         assert word in line, mistakes

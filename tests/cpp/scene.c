@@ -18,7 +18,7 @@ static int fail(const char *what) {
 }
 
 static int mistakes(void) {
-  const double one = 1.0, infinite[12] = {HUGE_VAL};
+  const double one = 1.0, center[] = {0.0, 0.0, 0.0}, infinite[12] = {HUGE_VAL};
   RtslScene *scene;
   RtslObject sphere, endless;
   if (rtslSceneCreate(NULL) != NULL)
@@ -52,6 +52,10 @@ static int mistakes(void) {
   if (rtslSceneAddSelector(scene, rtslSceneAddObject(scene, "Code"), 2, NULL, 0) != 0)
     return fail("an exception program as selector");
   printf("%s\n", rtslError());
+  if (rtslSceneAddObject(scene, "Sphere") != 0)
+    return fail("a member that is read and not set");
+  printf("%s\n", rtslError());
+  rtslMember(scene, "center", center, 3);
   sphere = rtslSceneAddObject(scene, "Sphere");
   endless = rtslSceneAddObject(scene, "Endless");
   if (!rtslMark(scene, 3, 5) || rtslSceneAddPrimitive(scene, sphere, endless) != 0)

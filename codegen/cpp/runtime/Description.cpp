@@ -4,6 +4,7 @@
 #include "codegen/cpp/runtime/Payloads.h"
 #include "codegen/cpp/runtime/RunState.h"
 #include "codegen/link/Members.h"
+#include "codegen/link/RequiredMembers.h"
 #include "runtime/device/ray/Abi.h"
 #include "sema/typed/Analysis.h"
 
@@ -137,17 +138,20 @@ static std::vector<Code> shownMethods(const typed::Class &definition) {
 
 /// `described.member("name", &Class::name, rtsl::Access::Public)`
 static Code describeMember(const Names &names, const Code &described, const std::string &className,
-                           const typed::Member &member) {
+                           const typed::Member &member, bool isRequired) {
   const bool isPublic = member.access == ast::Access::Public;
   std::vector<Code> arguments = {
       string(member.name), addressOf(className, names.of(&member)),
       cpp::name(isPublic ? "rtsl::Access::Public" : "rtsl::Access::Private")};
   if (member.init || member.isOptional)
     arguments.push_back(cpp::name("rtsl::Default::Given"));
+  else if (isRequired)
+    arguments.push_back(cpp::name("rtsl::Default::Required"));
   return callMember(described, "member", std::move(arguments));
 }
 
-static Statement describeClass(const Context &context, const typed::Class &definition) {
+static Statement describeClass(const Context &context, const typed::Class &definition,
+                               RequiredMembers &required) {
   const std::string &own = context.names.of(&definition);
   const std::string &base = definition.base ? definition.base->name : definition.root;
   Code described = callMember(cpp::name("program"), withParameters("add", {own}),
@@ -155,7 +159,8 @@ static Statement describeClass(const Context &context, const typed::Class &defin
                                string(definition.name), string(base), string(definition.root)});
   for (const typed::Member *member : allMembers(definition))
     if (!member->isConst && member->access != ast::Access::Scratch)
-      described = describeMember(context.names, described, own, *member);
+      described =
+          describeMember(context.names, described, own, *member, required.has(definition, *member));
   if (const typed::Function *constructor = findConstructor(definition))
     described = describeConstructor(context.names, described, *constructor);
   if (std::vector<Code> methods = shownMethods(definition); !methods.empty())
@@ -195,8 +200,9 @@ Declarations description(Context &context, const StateEntries &entries,
   Statements &body = made.body.emplace();
   const std::string components = std::to_string(context.options.colorComponents);
   body.push_back(cpp::declaration(withParameters("rtsl::Program", {components}), "program", {}));
+  RequiredMembers required(context.module);
   for (const auto &definition : context.module.classes)
-    body.push_back(describeClass(context, *definition));
+    body.push_back(describeClass(context, *definition, required));
   if (const Code needs = flagsOfNeeds(context.facts.needs))
     body.push_back(onProgram("needs", {needs}));
   for (const auto &[base, method] : filled)

@@ -244,7 +244,7 @@ inline void initialize(RtslState *state, RtslRef reference) {
 //===----------------------------------------------------------------------===//
 
 enum class Access { Public, Private };
-enum class Default { None, Given };
+enum class Default { None, Given, Required };
 
 template <typename Class>
 class ClassDescription {
@@ -265,6 +265,7 @@ public:
         static_cast<std::uint32_t>(objectOffset<Class>) + detail::offsetOf<Class>(member);
     described.isPublic = access == Access::Public;
     described.hasDefault = given == Default::Given;
+    described.isRequired = given == Default::Required;
     info.members.push_back(std::move(described));
     return *this;
   }

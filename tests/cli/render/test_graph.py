@@ -315,10 +315,13 @@ class Selectors(GraphCase):
 
 class Variables(GraphCase):
     def test_members_that_nothing_sets(self):
-        """A warning, or an error for a reference, that lists the nodes whose variables could set it."""
+        """An error that lists the nodes whose variables could set it, unless nothing reads it or the constructor sets it."""
         self.write("Bare.rtsl", "class Bare : rt_Material { public float glow; public rt_Texture grain; public optional rt_Texture film;\n"
                    "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * grain.lookup(); } };\n"
-                   "class Flat : rt_Texture { public float level; void lookup() { rt_TextureColor = color(level); } };\n")
+                   "class Flat : rt_Texture { public float level; public float unread; void lookup() { rt_TextureColor = color(level); } };\n"
+                   "class Made : rt_Texture { public float set; public float kept; public vec2 more; public vec3 steps[];\n"
+                   "  void constructor(float x) { set = 2.0 * x; }\n"
+                   "  void lookup() { rt_TextureColor = color(set + kept + more.x + float(steps.length())); } };\n")
 
         def bare(material, **variables):
             nodes = {"ball": {**balls([0, 0, 0, 1]), "material": "bare"}, "row": {"children": ["ball", {"child": "ball", "transform": SQUASHED}]},
@@ -327,13 +330,17 @@ class Variables(GraphCase):
                          **{"import": ["Graph.rtsl", "Bare.rtsl"]})
 
         places = r"a variable of this name in `ball` \(line \d+\), `row` \(line \d+\), a node \(line \d+\), `root` \(line \d+\) or the scene"
-        _, warned = self.render(bare({"grain": "flat"}))
-        for member in ("`glow` of `bare`", "`level` of `flat`"):
-            self.assertRegex(warned, r"warning\[W2800\]: member " + member + " is not set and has no default: it is 0; set it, or " + places)
-        self.assertNotIn("`film`", warned)
-        self.assertNotIn("`dim`", warned)
+        for member, given in (("`glow` of `bare`", {"level": 1}), ("`level` of `flat`", {"glow": 1})):
+            path = self.write("scene.json", json.dumps(bare({"grain": "flat"}, **given), indent=1))
+            error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
+            self.assertRegex(error, r"error\[E0815\]: member " + member + " is read, but not set and without a default: set it, or " + places)
+            self.assertEqual(error.count("E0815"), 1, error)
         _, warned = self.render(bare({"grain": "flat"}, glow=0.5, level=0.25))
         self.assertNotIn("is not set", warned)
+        made = bare({"glow": 1, "grain": {"class": "Made", "constructor": [1]}})
+        del made["textures"]
+        messages = self.diagnose("check", self.write("scene.json", json.dumps(made, indent=1)))
+        self.assert_message(messages, "E0815", "members `kept`, `more` of `Made` are read, but not set and without a default: set them")
         path = self.write("scene.json", json.dumps(bare({"glow": 1}), indent=1))
         error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
         self.assertRegex(error, r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a `rt_Texture`, or " + places)

@@ -146,13 +146,15 @@ class Preview(Case):
         self.run_rtslc("compare", "flat.exr", "a.exr")
 
     def test_members_that_must_be_set(self):
-        """References are to objects of the library, or of the file; numbers are 0, with the usual warning."""
-        self.write("a.rtsl", "class Tinted : rt_Material {\n  public rt_Texture tint;\n  public rt_Material below;\n  public float share;\n"
+        """References are to objects of the library, or of the file; numbers are 0, with a warning."""
+        self.write("a.rtsl", "class Tinted : rt_Material {\n  public rt_Texture tint;\n  public rt_Material below;\n  public float share;\n  public float weights[2];\n  public mat2 turn;\n"
                              "  public optional rt_Texture none;\n"
-                             "  void shade() { rt_SampleColor = none ? color(0.0) : (0.5 + share) * tint.lookup(); }\n};\n")
+                             "  void shade() { rt_SampleColor = none ? color(0.0) : (0.5 + share + weights[1] + turn[1].x) * tint.lookup(); }\n};\n")
         error = self.render("a.rtsl")
-        self.assertRegex(error, r"<scene of Tinted>:\d+:\d+: warning\[W2800\]: member `share` of `Tinted` is not set and has no default: it is 0")
-        self.render("a.rtsl", "--set", "Tinted.share=0.5", "-Werror", output="b.exr")
+        for member, line in (("share", 4), ("weights", 5), ("turn", 6)):
+            self.assertRegex(error, rf"a.rtsl:{line}:\d+: warning\[W2800\]: member `{member}` of `Tinted` has no default: here it is 0")
+        self.render("a.rtsl", "--set", "Tinted.share=0.5", "--set", "Tinted.weights=[0,0]", "--set", "Tinted.turn=[1,0,0,1]", "-Werror",
+                    output="b.exr")
         self.differ("a.exr", "b.exr", "0.05")
         self.render(LIBRARY / "std/materials/BumpMap.rtsl", "-Werror")  # a Pattern and a Scatterer
         self.write("b.rtsl", "class Onion : rt_Material { public Onion inner; void shade() { rt_SampleColor = color(0.5); } };\n")

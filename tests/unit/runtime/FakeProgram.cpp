@@ -304,6 +304,7 @@ std::shared_ptr<Program> fakeProgram() {
                                       {member("low", colorType(), offsetof(SkyRecord, low)),
                                        member("high", colorType(), offsetof(SkyRecord, high))},
                                       {"miss"}));
+  program->classes.back().members.back().isRequired = true;
   program->classes.push_back(describe("Boxed", "rt_Primitive", boxedId, sizeof(BoxedRecord),
                                       {member("lower", vec3Type(), offsetof(BoxedRecord, lower)),
                                        member("upper", vec3Type(), offsetof(BoxedRecord, upper))},

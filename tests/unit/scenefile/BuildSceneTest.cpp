@@ -234,12 +234,10 @@ TEST(BuildScene, DegeneratePrimitives) {
   EXPECT_EQ(point.warnings()[0].place->line, 3u);
 }
 
-TEST(BuildScene, MembersLeftOutAreWarnedOf) {
-  Scene scene = build("\"background\": {\"class\": \"Sky\", \"low\": 1}");
-  ASSERT_EQ(scene.warnings().size(), 1u);
-  EXPECT_EQ(scene.warnings()[0].message,
-            "member `high` of `background` is not set and has no default: it is 0; set it, or a "
-            "variable of this name in the scene");
+TEST(BuildScene, MembersThatAreReadMustBeSet) {
+  EXPECT_EQ(buildError("\"background\": {\"class\": \"Sky\", \"low\": 1}"),
+            "s.json:2:26+3: missingMember: member `high` of `background` is read, but not set and "
+            "without a default: set it, or a variable of this name in the scene");
 }
 
 TEST(BuildScene, MeshErrorsPointIntoTheScene) {

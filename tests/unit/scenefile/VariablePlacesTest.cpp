@@ -81,24 +81,24 @@ TEST(VariablePlaces, NoMoreThanSix) {
 }
 
 TEST(VariablePlaces, AreInMessages) {
+  const auto program = rtsl::runtime::test::fakeProgram();
+  for (rtsl::runtime::ClassInfo &info : program->classes)
+    for (rtsl::runtime::MemberInfo &member : info.members)
+      member.isRequired |= info.name == "Everything" && member.name == "i";
   const auto build = [&](const std::string &material, const std::string &variables) {
     return buildScene(
         parse("\"materials\": {\"m\": " + material +
               "},\n\"nodes\": {\"a\": {\"primitive\": {\"class\": \"Sphere\", \"constructor\": "
               "[[0, 0, 0], 1]}, \"material\": \"m\"},\n\"top\": {\"child\": \"a\"" +
               variables + "}}, \"root\": \"top\""),
-        rtsl::runtime::test::fakeProgram());
+        program);
   };
   const auto messages = [&](const std::string &variables) {
-    std::string text;
-    const rtsl::runtime::Scene scene = build(R"({"class": "Everything", "f": 1})", variables);
-    for (const rtsl::Warning &warning : scene.warnings())
-      text += warning.message + "\n";
-    return text;
+    return errorOf([&] { build(R"({"class": "Everything", "f": 1})", variables); });
   };
-  const std::string ofInt = "member `i` of `m` is not set and has no default: it is 0";
-  EXPECT_NE(messages("").find(ofInt + "; set it, or a variable of this name in `a` (line 4), `top` "
-                                      "(line 5) or the scene\n"),
+  const std::string ofInt = "member `i` of `m` is read, but not set and without a default";
+  EXPECT_NE(messages("").find(ofInt + ": set it, or a variable of this name in `a` (line 4), `top` "
+                                      "(line 5) or the scene"),
             std::string::npos)
       << messages("");
   EXPECT_EQ(messages(R"(, "variables": {"i": 3})").find(ofInt), std::string::npos);

@@ -252,14 +252,56 @@ private:
     for (const typed::Class *base = &one; base; base = base->base)
       for (const auto &member : base->members) {
         if (member->access != ast::Access::Public || member->isOptional || member->init ||
-            !member->type->is(TypeKind::Class) || (standIn && isSet(one.name, member->name)))
+            (standIn && isSet(one.name, member->name)))
           continue;
-        const std::optional<Json> value = referenceTo(*member, one);
+        const bool isReference = member->type->is(TypeKind::Class);
+        if (member->type->is(TypeKind::Buffer) || (!isReference && constructor))
+          continue;
+        const std::optional<Json> value = valueOf(member->type, *member, one);
         if (!value)
           return std::nullopt;
         object[member->name] = *value;
+        if (!isReference)
+          warnOfZero(one, *member);
       }
     return object;
+  }
+
+  void warnOfZero(const typed::Class &one, const typed::Member &member) {
+    messages.diagnostics.report(
+        Code::sceneWarning, member.range,
+        fmt::format("member `{}` of `{}` has no default: here it is 0", member.name, one.name));
+  }
+
+  /// Zeros, and objects for references. Nothing, and reported, if there is none of these.
+  std::optional<Json> valueOf(const Type *type, const typed::Member &member,
+                              const typed::Class &owner) {
+    std::vector<const Type *> parts;
+    switch (type->kind) {
+    case TypeKind::Class:
+      return referenceTo(type, member, owner);
+    case TypeKind::Bool:
+      return false;
+    case TypeKind::Vector:
+    case TypeKind::Matrix:
+    case TypeKind::Array:
+      parts.assign(type->count, type->element);
+      break;
+    case TypeKind::Struct:
+      for (const typed::Field &field : type->structure->fields)
+        parts.push_back(field.type);
+      break;
+    default:
+      return 0;
+    }
+    Json values = Json::array();
+    for (const Type *part : parts) {
+      const std::optional<Json> value = valueOf(part, member, owner);
+      if (!value)
+        return std::nullopt;
+      values.push_back(*value);
+    }
+    return values;
   }
 
   /// Whether a constructor has the parameters that `arguments` are for, by name: cameras of the
@@ -299,9 +341,10 @@ private:
   }
 
   /// An object for a member: of the library, or of the last class of the author's that fits.
-  std::optional<Json> referenceTo(const typed::Member &member, const typed::Class &owner) {
-    const typed::Class *wanted = member.type->classType;
-    const std::string name = wanted ? wanted->name : member.type->builtinClass;
+  std::optional<Json> referenceTo(const Type *type, const typed::Member &member,
+                                  const typed::Class &owner) {
+    const typed::Class *wanted = type->classType;
+    const std::string name = wanted ? wanted->name : type->builtinClass;
     if (scene::isImageClass(name)) {
       const char *files = name == "sampler3D" ? R"({"slices": ["front.png", "back.png"]})"
                                               : R"({"file": "picture.png"})";
