@@ -358,6 +358,7 @@ private:
     GeometryDescription geometry = readGeometry(value, "an object");
     InstanceDescription placement;
     placement.mask = geometry.mask;
+    placement.hasBackFaces = geometry.hasBackFaces;
     placement.id = geometry.id.value_or(0);
     placement.scope = scene.scopes.front().get();
     errors.attempt([&] {
@@ -378,7 +379,7 @@ private:
     errors.attempt([&] {
       checkKeys(value,
                 {"name", "primitive", "mesh", "part", "material", "transform", "mask", "id",
-                 "count", "textureCoordinates", "variables"},
+                 "count", "textureCoordinates", "backFaces", "variables"},
                 what);
     });
     GeometryDescription geometry;
@@ -397,7 +398,20 @@ private:
         geometry.id = readId(*id);
       readCount(value, geometry);
     });
+    errors.attempt([&] {
+      if (const JsonValue *backFaces = value.find("backFaces"))
+        readBackFaces(*backFaces, geometry);
+    });
     return geometry;
+  }
+
+  static void readBackFaces(const JsonValue &value, GeometryDescription &geometry) {
+    expect(value, Kind::Boolean, "`backFaces`");
+    if (geometry.mesh.empty())
+      throw Error(ErrorCode::UnknownKey,
+                  "`backFaces` is for a `mesh`: `intersect` of a primitive decides what is hit",
+                  value.place());
+    geometry.hasBackFaces = value.boolean;
   }
 
   static void readCount(const JsonValue &value, GeometryDescription &geometry) {

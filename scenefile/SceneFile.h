@@ -119,6 +119,7 @@ struct GeometryDescription {
   ReferenceDescription material;
   runtime::Transform transform; // of the vertices of a mesh in `objects`, unless it moves
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
+  bool hasBackFaces = true;     // of a mesh
   std::optional<std::int32_t> id;
   const JsonValue *count = nullptr; // of primitives: a number, or the name of a buffer member
   std::vector<InstanceDescription> placements;

@@ -212,6 +212,8 @@ constexpr GraphPart graphParts[] = {
      "nothing moves: the time of all rays is 0"},
     {RTSL_HAS_SAMPLED_BACKGROUND, "directions of the background",
      "it has `sampleDirection` and `directionPDF`", "the background cannot choose any"},
+    {RTSL_HAS_NO_BACKS, "back faces", "some mesh leaves them out: the side of a hit is tested",
+     "no mesh leaves them out: both sides of triangles are hit"},
 };
 
 } // namespace

@@ -90,8 +90,9 @@ inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
 /// The intersections of a ray with the planes of triangles, and the lanes with a hit.
 struct LaneHits {
   Lanes t, u, v;
-  unsigned hit;   // t, u and v are valid, before moveIntoBox
-  unsigned other; // lanes to be tested by device::testTriangle
+  Lanes determinant; // its sign is that of TriangleHit::isBack, if the ray goes up its axis
+  unsigned hit;      // t, u and v are valid, before moveIntoBox
+  unsigned other;    // lanes to be tested by device::testTriangle
 };
 
 /// intersectTriangle for all lanes.
@@ -125,7 +126,7 @@ struct LaneHits {
   if ((hits.hit | hits.other) == 0)
     return hits;
 
-  const Lanes determinant = (e0 + e1) + e2;
+  const Lanes determinant = hits.determinant = (e0 + e1) + e2;
   const Lanes deepest = maximum(absolute(z[0]), absolute(z[1]), absolute(z[2]));
   const Lanes isUsualDepth =
       _mm256_and_ps(_mm256_cmp_ps(determinant, zero, _CMP_NEQ_OQ),
@@ -183,6 +184,13 @@ inline Lanes moveLanesIntoInstance(const device::InstanceRay &ray, Lanes t) {
   return movedInto(all(ray.range.near), all(ray.range.far), t);
 }
 
+/// The lanes of TriangleHit::isBack.
+inline unsigned backsOf(const device::TriangleRay &ray, const LaneHits &hits) {
+  const unsigned negative = unsigned(
+      _mm256_movemask_ps(_mm256_cmp_ps(hits.determinant, _mm256_setzero_ps(), _CMP_LT_OQ)));
+  return ray.sz < 0 ? ~negative : negative;
+}
+
 /// device::testTriangle for one lane.
 template <typename Ray>
 [[gnu::cold, gnu::noinline]] bool testLane(RtslState &state, const Ray &ray,
@@ -223,6 +231,8 @@ template <typename Ray>
       const std::uint32_t instance = device::instanceOf(ray, block.instance[i]);
       if (block.instance[i] == RTSL_NO_HIT ||
           !device::wins(state, t[i], instance, block.triangle[i]))
+        continue;
+      if (device::hasNoBacks(*state.launch, instance) && (backsOf(ray, hits) >> i & 1) != 0)
         continue;
       device::commit(state, t[i], t[i], instance, block.triangle[i]);
       state.u = u[i];

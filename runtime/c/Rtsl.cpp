@@ -232,6 +232,13 @@ int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
   });
 }
 
+int rtslSetBackFaces(RtslScene *scene, int areHit) {
+  return guarded(0, [&] {
+    scene->placement.hasBackFaces = areHit != 0;
+    return 1;
+  });
+}
+
 uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
                               const double *transform, uint32_t above) {
   return guarded<uint32_t>(0, [&] {

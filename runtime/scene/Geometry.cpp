@@ -144,13 +144,13 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
     throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
   instances.push_back(instance);
   RtslInstance &added = instances.back();
-  added.needs = objects.needsOf(instance.material);
+  added.needs |= objects.needsOf(instance.material);
   added.anyHit = objects.at(instance.material).classInfo->anyHit;
   treeItems += items;
   instanceNames.push_back(std::move(name));
-  needs |= (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) |
-           (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
-           (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0);
+  needs |=
+      (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) | (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
+      (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0) | (instance.needs & RTSL_HAS_NO_BACKS);
   return std::uint32_t(instances.size() - 1);
 }
 
@@ -272,6 +272,7 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
   RtslInstance instance = place(placement, meshes[mesh]->name, std::nullopt);
   instance.material = material;
   instance.mesh = mesh;
+  instance.needs = placement.hasBackFaces ? 0 : RTSL_HAS_NO_BACKS;
   if (meshTable[mesh].keyTimes)
     needs |= RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER;
   if (instance.transform != 0)
@@ -282,7 +283,7 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
 
 void Geometry::useProgram(const Objects &objects) {
   for (RtslInstance &instance : instances)
-    instance.needs = objects.needsOf(instance.material);
+    instance.needs = (instance.needs & RTSL_HAS_NO_BACKS) | objects.needsOf(instance.material);
   dropUnusedAttributes(objects.program());
 }
 

@@ -32,6 +32,8 @@ struct Placement {
   std::int32_t id = 0;       // rt_InstanceId
   /// Of Scene::addSelector: rays see it if the selector visits that child. 0: always.
   std::uint32_t selection = 0;
+  /// Of a mesh: whether rays meet triangles that they reach along rt_GeometricNormal.
+  bool hasBackFaces = true;
 };
 
 /// A box. A side may be infinite.

@@ -394,6 +394,7 @@ private:
   /// What two roots lead to in the same place is one instance, unless it differs in something else.
   void place(GeometryDescription &geometry, InstanceDescription way) {
     way.mask = geometry.mask;
+    way.hasBackFaces = geometry.hasBackFaces;
     if (geometry.id)
       way.id = *geometry.id;
     if (way.roots != 1) {

@@ -68,6 +68,38 @@ static int mistakes(void) {
   return 0;
 }
 
+/* The sum of a picture of a triangle, of which three pixels see one side; -1 if that fails. */
+static float seenOfTriangle(const uint32_t indices[3], int backFaces) {
+  const double curve[] = {0.5, 0.25};
+  const float positions[] = {-5, -5, 1, 0, 5, 1, 5, -5, 1};
+  RtslRenderSettings settings = rtslRenderDefaults();
+  RtslScene *scene = rtslSceneCreate(events_shaders());
+  float pixels[4 * 4 * 3], sum = 0.0f;
+  int i;
+  rtslMember(scene, "curve", curve, 2);
+  settings.width = settings.height = 4;
+  settings.samplesPerPixel = 1;
+  if (!rtslSceneSetRayGeneration(scene, rtslSceneAddObject(scene, "Eye")) ||
+      !rtslSetBackFaces(scene, backFaces) ||
+      !rtslSceneAddTriangles(scene, positions, 3, indices, 1, rtslSceneAddObject(scene, "Endless")) ||
+      !rtslRender(scene, &settings, pixels))
+    return -1.0f;
+  for (i = 0; i < 4 * 4 * 3; ++i)
+    sum += pixels[i];
+  rtslSceneDestroy(scene);
+  return sum;
+}
+
+static int triangles(void) {
+  const uint32_t front[] = {0, 1, 2}, back[] = {0, 2, 1};
+  const float seen = seenOfTriangle(front, 0);
+  if (seen < 0.0f || seenOfTriangle(front, 1) != seen || seenOfTriangle(back, 1) != seen)
+    return fail("a triangle");
+  if (fabsf(seen - seenOfTriangle(back, 0) - 9 * 0.125f) > 1e-4f)
+    return fail("a back face that is left out");
+  return 0;
+}
+
 int main(int count, char **arguments) {
   const double curve[] = {0.5, 0.25}, center[] = {0.0, 0.0, 0.0}, radius = 2.0;
   const double identity[12] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
@@ -114,5 +146,5 @@ int main(int count, char **arguments) {
   if (!rtslTakePrinted(scene, show, &again) || again != lines || !rtslTakePrinted(scene, show, &again) || again != lines)
     return fail("printed lines");
   rtslSceneDestroy(scene);
-  return 0;
+  return triangles();
 }

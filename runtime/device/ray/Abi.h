@@ -33,7 +33,7 @@ typedef struct RtslInstance {
   // index into RtslLaunch::meshes when primitive is 0; of an object that holds several primitives,
   // its number among such objects
   uint32_t mesh;
-  uint32_t needs;     // RTSL_NEEDS_* of its material
+  uint32_t needs;     // RTSL_NEEDS_* of its material, and RTSL_HAS_NO_BACKS of the instance
   uint32_t mask;      // visible to rays whose mask has a common bit
   uint32_t anyHit;    // rtslRayTypeBit of the payloads for which its material has `anyHit`
   uint32_t transform; // index into RtslLaunch::transforms; 0: object space is world space
@@ -353,9 +353,10 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_MESH_KEYS 2097152u // some mesh has several keys
 #define RTSL_HAS_SHUTTER 4194304u   // each sample has a time of its own; otherwise the time is 0
 #define RTSL_HAS_SAMPLED_BACKGROUND 8388608u // directions of the background can be chosen
+#define RTSL_HAS_NO_BACKS 16777216u          // some mesh's back faces are left out
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
-   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND)
+   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u

@@ -116,6 +116,12 @@ inline bool moveIntoBox(const TriangleRay &ray, const TriangleVertices &p, float
   return true;
 }
 
+/// Are the back faces of the instance, a mesh, left out?
+inline bool hasNoBacks(const RtslLaunch &launch, uint32_t instance) {
+  return (rtsl_needs(&launch) & RTSL_HAS_NO_BACKS) != 0 &&
+         (instanceAt(launch, instance).needs & RTSL_HAS_NO_BACKS) != 0;
+}
+
 /// Tests one triangle and commits it if it wins and isSeen(), which is called only then. `Ray` is a
 /// TriangleRay in world space or an InstanceRay.
 template <typename Ray, typename Seen>
@@ -126,7 +132,8 @@ bool testTriangle(RtslState &state, const Ray &ray, const TriangleVertices &vert
       !moveIntoBox(ray, vertices, hit.t))
     return false;
   hit.t = moveIntoInstance(ray, hit.t);
-  if (!(hit.t > state.Epsilon) || !wins(state, hit.t, instance, triangle) || !isSeen())
+  if (!(hit.t > state.Epsilon) || !wins(state, hit.t, instance, triangle) ||
+      (hit.isBack && hasNoBacks(*state.launch, instance)) || !isSeen())
     return false;
   commit(state, hit.t, hit.t, instance, triangle);
   state.u = hit.u;

@@ -50,6 +50,7 @@ inline Vec3 alongRay(const TriangleRay &ray, Vec3 v) {
 
 struct TriangleHit {
   float t, u, v; // u, v: weights of vertices 1 and 2
+  bool isBack;   // the ray goes along the normal, as the signs of the edge functions say
 };
 
 /// `direction` must be finite and not zero; of any length.
@@ -178,6 +179,7 @@ inline bool intersectTriangle(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2,
   hit.t = exponent == 0 ? t : scaledBy(t, exponent);
   hit.u = e1 * reciprocal;
   hit.v = e2 * reciprocal;
+  hit.isBack = (determinant < 0) != (ray.sz < 0);
   return true;
 }
 
