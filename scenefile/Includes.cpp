@@ -57,9 +57,8 @@ public:
   explicit Expansion(ErrorCollector &errors) : errors(errors) {}
 
   void expand(JsonValue &root, const std::string &file) {
-    const auto found = std::find_if(root.members.begin(), root.members.end(), [](const auto &one) {
-      return one.first.text == "include";
-    });
+    const auto found = std::find_if(root.members.begin(), root.members.end(),
+                                    [](const auto &one) { return one.first.text == "include"; });
     if (found == root.members.end())
       return;
     JsonValue includes = std::move(found->second);
@@ -95,10 +94,9 @@ private:
     if (const auto above = std::find(open.begin(), open.end(), identity); above != open.end()) {
       std::vector<std::string> cycle(shown.begin() + (above - open.begin()), shown.end());
       throw Error(ErrorCode::ReferenceCycle,
-                  cycle.size() == 1
-                      ? fmt::format("`{}` includes itself", cycle.front())
-                      : fmt::format("these files include one another: `{}`",
-                                    fmt::join(cycle, "`, `")),
+                  cycle.size() == 1 ? fmt::format("`{}` includes itself", cycle.front())
+                                    : fmt::format("these files include one another: `{}`",
+                                                  fmt::join(cycle, "`, `")),
                   path.place());
     }
     if (std::find(known.begin(), known.end(), identity) != known.end())
@@ -198,10 +196,10 @@ void checkVersion(const JsonValue &root) {
                 "a scene begins with `\"rtsl\": 1`, the version of the format", root.place());
   expect(*version, Kind::Number, "`rtsl`");
   if (version->number != 1)
-    throw Error(
-        ErrorCode::NotSupported,
-        fmt::format("version {:g} of the scene format is not supported, only 1 is", version->number),
-        version->place());
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("version {:g} of the scene format is not supported, only 1 is",
+                            version->number),
+                version->place());
 }
 
 std::vector<std::string> expandIncludes(JsonValue &root, const std::string &file,

@@ -1,5 +1,6 @@
 //===- ExplainScene.cpp - what a scene's program contains and omits -------===//
 #include "codegen/driver/Compilation.h"
+#include "codegen/ir/Rtsl.h"
 #include "frontend/source/Expansion.h"
 #include "sema/typed/Casting.h"
 #include "sema/typed/Walk.h"
@@ -8,6 +9,8 @@
 #include "llvm/IR/StructuralHash.h"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 namespace rtsl {
 
@@ -132,6 +135,28 @@ std::optional<ProgramSize> measureKeeping(Item item, const CompileInput &input,
   return measure(compilation);
 }
 
+/// Members are found where a function reads them. That may be code which the numbers of the scene,
+/// once they are in it, show never to run: such members are left out, too.
+void dropReadsThatNeverRun(const CompileInput &input, const CompileOptions &options,
+                           const SourceManager &sources, const runtime::SceneFacts &facts,
+                           Findings &findings) {
+  Diagnostics unheard(sources);
+  Compilation compilation(input, options, unheard);
+  compilation.facts = &facts;
+  if (!reachSsa(compilation))
+    return;
+  std::set<std::string> read;
+  compilation.ir->walk([&](ir::MemberOp op) {
+    const auto object = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
+    read.insert((object + "." + op.getMember()).str());
+  });
+  for (Finding &finding : findings)
+    if (finding.item == Item::Parameters && finding.isNeeded && !read.count(finding.subject)) {
+      finding.isNeeded = false;
+      finding.reason = "read only by code that never runs with the numbers of the scene";
+    }
+}
+
 bool leavesOut(Item item, const Findings &findings) {
   return std::any_of(findings.begin(), findings.end(), [&](const Finding &finding) {
     return finding.item == item && !finding.isNeeded;
@@ -161,6 +186,8 @@ explainScene(const typed::Module &module, const LinkRequest &request, const Comp
     explanation.size = *measure(compilation);
     explanation.program = compilation.program;
   }
+  if (!request.keep.has(Item::Parameters))
+    dropReadsThatNeverRun(input, options, sources, facts, explanation.findings);
   for (Item item : allItems) {
     if (request.keep.has(item))
       continue;

@@ -106,6 +106,25 @@ class Explain(Case):
         self.assertGreater(saved["dispatch"]["instructions"], 0)
         self.assertEqual(saved["meshes"]["memoryBytes"], 0)
 
+    def test_what_only_code_reads_that_never_runs(self):
+        """A member is read where another one's number says that the code runs; else it is left out."""
+        self.write("more.rtsl", """
+            class Layered : rt_Material {
+              public float detail = 0.0;
+              public float depth = 1.0;
+              public float tone = 0.5;
+              float deeper(float d) { return d > 0.0 ? depth * d : 1.0; }
+              void shade() { rt_SampleColor = color(tone * deeper(detail)); }
+            };
+            """)
+        ball = SCENE["objects"][0]["primitive"]
+        for detail, isNeeded in ((0, False), (0.5, True)):
+            self.write_scene(**{"import": ["all.rtsl", "more.rtsl"]}, objects=[
+                {"primitive": ball, "material": {"class": "Layered", "detail": detail, "depth": n, "tone": n}} for n in (1, 2)], materials={})
+            parameters = self.entries("--no-savings")["parameters"]
+            self.assertTrue(parameters["Layered.tone"][0])
+            self.assertEqual(parameters["Layered.depth"][0], isNeeded, parameters)
+
     def test_functions_have_the_names_of_the_source(self):
         """Overloads by their parameters, definitions of base classes by these."""
         self.write("more.rtsl", """

@@ -100,7 +100,8 @@ void TevViewer::connectTo(const TevOptions &options) {
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, freeaddrinfo);
   for (const addrinfo *address = found; address; address = address->ai_next) {
-    socket = ::socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol);
+    socket =
+        ::socket(address->ai_family, address->ai_socktype | SOCK_CLOEXEC, address->ai_protocol);
     if (socket >= 0) {
       const timeval limit = {longestSeconds, 0}; // of connecting, too
       setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);

@@ -105,8 +105,8 @@ std::string describe(const Finding &finding) {
   return std::string(nameOf(finding.item)) + ": " + finding.subject + ": " + finding.reason;
 }
 
-/// All but the model: it takes a minute and a half, and its images may be absent, so that code which
-/// reads `levelCount` is there until LLVM finds that it never runs.
+/// All but the model: it takes a minute and a half, and its choice between an image and no image
+/// in `sampler2D.sample(vec2, float)` is called needed, though the program is the same without it.
 std::vector<std::string> examples() {
   std::vector<std::string> files;
   for (const auto &entry : std::filesystem::directory_iterator(RTSL_ROOT "/examples"))
