@@ -14,21 +14,21 @@ namespace detail {
 /// Relative error of fastAngle(). roundsSafely() would bear 2^-53.
 inline constexpr double arcTangent2Bound = 0x1p-60;
 
-/// The angle of (x, y), or of (-x, y) if `behind`, for finite x, y >= 0 that are not both zero.
-inline Double2 fastAngle(double y, double x, bool behind) {
+/// The angle of (x, y), or of (-x, y) if `isLeft`, for finite x, y >= 0 that are not both zero.
+inline Double2 fastAngle(double y, double x, bool isLeft) {
   Double2 angle = firstQuadrantAngle({y, 0.0}, {x, 0.0});
-  return behind ? complement(pi, angle) : angle;
+  return isLeft ? complement(pi, angle) : angle;
 }
 
 /// The same with a relative error below 2^-90.
-inline Double2 accurateAngle(double y, double x, bool behind) {
+inline Double2 accurateAngle(double y, double x, bool isLeft) {
   Double2 angle =
       y <= x ? accurateFirstOctantAngle(y, x) : add(halfPi, negate(accurateFirstOctantAngle(x, y)));
-  return behind ? add(pi, negate(angle)) : angle;
+  return isLeft ? add(pi, negate(angle)) : angle;
 }
 
-inline float roundedAngle(double y, double x, bool behind) {
-  if (!behind && y < x * 0x1p-27) {
+inline float roundedAngle(double y, double x, bool isLeft) {
+  if (!isLeft && y < x * 0x1p-27) {
     // atan(q) = q (1 - q^2/3 + ...) is between q (1 - 2^-54) and q. The quotient q of two floats
     // either is a midpoint between floats, which occurs below the normal floats, or is at least
     // 2^-50 away from one; so moving it slightly towards zero decides.
@@ -36,9 +36,9 @@ inline float roundedAngle(double y, double x, bool behind) {
     return float(fma(q, -0x1p-52, q));
   }
   float result;
-  if (roundsSafely(fastAngle(y, x, behind), result))
+  if (roundsSafely(fastAngle(y, x, isLeft), result))
     return result;
-  return roundToFloat(accurateAngle(y, x, behind));
+  return roundToFloat(accurateAngle(y, x, isLeft));
 }
 
 } // namespace detail
@@ -50,7 +50,7 @@ inline float atan2(float y, float x) {
   if (isNaN(x) || isNaN(y))
     return canonicalNaN();
   float height = absolute(y), width = absolute(x);
-  bool behind = bitsOf(x) >= floatSignBit;
+  bool isLeft = bitsOf(x) >= floatSignBit;
   if (height == 0.0f && width == 0.0f)
     width = 1.0f; // the sign of the zero x still selects 0 or pi
   if (height == infinity() || width == infinity()) {
@@ -59,7 +59,7 @@ inline float atan2(float y, float x) {
     height = both || height == infinity() ? 1.0f : 0.0f;
     width = both || width == infinity() ? 1.0f : 0.0f;
   }
-  return withSignOf(roundedAngle(height, width, behind), y);
+  return withSignOf(roundedAngle(height, width, isLeft), y);
 }
 
 } // namespace rtsl::device

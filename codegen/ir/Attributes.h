@@ -3,8 +3,12 @@
 //   ir::attr::frameSize.set(function, builder.getI32IntegerAttr(bytes));
 //   if (mlir::IntegerAttr size = ir::attr::frameSize.of(state)) ...
 //
-// Attributes.def explains each of them. (TableGen's `discardableAttrs` would generate classes like
-// these, but neither documentation nor a verifier.)
+// Attributes.def explains each of them, and the verifier and these constants follow from it.
+// TableGen can declare such attributes, too (`discardableAttrs` of a dialect), but a declaration is
+// only a class and a name: it has no place for the operations that may have the attribute or for a
+// description, so the verifier and the documentation would need a second table with the same
+// names. What it generates is a class with a member for the interned name, which has to be made
+// from a context, or got from the dialect, wherever an attribute is read or set.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CODEGEN_IR_ATTRIBUTES_H // not `#pragma once`: see Precompiled.h

@@ -1,11 +1,11 @@
-#include "codegen/passes/continuation/common/MemoryAccesses.h"
+#include "codegen/ir/MemoryAccesses.h"
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 
 #include <algorithm>
 
-namespace rtsl::continuation {
+namespace rtsl::ir {
 
 void MemoryAccesses::add(const MemoryAccesses &other) {
   reads.insert(other.reads.begin(), other.reads.end());
@@ -37,26 +37,26 @@ bool conflict(const MemoryAccesses &a, const MemoryAccesses &b) {
 
 MemoryLocation locationOf(mlir::Value address) {
   using Kind = MemoryLocation::Kind;
-  mlir::Operation *op = ir::baseOperation(address);
-  if (auto object = llvm::dyn_cast_or_null<ir::FrameObjectOp>(op))
+  mlir::Operation *op = baseOperation(address);
+  if (auto object = llvm::dyn_cast_or_null<FrameObjectOp>(op))
     return {Kind::Object, object.getName().str()};
-  if (auto argument = llvm::dyn_cast_or_null<ir::CallArgumentOp>(op))
+  if (auto argument = llvm::dyn_cast_or_null<CallArgumentOp>(op))
     return {Kind::Argument, std::to_string(argument.getOffset())};
-  if (auto state = llvm::dyn_cast_or_null<ir::StateOp>(op))
+  if (auto state = llvm::dyn_cast_or_null<StateOp>(op))
     return {Kind::State, state.getName().str()};
-  if (llvm::isa_and_nonnull<ir::VarOp>(op))
+  if (llvm::isa_and_nonnull<VarOp>(op))
     return {Kind::Variable, std::to_string(reinterpret_cast<std::uintptr_t>(op))};
-  if (llvm::isa_and_nonnull<ir::PayloadOp>(op))
+  if (llvm::isa_and_nonnull<PayloadOp>(op))
     return {Kind::Payload, {}};
-  if (llvm::isa_and_nonnull<ir::AttributeOp>(op))
+  if (llvm::isa_and_nonnull<AttributeOp>(op))
     return {Kind::Attribute, {}};
-  if (llvm::isa_and_nonnull<ir::MemberOp, ir::TableOp, ir::BufferElementOp>(op))
+  if (llvm::isa_and_nonnull<MemberOp, TableOp, BufferElementOp>(op))
     return {Kind::Scene, {}};
   return {Kind::Unknown, {}};
 }
 
-bool changes(ir::EvaluateOp op, std::size_t operand) {
-  auto changed = ir::attr::changes.of(op);
+bool changes(EvaluateOp op, std::size_t operand) {
+  auto changed = attr::changes.of(op);
   return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
 }
 
@@ -73,29 +73,29 @@ MemoryAccesses accessesOf(mlir::Operation *op) {
     accesses.writes.insert(location);
   };
   op->walk([&](mlir::Operation *inner) {
-    if (auto load = llvm::dyn_cast<ir::LoadOp>(inner))
+    if (auto load = llvm::dyn_cast<LoadOp>(inner))
       addRead(load.getAddress());
-    else if (auto store = llvm::dyn_cast<ir::StoreOp>(inner))
+    else if (auto store = llvm::dyn_cast<StoreOp>(inner))
       addWrite(store.getAddress());
-    else if (auto frameLoad = llvm::dyn_cast<ir::FrameLoadOp>(inner))
+    else if (auto frameLoad = llvm::dyn_cast<FrameLoadOp>(inner))
       accesses.reads.insert({MemoryLocation::Kind::Frame, frameLoad.getName().str()});
-    else if (auto frameStore = llvm::dyn_cast<ir::FrameStoreOp>(inner))
+    else if (auto frameStore = llvm::dyn_cast<FrameStoreOp>(inner))
       accesses.writes.insert({MemoryLocation::Kind::Frame, frameStore.getName().str()});
-    else if (llvm::isa<ir::RandOp>(inner))
+    else if (llvm::isa<RandOp>(inner))
       accesses.writes.insert({MemoryLocation::Kind::Random, {}});
-    else if (auto clear = llvm::dyn_cast<ir::ClearOp>(inner))
+    else if (auto clear = llvm::dyn_cast<ClearOp>(inner))
       addWrite(clear.getAddress());
-    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(inner)) {
+    else if (auto copy = llvm::dyn_cast<CopyOp>(inner)) {
       addRead(copy.getSource());
       addWrite(copy.getTarget());
-    } else if (auto call = llvm::dyn_cast<ir::EvaluateOp>(inner)) {
+    } else if (auto call = llvm::dyn_cast<EvaluateOp>(inner)) {
       for (auto [index, operand] : llvm::enumerate(call.getOperands()))
-        if (llvm::isa<ir::PtrType>(operand.getType())) {
+        if (llvm::isa<PtrType>(operand.getType())) {
           addRead(operand);
           if (changes(call, index))
             addWrite(operand);
         }
-      if (!ir::attr::plain.isOn(call)) {
+      if (!attr::plain.isOn(call)) {
         accesses.readsAny = true;
         accesses.writes.insert({MemoryLocation::Kind::Random, {}});
         accesses.writesAny |= !call.getWrites();
@@ -103,7 +103,7 @@ MemoryAccesses accessesOf(mlir::Operation *op) {
       if (call.getWrites())
         for (auto name : call.getWrites()->getAsRange<mlir::StringAttr>())
           accesses.writes.insert({MemoryLocation::Kind::State, name.getValue().str()});
-    } else if (llvm::isa<ir::IlluminateOp>(inner)) {
+    } else if (llvm::isa<IlluminateOp>(inner)) {
       accesses.readsAny = accesses.writesAny = true;
     }
   });
@@ -111,23 +111,23 @@ MemoryAccesses accessesOf(mlir::Operation *op) {
 }
 
 bool writesTo(mlir::Operation *op, mlir::Value address) {
-  if (auto store = llvm::dyn_cast<ir::StoreOp>(op))
+  if (auto store = llvm::dyn_cast<StoreOp>(op))
     return store.getAddress() == address;
-  if (auto clear = llvm::dyn_cast<ir::ClearOp>(op))
+  if (auto clear = llvm::dyn_cast<ClearOp>(op))
     return clear.getAddress() == address;
-  if (auto copy = llvm::dyn_cast<ir::CopyOp>(op))
+  if (auto copy = llvm::dyn_cast<CopyOp>(op))
     return copy.getTarget() == address;
-  if (auto spawn = llvm::dyn_cast<ir::SpawnPayloadOp>(op))
+  if (auto spawn = llvm::dyn_cast<SpawnPayloadOp>(op))
     return spawn.getPayload() == address;
-  if (auto call = llvm::dyn_cast<ir::EnterOp>(op))
+  if (auto call = llvm::dyn_cast<EnterOp>(op))
     return llvm::is_contained(call.getOperands(), address);
-  if (auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op))
+  if (auto evaluation = llvm::dyn_cast<EvaluateOp>(op))
     for (auto [index, operand] : llvm::enumerate(evaluation.getOperands()))
       if (operand == address && changes(evaluation, index))
         return true;
-  return llvm::isa<ir::FieldOp, ir::ElementOp>(op) &&
+  return llvm::isa<FieldOp, ElementOp>(op) &&
          llvm::any_of(op->getUsers(),
                       [&](mlir::Operation *user) { return writesTo(user, op->getResult(0)); });
 }
 
-} // namespace rtsl::continuation
+} // namespace rtsl::ir

@@ -11,7 +11,7 @@
 #include <set>
 #include <tuple>
 
-namespace rtsl::continuation {
+namespace rtsl::ir {
 
 /// Something that can be read and written.
 struct MemoryLocation {
@@ -52,4 +52,4 @@ bool changes(ir::EvaluateOp op, std::size_t operand);
 /// Does the operation write what lies at an address, or in a part of it?
 bool writesTo(mlir::Operation *op, mlir::Value address);
 
-} // namespace rtsl::continuation
+} // namespace rtsl::ir

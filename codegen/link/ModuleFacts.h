@@ -13,7 +13,7 @@ namespace rtsl {
 struct RayTypeFacts {
   const typed::Struct *payload = nullptr;
   std::uint32_t number = 0; // from 1
-  std::uint32_t search = 0; // RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT, RTSL_IN_ORDER
+  std::uint32_t search = 0; // RTSL_FIRST_HIT, RTSL_INVOKE_ANY_HIT, RTSL_IN_ORDER
 };
 
 struct ModuleFacts {

@@ -138,7 +138,7 @@ bool Messages::reportConditional(const clang::Diagnostic &info, const Place &at)
     return true;
   case diag::pp_err_else_after_else:
   case diag::pp_err_elif_after_else: {
-    Diagnostic &diagnostic = session->report(Code::behindElse, at.origin, at.text);
+    Diagnostic &diagnostic = session->report(Code::afterElse, at.origin, at.text);
     const clang::SourceLocation opened = watcher->innermostIf();
     if (const clang::SourceLocation earlier = watcher->elseOf(opened);
         earlier.isValid() && earlier != info.getLocation())
@@ -230,6 +230,11 @@ bool Messages::reportCondition(const clang::Diagnostic &info, const Place &at) {
   }
 }
 
+/// The text of `#error` or `#warning`, which may have none.
+static std::string afterSpace(const std::string &text) {
+  return text.empty() ? text : " " + text;
+}
+
 /// `#define` and `#undef`.
 bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) {
   const auto parameters = [&](const char *what) {
@@ -254,20 +259,18 @@ bool Messages::reportDefinition(const clang::Diagnostic &info, const Place &at) 
     session->report(Code::predefinedMacro, at.origin, at.text);
     return true;
   case diag::err_defined_macro_name:
-    session->report(Code::badMacroName, at.origin, "`defined` cannot be the name of a macro");
+    session->report(Code::badMacroName, at.origin, "defined");
     return true;
   case diag::err_pp_macro_not_identifier:
-    session->report(Code::badMacroName, at.origin,
-                    fmt::format("`{}` cannot be the name of a macro", at.text));
+    session->report(Code::badMacroName, at.origin, at.text);
     return true;
   case diag::err_pp_missing_macro_name:
-    session->report(Code::badMacroName, at.origin, "the name of a macro is missing");
+    session->report(Code::missingMacroName, at.origin);
     return true;
   case diag::ext_c99_whitespace_required_after_macro_name:
   case diag::ext_missing_whitespace_after_macro_name:
   case diag::warn_missing_whitespace_after_macro_name:
-    session->report(Code::badMacroName, at.origin,
-                    "a space is missing after the name of the macro");
+    session->report(Code::noSpaceAfterMacroName, at.origin);
     return true;
   case diag::err_pp_missing_rparen_in_macro_def:
     return parameters("`)` is missing");
@@ -389,12 +392,10 @@ bool Messages::reportDirective(const clang::Diagnostic &info, const Place &at) {
         .note(fmt::format("write `#elif {}defined(NAME)`", at.text == "elifndef" ? "!" : ""));
     return true;
   case diag::err_pp_hash_error:
-    session->report(Code::userError, at.origin,
-                    argument(info, 0).empty() ? "#error" : argument(info, 0));
+    session->report(Code::userError, at.origin, afterSpace(argument(info, 0)));
     return true;
   case diag::pp_hash_warning:
-    session->report(Code::userWarning, at.origin,
-                    argument(info, 0).empty() ? "#warning" : argument(info, 0));
+    session->report(Code::userWarning, at.origin, afterSpace(argument(info, 0)));
     return true;
   case diag::ext_pp_extra_tokens_at_eol: {
     const std::string_view text = session->sources.text(at.origin.range.file);

@@ -323,7 +323,7 @@ std::size_t SyntaxErrors::endOfArguments(std::size_t start, std::size_t from) co
 }
 
 /// Index of the token after a pair of parentheses that opens at `start`.
-std::size_t SyntaxErrors::behindParentheses(std::size_t start, std::size_t from) const {
+std::size_t SyntaxErrors::afterParentheses(std::size_t start, std::size_t from) const {
   if (word(start).type != RtslLexer::LEFT_PAREN)
     return from;
   std::size_t index = std::max(from, start + 1);
@@ -410,7 +410,7 @@ void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
   case RtslParser::RuleCondition:
     if (word(start).type != RtslLexer::LEFT_PAREN)
       std::rethrow_exception(error);
-    words.seek(behindParentheses(start, from));
+    words.seek(afterParentheses(start, from));
     break;
   case RtslParser::RuleFunctionBody:
     if (!word(from).startsLine && !isClosing(word(from).type))

@@ -49,7 +49,7 @@ private:
   std::size_t endOfStatement(std::size_t start, std::size_t from) const;
   std::size_t endOfExpression(std::size_t start, std::size_t from, bool endsAtComma) const;
   std::size_t endOfArguments(std::size_t start, std::size_t from) const;
-  std::size_t behindParentheses(std::size_t start, std::size_t from) const;
+  std::size_t afterParentheses(std::size_t start, std::size_t from) const;
 
   const FileId file;
   WordStream &words;

@@ -58,14 +58,14 @@ runtime::Transform transformOf(const double *numbers) {
 }
 
 runtime::RenderOptions optionsOf(const RtslRenderSettings *settings) {
-  const RtslRenderSettings asked = settings ? *settings : rtslRenderDefaults();
+  const RtslRenderSettings requested = settings ? *settings : rtslRenderDefaults();
   runtime::RenderOptions options;
-  options.width = asked.width;
-  options.height = asked.height;
-  options.samplesPerPixel = asked.samplesPerPixel;
-  options.maxDepth = asked.maxDepth;
-  options.seed = asked.seed;
-  options.threads = asked.threads;
+  options.width = requested.width;
+  options.height = requested.height;
+  options.samplesPerPixel = requested.samplesPerPixel;
+  options.maxDepth = requested.maxDepth;
+  options.seed = requested.seed;
+  options.threads = requested.threads;
   return options;
 }
 

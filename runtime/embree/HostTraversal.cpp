@@ -35,7 +35,7 @@ const RtslLaunch &HostScene::deviceLaunch() const {
 /// With any tree.
 template <typename Tree>
 std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
-  return how & RTSL_ASK_ANY_HIT
+  return how & RTSL_INVOKE_ANY_HIT
              ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
              : device::findHit(state, how & RTSL_FIRST_HIT, FilledSlots{slots}, tree);
 }
@@ -67,14 +67,14 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
     ++rayCounters().retracedRays;
     return searchOwnTree(state, how);
   }
-  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll)
+  if (how & RTSL_INVOKE_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll)
     return search(state, how, EmbreeTree{*embree});
   return embree->traverse(state, how & RTSL_FIRST_HIT);
 }
 
 [[gnu::always_inline]] inline std::uint32_t HostScene::traverseFast(RtslState &state,
                                                                     std::uint32_t how) const {
-  if (how & RTSL_ASK_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll ||
+  if (how & RTSL_INVOKE_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll ||
       !EmbreeScene::isEasy(state))
     return traverseAny(state, how);
   return seenByAll->traverseEasy(state, how & RTSL_FIRST_HIT);

@@ -17,9 +17,9 @@ namespace rtsl::runtime {
 namespace {
 
 /// Png or Exr.
-PictureFormat formatOf(const std::string &path, PictureFormat asked) {
-  if (asked != PictureFormat::ByName)
-    return asked;
+PictureFormat formatOf(const std::string &path, PictureFormat requested) {
+  if (requested != PictureFormat::ByName)
+    return requested;
   if (path == "-")
     return PictureFormat::Png;
   std::size_t dot = path.find_last_of("./");

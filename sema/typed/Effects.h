@@ -4,7 +4,7 @@
 // order: the printer finds with it which operands depend on the order, which functions take the
 // ray's state and which methods are const; reflection prints the same facts. These are properties
 // of the author's expressions, which passes have changed in the IR. What operations of the IR read
-// and write is found there (codegen/passes/continuation/common/MemoryAccesses.h). Which rays an
+// and write is found there (codegen/ir/MemoryAccesses.h). Which rays an
 // expression sends is raysOf() (Analysis.h), which parts of a hit are read is found by linking
 // (codegen/link/ModuleFacts.h).
 //

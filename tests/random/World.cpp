@@ -63,7 +63,7 @@ void print(RtslState *, const PrintFormat &format, const std::vector<std::uint32
 extern "C" std::uint32_t rtsl_traverse(RtslState *state, std::uint32_t how) {
   const auto &slots = static_cast<const rtsl::runtime::ProgramHost *>(state->launch->host)->slots;
   const std::uint32_t answer =
-      how & RTSL_ASK_ANY_HIT
+      how & RTSL_INVOKE_ANY_HIT
           ? rtsl::device::traverseAsking(*state, how, rtsl::runtime::FilledSlots{slots})
           : rtsl::device::traverseDevice(*state, how & RTSL_FIRST_HIT,
                                          rtsl::runtime::FilledSlots{slots});

@@ -35,9 +35,9 @@ std::vector<const typed::Function *> payloadMethods(const typed::Class &definiti
 /// RTSL_FIRST_HIT and others, as the header names them, combined; nothing if there are none.
 static Code searchFlags(std::uint32_t search) {
   Code flags;
-  for (const auto &[bit, flag] :
-       {std::pair(RTSL_FIRST_HIT, "rtsl::firstHit"), std::pair(RTSL_ASK_ANY_HIT, "rtsl::askAnyHit"),
-        std::pair(RTSL_IN_ORDER, "rtsl::inOrder")})
+  for (const auto &[bit, flag] : {std::pair(RTSL_FIRST_HIT, "rtsl::firstHit"),
+                                  std::pair(RTSL_INVOKE_ANY_HIT, "rtsl::invokeAnyHit"),
+                                  std::pair(RTSL_IN_ORDER, "rtsl::inOrder")})
     if (search & bit)
       flags = flags ? binary(Operator::BitOr, flags, name(flag)) : name(flag);
   return flags;

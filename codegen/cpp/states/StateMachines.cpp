@@ -150,7 +150,7 @@ static bool writesFrame(mlir::func::FuncOp state) {
     writes |= llvm::isa<ir::FrameStoreOp, ir::CallResultOp>(op);
     if (llvm::isa<ir::FrameObjectOp>(op))
       for (mlir::Operation *user : op->getUsers())
-        writes |= continuation::writesTo(user, op->getResult(0));
+        writes |= ir::writesTo(user, op->getResult(0));
   });
   return writes;
 }

@@ -129,9 +129,7 @@ void check(LinkContext &context, const std::string &method, mlir::Type payload,
   }
   if (names.empty())
     return;
-  context.diagnostics
-      .report(Code::sceneWarning, range,
-              "each material of this scene sends another " + what + " on every path: " + names)
+  context.diagnostics.report(Code::endlessRays, range, what, names)
       .note("such rays end only at the depth limit, or if they miss everything; end some of them "
             "by chance (`rand`), where "
             "their weight is small, or by `rt_Depth`");

@@ -12,6 +12,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/MemoryAccesses.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/link/steps/Steps.h"
 
@@ -67,30 +68,33 @@ struct AnyHitEffects {
   bool terminates = false;
 };
 
-void addUses(mlir::Value address, AnyHitEffects &effects) {
-  for (mlir::Operation *user : address.getUsers()) {
-    if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
-      addUses(user->getResult(0), effects);
-    else if (llvm::isa<ir::LoadOp>(user))
-      effects.reads = true;
-    else if (auto copy = llvm::dyn_cast<ir::CopyOp>(user); copy && copy.getTarget() != address)
-      effects.reads = true;
-    else
-      effects.writes = true;
-  }
+bool hasKind(const std::set<ir::MemoryLocation> &locations, ir::MemoryLocation::Kind kind) {
+  return std::any_of(locations.begin(), locations.end(),
+                     [&](const ir::MemoryLocation &location) { return location.kind == kind; });
 }
 
+/// A function that gets the address of the payload may read and write it. In that function, whose
+/// argument it is, it is not counted again.
 AnyHitEffects effectsOf(const std::vector<FuncOp> &functions) {
+  using Kind = ir::MemoryLocation::Kind;
   AnyHitEffects effects;
   for (FuncOp function : functions) {
-    effects.draws |= function.isExternal();
+    const ir::MemoryAccesses accesses = ir::accessesOf(function);
+    effects.reads |= hasKind(accesses.reads, Kind::Payload);
+    effects.writes |= hasKind(accesses.writes, Kind::Payload);
+    effects.draws |= function.isExternal() || hasKind(accesses.writes, Kind::Random);
     function.walk([&](mlir::Operation *op) {
-      if (auto payload = llvm::dyn_cast<ir::PayloadOp>(op))
-        addUses(payload, effects);
-      else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op))
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op)) {
+        const bool getsPayload = llvm::any_of(call.getOperands(), [](mlir::Value operand) {
+          return ir::locationOf(operand).kind == Kind::Payload;
+        });
+        effects.reads |= getsPayload;
+        effects.writes |= getsPayload;
+      } else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op)) {
         effects.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
-      else if (llvm::isa<ir::RandOp, ir::PrintOp, ir::CallMethodOp>(op))
+      } else if (llvm::isa<ir::PrintOp, ir::CallMethodOp>(op)) {
         effects.draws = true;
+      }
     });
   }
   return effects;
@@ -197,7 +201,8 @@ std::uint32_t searchFor(LinkContext &context, const RayType &type) {
       context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
   std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
   if (!anyHits.empty())
-    how |= RTSL_ASK_ANY_HIT | (isOrderVisible(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
+    how |=
+        RTSL_INVOKE_ANY_HIT | (isOrderVisible(context, anyHits, hasClosestHit) ? RTSL_IN_ORDER : 0);
   return how;
 }
 
@@ -280,7 +285,7 @@ std::vector<RayType> numberRayTypes(mlir::ModuleOp ir) {
   auto number = [&](auto ray) {
     const auto payload = llvm::cast<ir::PtrType>(ray.getPayload().getType()).getPointee();
     ray.setRayType(rayTypeOf(payload, types).number);
-    ray.setHow(RTSL_ASK_ANY_HIT | RTSL_IN_ORDER); // correct for any scene
+    ray.setHow(RTSL_INVOKE_ANY_HIT | RTSL_IN_ORDER); // correct for any scene
   };
   ir.walk([&](mlir::Operation *op) {
     if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op))

@@ -31,7 +31,7 @@ struct LinkedClass {
 struct RayType {
   ir::StructType payload;
   std::uint32_t number = 0; // from 1, in the order of first use
-  // how hits are searched for: RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT, RTSL_IN_ORDER
+  // how hits are searched for: RTSL_FIRST_HIT, RTSL_INVOKE_ANY_HIT, RTSL_IN_ORDER
   std::uint32_t search = 0;
 
   std::string name() const { return payload.getName().str(); }

@@ -13,9 +13,9 @@ namespace rtsl {
 inline namespace RTSL_VARIANT {
 
 // How hits are searched for; 0: the nearest hit, without calling anyHit.
-inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT;    // no `closestHit` depends on which
-inline constexpr std::uint32_t askAnyHit = RTSL_ASK_ANY_HIT; // anyHit may reject hits
-inline constexpr std::uint32_t inOrder = RTSL_IN_ORDER;      // anyHit is called from near to far
+inline constexpr std::uint32_t firstHit = RTSL_FIRST_HIT; // no `closestHit` depends on which
+inline constexpr std::uint32_t invokeAnyHit = RTSL_INVOKE_ANY_HIT; // anyHit may reject hits
+inline constexpr std::uint32_t inOrder = RTSL_IN_ORDER; // anyHit is called from near to far
 
 struct RayType {
   std::uint32_t number; // from 1

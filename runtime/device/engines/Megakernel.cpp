@@ -13,9 +13,9 @@ using namespace rtsl;
 extern "C" {
 
 uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
-  const bool mayAsk = rtsl_needs(state->launch) & RTSL_NEEDS_ANY_HIT;
+  const bool mayInvoke = rtsl_needs(state->launch) & RTSL_NEEDS_ANY_HIT;
   uint32_t answer =
-      mayAsk && how & RTSL_ASK_ANY_HIT
+      mayInvoke && how & RTSL_INVOKE_ANY_HIT
           ? device::traverseAsking(*state, how, device::LinkedPayloadSlots())
           : device::traverseDevice(*state, how & RTSL_FIRST_HIT, device::LinkedSlots());
   if (answer == RTSL_BAD_RAY)

@@ -319,8 +319,8 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_TERMINATE 2u // terminateRay()
 
 // How rtsl_traverse searches. Without any: the nearest hit, without calling `anyHit`.
-#define RTSL_FIRST_HIT 1u   // only whether there is a hit at all; the committed hit is meaningless
-#define RTSL_ASK_ANY_HIT 2u // `anyHit` of the material may reject a hit, in any order of hits
+#define RTSL_FIRST_HIT 1u // only whether there is a hit at all; the committed hit is meaningless
+#define RTSL_INVOKE_ANY_HIT 2u // `anyHit` of the material may reject a hit, in any order of hits
 #define RTSL_IN_ORDER 4u // ... called in the order of (t, instance, primitive), until one accepts
 
 // RtslLaunch::needs: state that some method of the scene reads. RtslInstance::needs: what its
@@ -416,7 +416,7 @@ uint32_t rtsl_listed_instances(const RtslLaunch *launch);
 
 /// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it
 /// (HitDistance, instance, primitive, u, v, attributes); instance must be RTSL_NO_HIT before. `how`
-/// is a set of RTSL_FIRST_HIT, RTSL_ASK_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or
+/// is a set of RTSL_FIRST_HIT, RTSL_INVOKE_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or
 /// RTSL_BAD_RAY.
 uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 

@@ -117,7 +117,7 @@ public:
 
   /// Describes the hit that state has and runs `anyHit`. Returns RTSL_ACCEPT, RTSL_IGNORE or
   /// RTSL_TERMINATE.
-  uint32_t ask() const {
+  uint32_t invoke() const {
     const RtslInstance &instance = instanceAt(*state.launch, state.instance);
     const float end = state.HitDistance;
     state.HitDistance = state.foundDistance;
@@ -178,7 +178,7 @@ uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
       const RtslLeafItem item = {nearest.found[i].instance, nearest.found[i].primitive};
       search.forgetHit();
       search.testAgain(item);
-      if (!search.hasAnyHit(item) || search.ask() != RTSL_IGNORE)
+      if (!search.hasAnyHit(item) || search.invoke() != RTSL_IGNORE)
         return search.end();
     }
     search.forgetHit();
@@ -225,7 +225,7 @@ uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const T
                    const CommittedHit before(state);
                    if (!search.test(item, ray))
                      return false;
-                   uint32_t answer = search.ask();
+                   uint32_t answer = search.invoke();
                    if (answer == RTSL_IGNORE) {
                      before.restore(state);
                      return false;

@@ -103,6 +103,7 @@ class DepthLimits(Case):
         for command in (["compile", "--emit=ptx"], ["explain", "--states"]):
             _, error = self.run_rtslc(command[0], "scene.json", "-o", "out", *command[1:])
             self.assertIn(f"{ENDLESS} on every path: `Endless`", error)
+            self.assertIn("warning[W2801]", error)
             self.assertIn("[-Wscene]", error)
         _, error = self.run_rtslc("compile", "scene.json", "-o", "out", "--emit=ptx", "-Wno-scene")
         self.assertEqual(error, "")

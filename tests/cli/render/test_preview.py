@@ -94,15 +94,15 @@ class Preview(Case):
         # Not one of an imported file.
         self.write("imports.rtsl", 'import "grey.rtsl";\nclass Help { int i() { return 1; } };\n')
         message = self.refused("imports.rtsl")
-        self.assertEqual((message["code"], message["message"]), ("E0865", "`imports.rtsl` has no class that can be shown"))
+        self.assertEqual((message["code"], message["message"]), ("E0866", "`imports.rtsl` has no class that can be shown"))
         self.assertEqual(message["notes"][0], "`Help` is a `helper class`, of which there is no picture")
 
     def test_classes_that_are_not_there(self):
         self.write("a.rtsl", GREY + "class Help { int i() { return 1; } };\n")
         message = self.refused("a.rtsl", "--class", "Gray")
-        self.assertEqual((message["code"], message["message"]), ("E0810", "`a.rtsl` has no class `Gray`; did you mean `Grey`?"))
-        self.assertEqual(message["notes"], ["it has `Grey`, `Help`"])
-        self.assert_message([self.refused("a.rtsl", "--class", "Help")], "E0865", "class `Help` cannot be shown", line=4, column=7)
+        self.assertEqual((message["code"], message["message"]), ("E0868", "`a.rtsl` has no class `Gray`"))
+        self.assertEqual(message["notes"], ["did you mean `Grey`?", "it has `Grey`, `Help`"])
+        self.assert_message([self.refused("a.rtsl", "--class", "Help")], "E0867", "class `Help` cannot be shown", line=4, column=7)
         self.write("b.rtsl", "float f() { return 1.0; }\n")
         self.assertEqual(self.refused("b.rtsl")["notes"][0], "it declares no class")
         self.write("scene.json", "{}")

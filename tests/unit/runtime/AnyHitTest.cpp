@@ -53,7 +53,7 @@ std::shared_ptr<Program> askingProgram() {
   return program;
 }
 
-Scene layers(unsigned seed, bool allAsk) {
+Scene layers(unsigned seed, bool allInvoke) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> wide(-4, 4), deep(0, 20);
   Scene scene(askingProgram());
@@ -73,12 +73,12 @@ Scene layers(unsigned seed, bool allAsk) {
         for (unsigned k = 0; k < 3; ++k)
           mesh.indices.push_back(3 * i + k);
     }
-    scene.addMeshInstance(scene.addMesh(std::move(mesh)), allAsk || part != 2 ? asks : accepts);
+    scene.addMeshInstance(scene.addMesh(std::move(mesh)), allInvoke || part != 2 ? asks : accepts);
   }
   for (int i = 0; i < 10; ++i)
     scene.addPrimitive(
         scene.addObject("Sphere", {vector(wide(random), wide(random), deep(random)), 1.5}),
-        allAsk || i % 3 ? asks : accepts);
+        allInvoke || i % 3 ? asks : accepts);
   return scene;
 }
 
@@ -143,8 +143,8 @@ std::uint32_t expected(RtslState state, float distance, Asked &inOrder, RtslStat
 TEST(AnyHit, IsQueriedOnceInOrderUntilAHitIsAccepted) {
   std::size_t longest = 0;
   unsigned hits = 0, misses = 0;
-  for (bool allAsk : {false, true}) {
-    Scene scene = layers(3, allAsk);
+  for (bool allInvoke : {false, true}) {
+    Scene scene = layers(3, allInvoke);
     HostScene own(scene, false, 1), embree(scene, true, 1);
     std::mt19937 random(4);
     std::uniform_real_distribution<float> wide(-3, 3), small(-0.3f, 0.3f);
@@ -160,7 +160,7 @@ TEST(AnyHit, IsQueriedOnceInOrderUntilAHitIsAccepted) {
         for (const HostScene *host : {&own, &embree}) {
           RtslState state = start;
           asked.clear();
-          ASSERT_EQ(host->traverse(state, RTSL_ASK_ANY_HIT | RTSL_IN_ORDER), answer) << i;
+          ASSERT_EQ(host->traverse(state, RTSL_INVOKE_ANY_HIT | RTSL_IN_ORDER), answer) << i;
           ASSERT_EQ(asked, inOrder) << i;
           if (answer == RTSL_HIT) {
             ASSERT_EQ(state.HitDistance, accepted.HitDistance);
@@ -200,7 +200,7 @@ TEST(AnyHit, InAnyOrderTheNearestAcceptedHitCounts) {
 
       asked.clear();
       RtslState first = start;
-      ASSERT_EQ(host.traverse(first, RTSL_ASK_ANY_HIT | RTSL_FIRST_HIT), answer) << i;
+      ASSERT_EQ(host.traverse(first, RTSL_INVOKE_ANY_HIT | RTSL_FIRST_HIT), answer) << i;
       std::set<std::tuple<std::uint32_t, std::uint32_t>> once;
       for (const auto &one : asked)
         EXPECT_TRUE(once.insert({std::get<1>(one), std::get<2>(one)}).second) << "asked twice";
@@ -209,7 +209,7 @@ TEST(AnyHit, InAnyOrderTheNearestAcceptedHitCounts) {
       bool terminates = false;
       RtslState nearest = start;
       asked.clear();
-      ASSERT_EQ(host.traverse(nearest, RTSL_ASK_ANY_HIT), answer) << i;
+      ASSERT_EQ(host.traverse(nearest, RTSL_INVOKE_ANY_HIT), answer) << i;
       for (const auto &one : asked)
         terminates |= answerFor(std::get<1>(one), std::get<2>(one)) == RTSL_TERMINATE;
       if (terminates)

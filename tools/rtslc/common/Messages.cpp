@@ -10,75 +10,15 @@ namespace rtsl::tool {
 namespace {
 
 Code codeFor(ErrorCode code) {
-  using E = ErrorCode;
   switch (code) {
-  case E::FileNotFound:
-    return Code::fileNotFound;
-  case E::FileUnreadable:
-    return Code::fileUnreadable;
-  case E::FileUnwritable:
-    return Code::fileUnwritable;
-  case E::OverwritesInput:
-    return Code::overwritesInput;
-  case E::UnsupportedFormat:
-    return Code::unsupportedFormat;
-  case E::BadMesh:
-    return Code::badMesh;
-  case E::BadImage:
-    return Code::badImage;
-  case ErrorCode::BadBuffer:
-    return Code::badBuffer;
-  case E::NotAScene:
-    return Code::notAScene;
-  case E::JsonSyntax:
-    return Code::sceneSyntax;
-  case E::DuplicateKey:
-    return Code::sceneDuplicateKey;
-  case E::UnknownKey:
-    return Code::sceneUnknownKey;
-  case E::MissingKey:
-    return Code::sceneMissingKey;
-  case E::WrongType:
-    return Code::sceneWrongType;
-  case E::OutOfRange:
-    return Code::sceneOutOfRange;
-  case E::UnknownName:
-    return Code::sceneUnknownName;
-  case E::ReferenceCycle:
-    return Code::sceneReferenceCycle;
-  case E::NotSupported:
-    return Code::sceneNotSupported;
-  case E::BadOverride:
-    return Code::sceneBadOverride;
-  case E::UnknownClass:
-    return Code::sceneUnknownClass;
-  case E::WrongClass:
-    return Code::sceneWrongClass;
-  case E::UnknownMember:
-    return Code::sceneUnknownMember;
-  case E::NotSettable:
-    return Code::sceneNotSettable;
-  case E::BadArguments:
-    return Code::sceneBadArguments;
-  case E::MissingMember:
-    return Code::sceneMissingMember;
-  case E::DegenerateGeometry:
-    return Code::sceneDegenerateGeometry;
-  case E::MissingMethod:
-    return Code::sceneMissingMethod;
-  case E::IncompleteScene:
-    return Code::sceneIncomplete;
-  case E::Cancelled:
-    return Code::cancelled;
-  case E::OutOfMemory:
-    return Code::outOfMemory;
-  case E::NoDevice:
-    return Code::noDevice;
-  case E::BadCheckpoint:
-    return Code::badCheckpoint;
+#define RTSL_DIAGNOSTIC(...)
+#define RTSL_RUNTIME_ERROR(id, number, error, meaning)                                             \
+  case ErrorCode::error:                                                                           \
+    return Code::id;
+#include "frontend/diagnostics/DiagnosticCodes.def"
   // rtslc reads no packages; rtsl-run has messages of its own.
-  case E::BadPackage:
-  case E::Internal:
+  case ErrorCode::BadPackage:
+  case ErrorCode::Internal:
     break; // Main.cpp ends the run with its own status
   }
   throw std::logic_error("a fault of the runtime reached the user's messages");

@@ -196,8 +196,7 @@ private:
                                    [](const auto *one) { return whyNot(*one).empty(); });
     if (last != classes.rend())
       return *last;
-    Diagnostic &diagnostic = messages.diagnostics.report(
-        Code::notAScene, {}, fmt::format("`{}` has no class that can be shown", request.file));
+    Diagnostic &diagnostic = messages.diagnostics.report(Code::nothingToShow, {}, request.file);
     for (const typed::Class *one : classes)
       diagnostic.note(fmt::format("`{}` {}", one->name, whyNot(*one)));
     if (classes.empty())
@@ -215,16 +214,14 @@ private:
       const std::string why = whyNot(*one);
       if (why.empty())
         return one;
-      messages.diagnostics
-          .report(Code::notAScene, one->range,
-                  fmt::format("class `{}` cannot be shown: it {}", one->name, why))
+      messages.diagnostics.report(Code::cannotShowClass, one->range, one->name, why)
           .note(sceneHint());
       return nullptr;
     }
-    std::string text = fmt::format("`{}` has no class `{}`", request.file, request.className);
+    Diagnostic &diagnostic =
+        messages.diagnostics.report(Code::noSuchClass, {}, request.file, request.className);
     if (const std::string near = closestName(request.className, names); !near.empty())
-      text += fmt::format("; did you mean `{}`?", near);
-    Diagnostic &diagnostic = messages.diagnostics.report(Code::sceneUnknownClass, {}, text);
+      diagnostic.note(fmt::format("did you mean `{}`?", near));
     if (!names.empty())
       diagnostic.note(fmt::format("it has `{}`", fmt::join(names, "`, `")));
     return nullptr;

@@ -29,15 +29,15 @@ void StateMemory::write(ir::VarOp op, Statements &out) {
 
 void StateMemory::write(ir::LoadOp op, Statements &out) {
   const Code code = state.lvalues.of(op.getAddress());
-  continuation::MemoryAccesses accesses;
-  accesses.reads.insert(continuation::locationOf(op.getAddress()));
+  ir::MemoryAccesses accesses;
+  accesses.reads.insert(ir::locationOf(op.getAddress()));
   state.values.flush(accesses, out);
   state.values.define(*op, code, accesses, true, out);
 }
 
 void StateMemory::write(ir::CopyOp op, Statements &out) {
   const Code from = state.lvalues.of(op.getSource()), to = state.lvalues.of(op.getTarget());
-  state.values.flush(continuation::accessesOf(op), out);
+  state.values.flush(ir::accessesOf(op), out);
   if (!same(from, to))
     state.emitter.emit(out, assign(to, from));
 }
@@ -50,8 +50,8 @@ void StateMemory::write(ir::FrameLoadOp op, Statements &out) {
   const FrameField *from = state.machine.savedField(op.getName());
   if (!from)
     return;
-  continuation::MemoryAccesses accesses;
-  accesses.reads.insert({continuation::MemoryLocation::Kind::Frame, from->key});
+  ir::MemoryAccesses accesses;
+  accesses.reads.insert({ir::MemoryLocation::Kind::Frame, from->key});
   state.values.define(*op, state.lvalues.frameField(from->name), accesses, true, out);
 }
 
@@ -61,7 +61,7 @@ void StateMemory::write(ir::FrameStoreOp op, Statements &out) {
     return;
   const Code value = state.values.use(op.getValue(), to->type),
              target = state.lvalues.frameField(to->name);
-  state.values.flush(continuation::accessesOf(op), out);
+  state.values.flush(ir::accessesOf(op), out);
   if (!same(value, target))
     state.emitter.emit(out, assign(target, value));
 }
@@ -75,7 +75,7 @@ void StateMemory::write(ir::EvaluateOp op, Statements &out) {
       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);
   state.functions.isNested = ir::attr::nested.isOn(op);
   if (state.functions.isNested) // its first part may change a pending operand of its last
-    state.values.flush(continuation::accessesOf(op), out);
+    state.values.flush(ir::accessesOf(op), out);
   Statements before, written;
   state.functions.before = &before;
   Code code;
@@ -87,7 +87,7 @@ void StateMemory::write(ir::EvaluateOp op, Statements &out) {
   }
   state.functions.before = nullptr;
   state.functions.isNested = false;
-  continuation::MemoryAccesses accesses = continuation::accessesOf(op);
+  ir::MemoryAccesses accesses = ir::accessesOf(op);
   const bool isInto = entry.kind == SourceTable::Kind::Into;
   const Code target = isInto ? state.lvalues.of(op.getOperand(0)) : Code();
   state.values.flush(accesses, out);
@@ -113,7 +113,7 @@ void StateMemory::write(ir::EvaluateOp op, Statements &out) {
 void StateMemory::write(ir::ClearOp op, Statements &out) {
   auto variable = op.getAddress().getDefiningOp<ir::VarOp>();
   const Code target = state.lvalues.of(op.getAddress());
-  state.values.flush(continuation::accessesOf(op), out);
+  state.values.flush(ir::accessesOf(op), out);
   const Type *type = state.types.ofMemory(op.getAddress());
   Statement &made =
       state.emitter.emit(out, assign(target, type ? context.types.zero(type) : list("", {})));
@@ -142,7 +142,7 @@ void StateMemory::write(ir::StoreOp op, Statements &out) {
   const bool isPart = insertion && state.values.isPending(op.getValue()) &&
                       same(insertion->vector, target) && insertion->parts.size() == 1;
   const Code value = state.values.use(op.getValue(), type);
-  state.values.flush(continuation::accessesOf(op), out);
+  state.values.flush(ir::accessesOf(op), out);
   if (same(value, target))
     return;
   if (op.getValue().getDefiningOp<mlir::arith::AddIOp>() &&

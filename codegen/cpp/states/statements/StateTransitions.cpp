@@ -43,7 +43,7 @@ void StateTransitions::write(ir::SpawnPayloadOp op, Statements &) {
 }
 
 void StateTransitions::write(ir::RandOp op, Statements &out) {
-  continuation::MemoryAccesses accesses = continuation::accessesOf(op);
+  ir::MemoryAccesses accesses = ir::accessesOf(op);
   state.values.flush(accesses, out);
   state.values.define(*op, onState(op.getOpen() ? "rtsl::randOpen" : "rtsl::rand"), accesses, false,
                       out);
@@ -53,7 +53,7 @@ void StateTransitions::write(ir::IlluminateOp op, Statements &out) {
   std::vector<Code> arguments = {name("rt")};
   for (mlir::Value operand : op->getOperands())
     arguments.push_back(state.values.use(operand));
-  continuation::MemoryAccesses accesses = continuation::accessesOf(op);
+  ir::MemoryAccesses accesses = ir::accessesOf(op);
   state.values.flush(accesses, out);
   accesses.add(state.values.consumed);
   state.values.define(*op, cpp::call("rtsl::illuminate", std::move(arguments)), accesses, false,

@@ -91,7 +91,7 @@ Code PendingValues::named(mlir::Value value, Statements &out) {
   return use(value, state.types.of(value));
 }
 
-void PendingValues::flush(const continuation::MemoryAccesses &accesses, Statements &out) {
+void PendingValues::flush(const ir::MemoryAccesses &accesses, Statements &out) {
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending)
     if (conflict(waiting.accesses, accesses))
@@ -101,7 +101,7 @@ void PendingValues::flush(const continuation::MemoryAccesses &accesses, Statemen
 }
 
 void PendingValues::flushBefore(mlir::Operation &op, Statements &out) {
-  const continuation::MemoryAccesses inside = continuation::accessesOf(&op);
+  const ir::MemoryAccesses inside = ir::accessesOf(&op);
   const bool isLoop = llvm::isa<ir::LoopOp>(op);
   llvm::SmallVector<mlir::Value> first;
   for (auto &[value, waiting] : pending) {
@@ -118,8 +118,8 @@ void PendingValues::flushBefore(mlir::Operation &op, Statements &out) {
     materialise(value, out);
 }
 
-void PendingValues::define(mlir::Operation &op, Code code, continuation::MemoryAccesses accesses,
-                           bool isPure, Statements &out) {
+void PendingValues::define(mlir::Operation &op, Code code, ir::MemoryAccesses accesses, bool isPure,
+                           Statements &out) {
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {

@@ -8,7 +8,7 @@
 
 #include "codegen/cpp/states/StatePart.h"
 #include "codegen/cpp/states/statements/Insertion.h"
-#include "codegen/passes/continuation/common/MemoryAccesses.h"
+#include "codegen/ir/MemoryAccesses.h"
 
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/MapVector.h"
@@ -30,7 +30,7 @@ public:
   const Insertion *insertion(mlir::Value value) const;
 
   /// The value of an operation becomes pending, or gets a variable.
-  void define(mlir::Operation &op, Code code, continuation::MemoryAccesses accesses, bool isPure,
+  void define(mlir::Operation &op, Code code, ir::MemoryAccesses accesses, bool isPure,
               Statements &out);
   /// The same for an operation without effects of its own, made of the operands that were used.
   void make(mlir::Operation &op, Code code, Statements &out);
@@ -39,19 +39,18 @@ public:
   void makeInsertion(mlir::Operation &op, Insertion insertion, Statements &out);
 
   /// Evaluates pending values that accesses would change, or whose evaluation would change these.
-  void flush(const continuation::MemoryAccesses &accesses, Statements &out);
+  void flush(const ir::MemoryAccesses &accesses, Statements &out);
   /// Before a construct with regions: values that an inner statement would change are not pending
   /// in another region, and a value that is used once is not evaluated in each iteration of a
   /// loop.
   void flushBefore(mlir::Operation &op, Statements &out);
 
-  continuation::MemoryAccesses
-      consumed; // by the values used for the operation that is being printed
+  ir::MemoryAccesses consumed; // by the values used for the operation that is being printed
 
 private:
   struct Pending {
     Code code;
-    continuation::MemoryAccesses accesses;
+    ir::MemoryAccesses accesses;
     unsigned usesLeft = 0;
     bool isPure = true;     // no effects of its own
     bool isTrivial = false; // may be repeated in the text

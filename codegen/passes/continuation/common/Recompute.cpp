@@ -3,8 +3,8 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
+#include "codegen/ir/MemoryAccesses.h"
 #include "codegen/ir/Slots.h"
-#include "codegen/passes/continuation/common/MemoryAccesses.h"
 
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "llvm/ADT/SmallPtrSet.h"
@@ -29,9 +29,9 @@ bool StateWrites::add(const StateWrites &other) {
 static constexpr llvm::StringLiteral payloadName = "payload";
 
 static StateWrites writesThrough(mlir::Value address) {
-  using Kind = MemoryLocation::Kind;
+  using Kind = ir::MemoryLocation::Kind;
   StateWrites writes;
-  const MemoryLocation location = locationOf(address);
+  const ir::MemoryLocation location = ir::locationOf(address);
   if (location.kind == Kind::State)
     writes.names.insert(location.name);
   else if (location.kind == Kind::Payload)

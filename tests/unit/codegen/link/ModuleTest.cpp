@@ -115,7 +115,7 @@ class Eye : rt_RayGeneration {
 };
 )");
   EXPECT_EQ(linked.rayTypes(), (std::vector<std::string>{"Traced", "Answered"}));
-  EXPECT_EQ(linked.facts->rayTypes[0].search, RTSL_FIRST_HIT | RTSL_ASK_ANY_HIT);
+  EXPECT_EQ(linked.facts->rayTypes[0].search, RTSL_FIRST_HIT | RTSL_INVOKE_ANY_HIT);
   EXPECT_EQ(linked.facts->rayTypes[1].search, 0u);
   EXPECT_EQ(linked.facts->needs & RTSL_NEEDS_ANY_HIT, RTSL_NEEDS_ANY_HIT);
   EXPECT_TRUE(linked.diagnostics.all().empty());

@@ -33,7 +33,8 @@ std::string material(const std::string &anyHit, const std::string &more = "") {
          "} " + more + " };";
 }
 
-constexpr std::uint32_t ask = RTSL_ASK_ANY_HIT, first = RTSL_FIRST_HIT, inOrder = RTSL_IN_ORDER;
+constexpr std::uint32_t invoke = RTSL_INVOKE_ANY_HIT, first = RTSL_FIRST_HIT,
+                        inOrder = RTSL_IN_ORDER;
 
 TEST(RayTypes, WhoAnswersDecidesWhatIsSearched) {
   EXPECT_EQ(
@@ -48,59 +49,60 @@ TEST(RayTypes, WhoAnswersDecidesWhatIsSearched) {
 TEST(RayTypes, OrderDoesNotShowWhereNothingIsWritten) {
   const std::string refuse = "if (opacity < 0.5) ignoreIntersection();";
   const std::string closest = "void closestHit(inout Shadow s) { s.light = rt_HitDistance; }";
-  EXPECT_EQ(howToSearch(material(refuse), {"M"}), ask | first);
-  EXPECT_EQ(howToSearch(material(refuse, closest), {"M"}), ask);
-  EXPECT_EQ(howToSearch(material("if (s.light < 0.5) ignoreIntersection();", closest), {"M"}), ask);
-  EXPECT_EQ(howToSearch(material(refuse + "terminateRay();"), {"M"}), ask | first);
+  EXPECT_EQ(howToSearch(material(refuse), {"M"}), invoke | first);
+  EXPECT_EQ(howToSearch(material(refuse, closest), {"M"}), invoke);
+  EXPECT_EQ(howToSearch(material("if (s.light < 0.5) ignoreIntersection();", closest), {"M"}),
+            invoke);
+  EXPECT_EQ(howToSearch(material(refuse + "terminateRay();"), {"M"}), invoke | first);
   // Whoever terminates would choose which hit is the nearest.
-  EXPECT_EQ(howToSearch(material(refuse + "terminateRay();", closest), {"M"}), ask | inOrder);
+  EXPECT_EQ(howToSearch(material(refuse + "terminateRay();", closest), {"M"}), invoke | inOrder);
   EXPECT_EQ(howToSearch(material("if (rand() < opacity) ignoreIntersection();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
 }
 
 TEST(RayTypes, OrderShowsInWhatIsWritten) {
   EXPECT_EQ(howToSearch(material("s.light *= opacity; ignoreIntersection();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("s.parts[0].x = 1.0; ignoreIntersection();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("darken(s); ignoreIntersection();",
                                  "void darken(inout Shadow s) { s.light = 0.0; }"),
                         {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("Shadow t = s; t.light = 0.0; s = t; terminateRay();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
 }
 
 TEST(RayTypes, SameConstantsAndTheEndShowNoOrder) {
   const std::string end = "s.light = 0.0; s.parts[1] = vec2(1.0); terminateRay();";
-  EXPECT_EQ(howToSearch(material(end), {"M"}), ask | first);
+  EXPECT_EQ(howToSearch(material(end), {"M"}), invoke | first);
   EXPECT_EQ(howToSearch(material("if (opacity < 0.5) ignoreIntersection();" + end), {"M"}),
-            ask | first);
+            invoke | first);
   // One way through accepts without writing.
   EXPECT_EQ(howToSearch(material("if (opacity > 0.5) {" + end + "}"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("s.light = opacity; terminateRay();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("s.light = 0.0; ignoreIntersection();"), {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material("if (opacity < 0.5) { s.light = 0.0; terminateRay(); } s.light = "
                                  "1.0; terminateRay();"),
                         {"M"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   // An array is written at a place that is not known.
   EXPECT_EQ(howToSearch(material("s.parts[int(opacity)] = vec2(1.0); terminateRay();"), {"M"}),
-            ask | first | inOrder);
-  // So does another class, in the same way or in another; or it accepts without being asked.
+            invoke | first | inOrder);
+  // So does another class, in the same way or in another; or it accepts without an `anyHit`.
   const std::string other = "class N : rt_Material { void anyHit(inout Shadow s) {";
-  EXPECT_EQ(howToSearch(material(end) + other + end + "} };", {"M", "N"}), ask | first);
+  EXPECT_EQ(howToSearch(material(end) + other + end + "} };", {"M", "N"}), invoke | first);
   EXPECT_EQ(howToSearch(material(end) + other +
                             "s.light = 0.5; s.parts[1] = vec2(1.0); terminateRay(); } };",
                         {"M", "N"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M", "N"}),
-            ask | first | inOrder);
+            invoke | first | inOrder);
   EXPECT_EQ(howToSearch(material(end) + "class N : rt_Material { void shade() {} };", {"M"}),
-            ask | first);
+            invoke | first);
 }
 
 TEST(RayTypes, ARayTypeWithoutProgramsIsAWarning) {
