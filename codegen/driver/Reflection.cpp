@@ -168,7 +168,7 @@ private:
       if (facts.writes.count(place))
         writes.push_back(name);
     };
-#define RTSL_STATE_VARIABLE(name, type) note(typed::StateVariable::name);
+#define RTSL_STATE_VARIABLE(name, type, ...) note(typed::StateVariable::name);
 #include "language/StateVariables.def"
     json["stateRead"] = std::move(reads);
     json["stateWritten"] = std::move(writes);

@@ -8,8 +8,8 @@
 // vector, a scalar or a C++ number stands for a vector that has it in each component. uint is int
 // with other comparisons, which are named.
 //
-// C++ leaves the order of evaluation of operands open. Where it would decide which of two operations
-// is emitted first, a formula names the one that comes first in a variable.
+// C++ leaves the order of evaluation of operands open. Where it would decide which of two
+// operations is emitted first, a formula names the one that comes first in a variable.
 //
 //   x + y, x - y, x * y, -x            floats and ints
 //   x / y                              floats

@@ -301,7 +301,7 @@ std::vector<std::string> classesWithMethod(const std::string &methodName) {
 
 bool findStateVariable(const std::string &name, typed::StateVariable &variable) {
   static const std::map<std::string, typed::StateVariable> all = {
-#define RTSL_STATE_VARIABLE(name, type) {#name, typed::StateVariable::name},
+#define RTSL_STATE_VARIABLE(name, type, ...) {#name, typed::StateVariable::name},
 #include "language/StateVariables.def"
   };
   auto found = all.find(name);
@@ -313,7 +313,7 @@ bool findStateVariable(const std::string &name, typed::StateVariable &variable) 
 
 const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
   static const char *const keywords[] = {
-#define RTSL_STATE_VARIABLE(name, type) #type,
+#define RTSL_STATE_VARIABLE(name, type, ...) #type,
 #include "language/StateVariables.def"
   };
   const std::string keyword = keywords[static_cast<std::size_t>(variable)];
@@ -322,7 +322,7 @@ const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
 
 const std::vector<std::string> &stateVariableNames() {
   static const std::vector<std::string> names = {
-#define RTSL_STATE_VARIABLE(name, type) "rt_" #name,
+#define RTSL_STATE_VARIABLE(name, type, ...) "rt_" #name,
 #include "language/StateVariables.def"
   };
   return names;

@@ -5,7 +5,7 @@ namespace rtsl::typed {
 
 const char *name(StateVariable variable) {
   static const char *const names[] = {
-#define RTSL_STATE_VARIABLE(name, type) #name,
+#define RTSL_STATE_VARIABLE(name, type, ...) #name,
 #include "language/StateVariables.def"
   };
   return names[static_cast<std::size_t>(variable)];

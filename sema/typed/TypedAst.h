@@ -26,7 +26,7 @@ using StmtPtr = std::unique_ptr<Stmt>;
 
 /// The rt_ variables; `RayOrigin` is rt_RayOrigin.
 enum class StateVariable : std::uint8_t {
-#define RTSL_STATE_VARIABLE(name, type) name,
+#define RTSL_STATE_VARIABLE(name, type, ...) name,
 #include "language/StateVariables.def"
 };
 const char *name(StateVariable variable); // without rt_

@@ -391,7 +391,7 @@ static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::ui
       std::memcpy(reinterpret_cast<std::uint8_t *>(variable) + 4 * word, &bits, 4);
     }
   };
-#define RTSL_STATE_VARIABLE(name, type) fill(&state.name, sizeof state.name);
+#define RTSL_STATE_VARIABLE(name, type, ...) fill(&state.name, sizeof state.name);
 #include "language/StateVariables.def"
   std::fill_n(state.attributes, RTSL_MAX_ATTRIBUTE_WORDS,
               1u); // true, 1 or nearly 0, wherever the compiler put which

@@ -12,7 +12,7 @@ using typed::StateVariable;
 
 static const std::vector<std::pair<StateVariable, const char *>> &stateVariables() {
   static const std::vector<std::pair<StateVariable, const char *>> all = {
-#define RTSL_STATE_VARIABLE(name, type) {StateVariable::name, #name},
+#define RTSL_STATE_VARIABLE(name, type, ...) {StateVariable::name, #name},
 #include "language/StateVariables.def"
   };
   return all;

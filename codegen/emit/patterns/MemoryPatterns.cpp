@@ -249,7 +249,7 @@ struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
 
 /// Bytes from the start of RtslState to a state variable.
 uint32_t stateOffset(llvm::StringRef name) {
-#define RTSL_STATE_VARIABLE(variable, type)                                                        \
+#define RTSL_STATE_VARIABLE(variable, type, ...)                                                   \
   if (name == #variable)                                                                           \
     return offsetof(RtslState, variable);
 #include "language/StateVariables.def"

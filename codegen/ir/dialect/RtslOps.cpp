@@ -258,7 +258,7 @@ void StateOp::getAsmResultNames(NameSetter setName) {
 /// `hitError` is a field of RtslState that shaders cannot name.
 static llvm::StringRef stateVariableType(llvm::StringRef name) {
   return llvm::StringSwitch<llvm::StringRef>(name)
-#define RTSL_STATE_VARIABLE(name, type) .Case(#name, #type)
+#define RTSL_STATE_VARIABLE(name, type, ...) .Case(#name, #type)
 #include "language/StateVariables.def"
       .Case("hitError", "float")
       .Default("");

@@ -20,9 +20,10 @@ namespace rtsl::linking {
 namespace {
 
 std::uint32_t needsOf(llvm::StringRef state) {
+  constexpr std::uint32_t RTSL_NEEDS_NOTHING = 0;
   return llvm::StringSwitch<std::uint32_t>(state)
-#define RTSL_STATE_OUTPUT(name, OUTPUT) .Case(#name, RTSL_NEEDS_##OUTPUT)
-#include "language/StateUses.def"
+#define RTSL_STATE_VARIABLE(name, type, writer, need) .Case(#name, RTSL_NEEDS_##need)
+#include "language/StateVariables.def"
       .Default(0);
 }
 

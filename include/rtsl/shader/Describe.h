@@ -317,7 +317,7 @@ inline void selfTest() {
     if (a != b)
       throw std::logic_error("generated shaders and the runtime lay out the state differently");
   };
-#define RTSL_STATE_VARIABLE(name, type) same(&raw.name, &rt.name);
+#define RTSL_STATE_VARIABLE(name, type, ...) same(&raw.name, &rt.name);
 #include "language/StateVariables.def"
   same(raw.attributes, rt.attributes);
 

@@ -47,7 +47,7 @@ struct [[gnu::may_alias]] State {
 #define RTSL_SHADER_vec3 glm::vec3
 #define RTSL_SHADER_mat4 glm::mat4
 #define RTSL_SHADER_color StateColor<N>
-#define RTSL_STATE_VARIABLE(name, type) RTSL_SHADER_##type name;
+#define RTSL_STATE_VARIABLE(name, type, ...) RTSL_SHADER_##type name;
 #include "language/StateVariables.def"
 
   std::uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];

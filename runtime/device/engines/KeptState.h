@@ -15,7 +15,7 @@ namespace rtsl::device {
 
 /// Numbers of what can be kept: the state variables, and fields that shaders cannot name.
 enum KeptField : uint32_t {
-#define RTSL_STATE_VARIABLE(name, type) kept##name,
+#define RTSL_STATE_VARIABLE(name, type, ...) kept##name,
 #include "language/StateVariables.def"
   keptInstance,
   keptHitPointError,
@@ -72,7 +72,7 @@ inline uint32_t wordsOf(KeptField field, uint32_t components) {
 #define RTSL_WORDS_mat4 16
 #define RTSL_WORDS_color components
   switch (field) {
-#define RTSL_STATE_VARIABLE(name, type)                                                            \
+#define RTSL_STATE_VARIABLE(name, type, ...)                                                       \
   case kept##name:                                                                                 \
     return RTSL_WORDS_##type;
 #include "language/StateVariables.def"
@@ -94,7 +94,7 @@ inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
     return (field < 32 ? low >> (field & 31) : high >> (field & 31)) & 1;
   };
   const uint32_t components = rtsl_color_components(state.launch);
-#define RTSL_STATE_VARIABLE(name, type)                                                            \
+#define RTSL_STATE_VARIABLE(name, type, ...)                                                       \
   if (isKept(kept##name))                                                                          \
     forEachWord<sizeof(state.name) / sizeof(uint32_t)>(&state.name,                                \
                                                        wordsOf(kept##name, components), visit);

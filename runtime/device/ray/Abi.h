@@ -63,8 +63,8 @@ typedef struct RtslSelection {
 } RtslSelection;
 
 /// The transform of an instance: p -> linear p + translation, from object to world space. Matrices
-/// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double. If it
-/// moves, these are its values at time 0.
+/// are stored as columns. `inverse` is the inverse of exactly these floats, rounded to double. If
+/// it moves, these are its values at time 0.
 typedef struct RtslTransform {
   float linear[9], translation[3];
   double inverse[9]; // of `linear`
@@ -140,7 +140,8 @@ typedef struct RtslTreeItem {
   uint32_t hasVertices;         // 1: it is a triangle. 0: the instance tells what it is
 } RtslTreeItem;
 
-/// An instance that shines, as a light: its material has `emission`, and points on it can be chosen.
+/// An instance that shines, as a light: its material has `emission`, and points on it can be
+/// chosen.
 typedef struct RtslEmitter {
   uint32_t instance;
   // for a mesh or an object with several primitives: of the first of these parts in
@@ -289,7 +290,7 @@ typedef struct RtslState {
 #define RTSL_TYPE_vec3(n) float n[3]
 #define RTSL_TYPE_mat4(n) float n[16]
 #define RTSL_TYPE_color(n) float n[RTSL_MAX_COLOR]
-#define RTSL_STATE_VARIABLE(name, type) RTSL_TYPE_##type(name);
+#define RTSL_STATE_VARIABLE(name, type, ...) RTSL_TYPE_##type(name);
 #include "language/StateVariables.def"
 
   // What `intersect` wrote to scratch members for the hit so far.
@@ -416,8 +417,8 @@ uint32_t rtsl_listed_instances(const RtslLaunch *launch);
 
 /// Finds the nearest hit with Epsilon < t < HitDistance along state's ray and commits it
 /// (HitDistance, instance, primitive, u, v, attributes); instance must be RTSL_NO_HIT before. `how`
-/// is a set of RTSL_FIRST_HIT, RTSL_INVOKE_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT or
-/// RTSL_BAD_RAY.
+/// is a set of RTSL_FIRST_HIT, RTSL_INVOKE_ANY_HIT and RTSL_IN_ORDER. Returns RTSL_MISS, RTSL_HIT
+/// or RTSL_BAD_RAY.
 uint32_t rtsl_traverse(RtslState *state, uint32_t how);
 
 /// `hit(t)` of the language; the rule is in docs/language.md. Returns 1 if t is the candidate's
@@ -450,10 +451,10 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
 /// LightDistance, LightColor and PDF of the state, and returns whether light arrives.
 uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz);
 
-/// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of its
-/// own choice times the area that the point stands for; for a mesh the radiance at a point of the
-/// triangle. `part` is the triangle, or one of the primitives of an object. The mean of the color's
-/// components; not finite: unknown. `sample` numbers the points.
+/// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of
+/// its own choice times the area that the point stands for; for a mesh the radiance at a point of
+/// the triangle. `part` is the triangle, or one of the primitives of an object. The mean of the
+/// color's components; not finite: unknown. `sample` numbers the points.
 float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
                          uint32_t sample);
 

@@ -20,7 +20,7 @@ static TypeContext &typesOf(const Context &context) {
 /// Names of state variables, and of their types.
 static const std::map<std::string, std::string> &stateVariables() {
   static const std::map<std::string, std::string> words = {
-#define RTSL_STATE_VARIABLE(name, type) {#name, #type},
+#define RTSL_STATE_VARIABLE(name, type, ...) {#name, #type},
 #include "language/StateVariables.def"
   };
   return words;

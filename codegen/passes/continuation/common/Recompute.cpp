@@ -8,14 +8,20 @@
 
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/ADT/StringSwitch.h"
 
 namespace rtsl::continuation {
 
+/// Who writes a state variable (StateVariables.def).
+enum class Writer : std::uint8_t { Shader, Sample, Ray };
+
 /// State that only the runtime writes, before a shader runs: calls do not change it.
-static constexpr llvm::StringLiteral fixedState[] = {
-#define RTSL_STATE_SOURCE(name, Source) #name,
-#include "language/StateUses.def"
-};
+static bool isFixed(llvm::StringRef variable) {
+  return llvm::StringSwitch<bool>(variable)
+#define RTSL_STATE_VARIABLE(name, type, writer, need) .Case(#name, Writer::writer != Writer::Shader)
+#include "language/StateVariables.def"
+      .Default(false);
+}
 
 bool StateWrites::add(const StateWrites &other) {
   bool isNew = other.any && !any;
@@ -150,10 +156,10 @@ bool Recompute::isUnchanged(ir::LoadOp load, llvm::StringRef state, ir::SuspendO
   auto [known, isNew] = unchanged.try_emplace({load, suspend}, false);
   if (!isNew)
     return known->second;
-  bool fixed = llvm::is_contained(fixedState, state);
+  const bool fixed = isFixed(state);
   auto writes = [&](mlir::Operation *op) {
     if (llvm::isa<ir::IlluminateOp>(op) && state == "HitPoint")
-      return false; // written by lights, but restored (illuminate in runtime/device/engines/Classic.h)
+      return false; // written by lights, but restored (runtime/device/engines/Classic.h)
     StateWrites found = summary.of(op);
     return found.names.contains(state) || (found.any && !fixed);
   };

@@ -49,7 +49,7 @@ struct Fields {
 
 KeptField fieldOf(llvm::StringRef variable) {
   return llvm::StringSwitch<KeptField>(variable)
-#define RTSL_STATE_VARIABLE(name, type) .Case(#name, device::kept##name)
+#define RTSL_STATE_VARIABLE(name, type, ...) .Case(#name, device::kept##name)
 #include "language/StateVariables.def"
       .Default(device::keptFieldCount);
 }
@@ -57,12 +57,12 @@ KeptField fieldOf(llvm::StringRef variable) {
 /// Fields that are the same for all rays of a sample: they stay in the state (takeFromSample in
 /// runtime/device/ray/Undefined.h).
 Fields sharedByRays() {
-  enum Source : std::uint8_t { Sample, Ray };
+  enum Writer : std::uint8_t { Shader, Sample, Ray };
   Fields shared;
-#define RTSL_STATE_SOURCE(name, Source)                                                            \
-  if (Source == Sample)                                                                            \
+#define RTSL_STATE_VARIABLE(name, type, writer, need)                                              \
+  if (writer == Sample)                                                                            \
     shared.add(Fields::of({device::kept##name}));
-#include "language/StateUses.def"
+#include "language/StateVariables.def"
   return shared;
 }
 
