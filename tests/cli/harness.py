@@ -19,7 +19,8 @@ FINE, DIAGNOSED, USAGE = 0, 1, 2
 SECONDS = 300  # far beyond what any of these takes: only a hang ends there
 
 
-# What a program that is only wrong may take, however large or deep it is; of processor time, for machines may be busy.
+# What a program that is only wrong may take, however large or deep it is; of processor time, for
+# machines may be busy.
 BOUNDED_SECONDS = 30
 BOUNDED_BYTES = 2 << 30
 
@@ -30,8 +31,9 @@ def bounded():
 
 
 def obey_permissions():
-    """For files that a test makes unreadable: root reads everything, unless the program that it starts may not override permissions.
-    (Another user would not do: the build may lie where only root can go.)"""
+    """For files that a test makes unreadable: root reads everything, unless the program that it
+    starts may not override permissions. (Another user would not do: the build may lie where only
+    root can go.)"""
     if os.getuid() == 0:
         drop_from_bounding_set = 24  # PR_CAPBSET_DROP
         for capability in (1, 2):  # CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH
@@ -39,8 +41,9 @@ def obey_permissions():
 
 
 class Case(unittest.TestCase):
-    # The level of optimisation of `rtslc render` where a test gives none; None: that of users. No picture depends on it, which
-    # tests/render and the conformance suite check; a suite about something else takes less time with "-O0".
+    # The level of optimisation of `rtslc render` where a test gives none; None: that of users. No
+    # picture depends on it, which tests/render and the conformance suite check; a suite about
+    # something else takes less time with "-O0".
     level = None
 
     def setUp(self):
@@ -57,7 +60,8 @@ class Case(unittest.TestCase):
         return path
 
     def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False, prepare=None):
-        """Gives (standard output, standard error); fails unless the exit status is the expected one (None: any)."""
+        """Gives (standard output, standard error); fails unless the exit status is the expected one
+        (None: any)."""
         if self.level and arguments[0] == "render" and not any(str(argument).startswith("-O") for argument in arguments):
             arguments += (self.level,)
         done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""fast.py RTSLC SOURCE LIBRARY-FOLDER CPP-RENDER: C++ of --fp=fast differs from strict C++ in last digits alone, and strict C++
-keeps its bits in a program that has both."""
+"""fast.py RTSLC SOURCE LIBRARY-FOLDER CPP-RENDER: C++ of --fp=fast differs from strict C++ in last
+digits alone, and strict C++ keeps its bits in a program that has both."""
 import json
 import pathlib
 import shutil
@@ -33,7 +33,8 @@ with tempfile.TemporaryDirectory(prefix="rtsl-fast-") as name:
     scene["render"].update(size=[96, 54], spp=4)
     (folder / "scene.json").write_text(json.dumps(scene))
     for compiler in filter(shutil.which, ("g++", "clang++-22")):
-        # Each in one program with the other, whose functions come first: without optimisation all are called by name.
+        # Each in one program with the other, whose functions come first: without optimisation all
+        # are called by name.
         for mode, other, flags in (("strict", "fast", "-O0"), ("fast", "strict", "-O2")):
             run(rtslc, "compile", *shaders, "--emit=cpp", f"--fp={mode}", "-o", folder / "shaders.cpp")
             run(rtslc, "compile", *shaders, "--emit=cpp", f"--fp={other}", "-o", folder / "other.cpp")

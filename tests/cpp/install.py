@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""install.py CMAKE BUILD SOURCE CC CXX: installs into a folder, and builds the example and a C program from there alone."""
+"""install.py CMAKE BUILD SOURCE CC CXX: installs into a folder, and builds the example and a C
+program from there alone."""
 import json
 import os
 import pathlib
@@ -39,7 +40,8 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     generated = next(example.rglob("glass.cpp"))
 
     def builds_anew():
-        """Does a build compile the shaders again? That shows in the file's time, for it is written anew even if it is the same."""
+        """Does a build compile the shaders again? That shows in the file's time, for it is written
+        anew even if it is the same."""
         before = generated.stat().st_mtime_ns
         run(cmake, "--build", example)
         return generated.stat().st_mtime_ns != before

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""picture.py RTSLC GLASS PROGRAM...: each program's picture is that of the scene file, to the last bit."""
+"""picture.py RTSLC GLASS PROGRAM...: each program's picture is that of the scene file, to the last
+bit."""
 import pathlib
 import subprocess
 import sys

@@ -1,4 +1,5 @@
-"""What the tests of printed C++ share: running programs, and the options with which both compilers have no warnings."""
+"""What the tests of printed C++ share: running programs, and the options with which both compilers
+have no warnings."""
 import subprocess
 import sys
 
@@ -28,8 +29,8 @@ def built_with(source, library):
 
 
 def precompiled_header(compiler, level, flags, folder):
-    """The options that use `rtsl/shader.h` precompiled with these flags, for files that define no macro before it: parsing the
-    header takes most of the time of compiling a small program."""
+    """The options that use `rtsl/shader.h` precompiled with these flags, for files that define no
+    macro before it: parsing the header takes most of the time of compiling a small program."""
     name = "shader.h.gch" if compiler == "g++" else "shader.h.pch"
     made = folder / f"{compiler}{level}" / "rtsl" / name
     if not made.exists():

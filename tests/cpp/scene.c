@@ -1,5 +1,5 @@
-/* The C interface renders what scenes/scenes.py calls its events: scene PICTURE.exr. What shaders print goes to standard
- * output. Without an argument it says what goes wrong. */
+/* The C interface renders what scenes/scenes.py calls its events: scene PICTURE.exr. What shaders
+ * print goes to standard output. Without an argument it says what goes wrong. */
 #include <rtsl/rtsl.h>
 
 #include <math.h>
@@ -134,7 +134,8 @@ int main(int count, char **arguments) {
   settings.width = settings.height = 4;
   settings.samplesPerPixel = 2;
   settings.maxDepth = 5;
-  if (!rtslRenderToFile(scene, &settings, arguments[1]) || !rtslTakePrinted(scene, show, &lines) || lines == 0)
+  if (!rtslRenderToFile(scene, &settings, arguments[1]) ||
+      !rtslTakePrinted(scene, show, &lines) || lines == 0)
     return fail("picture");
   /* Into memory, and what it prints is there once. */
   if (rtslSceneChannels(scene) != 3 || !rtslRender(scene, &settings, pixels) || !(pixels[0] > 0.0f))
@@ -143,7 +144,8 @@ int main(int count, char **arguments) {
   if (rtslLastRendering().samples != 32 || rtslLastRendering().samplesNotFinite != 0 ||
       rtslLastRendering().raysTooDeep == 0)
     return fail("what the rendering met");
-  if (!rtslTakePrinted(scene, show, &again) || again != lines || !rtslTakePrinted(scene, show, &again) || again != lines)
+  if (!rtslTakePrinted(scene, show, &again) || again != lines ||
+      !rtslTakePrinted(scene, show, &again) || again != lines)
     return fail("printed lines");
   rtslSceneDestroy(scene);
   return triangles();

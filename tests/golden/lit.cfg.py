@@ -1,5 +1,5 @@
-# How lit runs the golden tests: every file with a RUN line in this folder. `rtsl-opt`, `rtslc` and `FileCheck` on RUN
-# lines are the programs of the build that is tested.
+# How lit runs the golden tests: every file with a RUN line in this folder. `rtsl-opt`, `rtslc` and
+# `FileCheck` on RUN lines are the programs of the build that is tested.
 import os
 
 import lit.formats

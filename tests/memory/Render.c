@@ -1,5 +1,6 @@
-// Renders the scene of a package with a program that MemorySanitizer watches (tests/memory/run). All that the program reads was
-// read from the file or written by itself: uninitialized memory is poisoned by malloc. Exit status: 0, or that of the sanitizer.
+// Renders the scene of a package with a program that MemorySanitizer watches (tests/memory/run).
+// All that the program reads was read from the file or written by itself: uninitialized memory is
+// poisoned by malloc. Exit status: 0, or that of the sanitizer.
 #include "runtime/device/ray/Abi.h"
 
 #include <sanitizer/msan_interface.h>
@@ -46,7 +47,8 @@ int main(int argc, char **argv) {
     fputs("usage: render PACKAGE\n", stderr);
     return 2;
   }
-  const uint32_t *options = (const uint32_t *)((const char *)readSection(file, infoSection) + widthAt);
+  const char *info = (const char *)readSection(file, infoSection);
+  const uint32_t *options = (const uint32_t *)(info + widthAt);
   char *scene = readSection(file, sceneSection);
   const uint64_t *pointers = readSection(file, pointerSection);
   for (uint64_t i = 0; i < sectionOf(file, pointerSection).bytes / sizeof *pointers; ++i) {

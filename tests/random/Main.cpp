@@ -4,8 +4,8 @@
 //   rtsl-random --first 0 --count 500 --threads 8   runs programs on every usual path and compares
 //   rtsl-random ... --shrink                        and makes those that fail as small as they go
 //
-// Exit status: 0 all agree, 1 some do not (or of 25 programs and more less than half sent a ray that
-// met something: then hardly a material ran), 2 wrong arguments.
+// Exit status: 0 all agree, 1 some do not (or of 25 programs and more less than half sent a ray
+// that met something: then hardly a material ran), 2 wrong arguments.
 //
 //===----------------------------------------------------------------------===//
 #include "Shrink.h"

@@ -26,7 +26,8 @@ class Arguments(Case):
         return error
 
     def options(self):
-        """Every option with what --help says that it takes: (program, command, option, values, description)."""
+        """Every option with what --help says that it takes: (program, command, option, values,
+        description)."""
         for command in (*COMMANDS, None):
             program, first = (RTSLC, [command]) if command else (RTSL_RUN, [])
             text = subprocess.run([program, *first, "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout

@@ -1,4 +1,5 @@
-"""Ctrl-C and SIGTERM: the picture so far is written and said to be that, with a status of its own."""
+"""Ctrl-C and SIGTERM: the picture so far is written and said to be that, with a status of its
+own."""
 
 import json
 import os
@@ -25,7 +26,8 @@ class Interruptions(Case):
         self.glass_scene()
 
     def wait_for_handler(self, running, by, isCaught=True):
-        """Until the program catches the signal, which it does from before the first sample until the first signal."""
+        """Until the program catches the signal, which it does from before the first sample until
+        the first signal."""
         status = pathlib.Path(f"/proc/{running.pid}/status")
         for _ in range(SECONDS * 50):
             self.assertIsNone(running.poll(), "it was still to run")
@@ -37,7 +39,8 @@ class Interruptions(Case):
 
     def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.2, again=False):
         """Standard output and error of a rendering that is stopped some time after it began."""
-        # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would be.
+        # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would
+        # be.
         running = subprocess.Popen([program, *arguments], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
         self.wait_for_handler(running, by)
@@ -76,7 +79,8 @@ class Interruptions(Case):
                 self.assertGreater(figures["samples"], 0)
 
     def test_finished_pixels_have_their_bits(self):
-        """What was done before is what the whole picture has there; a pixel that was begun has its samples so far."""
+        """What was done before is what the whole picture has there; a pixel that was begun has its
+        samples so far."""
         few = (*SIZE, "--spp", "2000")
         self.interrupt(RTSLC, "render", "scene.json", "-o", "part.exr", "-q", *few, after=1)
         self.run_rtslc("render", "scene.json", "-o", "whole.exr", "-q", *few)

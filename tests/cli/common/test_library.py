@@ -1,4 +1,5 @@
-"""Modules of the standard library: which files an import reads, and what is said of modules that do not exist."""
+"""Modules of the standard library: which files an import reads, and what is said of modules that do
+not exist."""
 
 import json
 import pathlib
@@ -43,7 +44,8 @@ class Library(Case):
         self.assertEqual([each["code"] for each in messages], ["E0207"], messages)
 
     def test_the_author_s_names_do_not_reach_the_library(self):
-        """Functions with the names of built-in ones, and names that an engine has: the picture must not change."""
+        """Functions with the names of built-in ones, and names that an engine has: the picture must
+        not change."""
         own = GREY.replace(";\n", " {\n", 1) + "};\n"
         names = """
             float max(float a, float b, float c) { return 1.0; }
@@ -83,7 +85,8 @@ class Library(Case):
         self.assertNotIn("PinholeCamera", rule)
 
     def test_spaces(self):
-        """A ball with the center of object space, somewhere far away: points, vectors and normals of its hits."""
+        """A ball with the center of object space, somewhere far away: points, vectors and normals
+        of its hits."""
         self.scene()
         self.write("Spaces.rtsl", """import std.spaces;
             class Spaces : rt_Material {
@@ -110,7 +113,8 @@ class Library(Case):
                 self.assertAlmostEqual(value, wanted, delta=0.001, msg=line)
 
     def test_an_object_may_be_of_a_class_far_below_that_of_a_member(self):
-        # Gold : Conductor : Scatterer; no object is a Conductor, so the program does not have that class.
+        # Gold : Conductor : Scatterer; no object is a Conductor, so the program does not have that
+        # class.
         self.scene(**{"import": ["std.primitives", "std.cameras", "std.materials"],
                       "objects": [{**SPHERE, "material": {"class": "TwoSided", "front": {"class": "Gold"}, "back": {"class": "Gold"}}}]})
         self.run_rtslc("render", "scene.json", "-o", "picture.png")

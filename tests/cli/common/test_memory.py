@@ -1,4 +1,5 @@
-"""Running out of memory, wherever it happens: a command succeeds, or fails with status 1 and a message that names the cause."""
+"""Running out of memory, wherever it happens: a command succeeds, or fails with status 1 and a
+message that names the cause."""
 
 import os
 import resource

@@ -1,4 +1,5 @@
-"""Where commands write: every command with every output option, onto what it reads, to a full disk, and to a folder."""
+"""Where commands write: every command with every output option, onto what it reads, to a full disk,
+and to a folder."""
 
 import json
 import os
@@ -34,7 +35,8 @@ class Outputs(Case):
     def mesh(self):
         return next(path.name for path in self.folder.iterdir() if path.suffix == ".obj")
 
-    # Each row: the program, its arguments with OUT where the output stands, and the files that it reads.
+    # Each row: the program, its arguments with OUT where the output stands, and the files that it
+    # reads.
     def writers(self):
         shaders = sorted(path.name for path in self.folder.glob("*.rtsl") if path.name not in ("grey.rtsl", "other.rtsl"))
         read_by_scene = ["scene.json", self.mesh(), shaders[0]]

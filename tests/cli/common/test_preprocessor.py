@@ -187,7 +187,8 @@ class Preprocessor(Case):
         glass = self.folder / "Glass.rtsl"
         text = glass.read_text()
         (self.folder / "sub").mkdir()
-        # From the scene's folder, though the shader lies elsewhere, and with what the command line defines.
+        # From the scene's folder, though the shader lies elsewhere, and with what the command line
+        # defines.
         (self.folder / "sub" / "Glass.rtsl").write_text("#include \"common/one.rtsl\"\n#if ONE != 1\n#error no\n#endif\n" + text)
         self.write("common/one.rtsl", "#ifndef ONE\n#define ONE 1\n#endif\n")
         scene = json.loads((self.folder / "scene.json").read_text())

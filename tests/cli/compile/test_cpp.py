@@ -1,4 +1,5 @@
-"""rtslc compile --emit=cpp: bad input and bad outputs, names, dependencies; and that the manual lists every option."""
+"""rtslc compile --emit=cpp: bad input and bad outputs, names, dependencies; and that the manual
+lists every option."""
 
 import os
 import pathlib

@@ -1,5 +1,5 @@
-"""Large programs: code grows with the program and not with its square, and what is done about that shows in no picture.
-How long it takes is measured by `bench/run scaling`."""
+"""Large programs: code grows with the program and not with its square, and what is done about that
+shows in no picture. How long it takes is measured by `bench/run scaling`."""
 
 import json
 import unittest
@@ -11,7 +11,8 @@ WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversa
 
 
 def traces(count):
-    """A material with so many traces, each in an `if`: after each of them all later ones can be reached."""
+    """A material with so many traces, each in an `if`: after each of them all later ones can be
+    reached."""
     steps = "".join(f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
                     f"      d = normalize(d + vec3(0.1, {i % 5}.0, 0.2));\n    }}\n" for i in range(count))
     return ("class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);\n"

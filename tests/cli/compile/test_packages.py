@@ -1,5 +1,5 @@
-"""rtslc pack and rtsl-run: the same picture without the compiler, and every package and device that is not as it must be is
-refused with a reason."""
+"""rtslc pack and rtsl-run: the same picture without the compiler, and every package and device that
+is not as it must be is refused with a reason."""
 
 import json
 import os
@@ -27,7 +27,8 @@ class Packages(Case):
         return Packages.packed
 
     def run_package(self, *arguments, status=FINE, fake=None, content=None):
-        """rtsl-run on the package, or on other bytes; `fake` names a way in which the stand-in of the driver fails."""
+        """rtsl-run on the package, or on other bytes; `fake` names a way in which the stand-in of
+        the driver fails."""
         self.write("x.rtslpkg", self.package() if content is None else content)
         environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"], "FAKE_CUDA": fake or ""}
         done = subprocess.run([RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *arguments], cwd=self.folder, timeout=SECONDS,

@@ -20,7 +20,8 @@ class Ptx(Case):
 
     @unittest.skipUnless(PTXAS, "ptxas is not installed")
     def test_the_assembler_accepts_it(self):
-        """All programs for the oldest GPU, which has the fewest instructions, and some of each kind for each later one."""
+        """All programs for the oldest GPU, which has the fewest instructions, and some of each kind
+        for each later one."""
         self.assertGreaterEqual(len(SCENES), 4)
         for number, scene in enumerate(SCENES):
             shaders = sorted(scene.parent.glob("*.rtsl"))

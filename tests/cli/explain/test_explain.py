@@ -12,8 +12,9 @@ from harness import EXAMPLES, SECONDS, USAGE, Case
 
 SMALL = ("--size", "32x18", "--spp", "2", "-q")
 
-# A scene in which much is left out: a class without objects, a method that nothing runs, results that are not read, a scratch member
-# that is not read, a material that reads no normal, a ray type that is never sent, no lights, one class everywhere.
+# A scene in which much is left out: a class without objects, a method that nothing runs, results
+# that are not read, a scratch member that is not read, a material that reads no normal, a ray type
+# that is never sent, no lights, one class everywhere.
 SHADERS = """
 class Eye : rt_Camera {
   public vec3 position;
@@ -176,13 +177,14 @@ class Explain(Case):
             self.assertLessEqual(one["slower"]["median"], one["slower"]["high"])
 
     def test_keeping_changes_no_picture(self):
-        # The second scene's material reads no normal, and sends shadow rays, for which the runtime does.
+        # The second scene's material reads no normal, and sends shadow rays, for which the runtime
+        # does.
         self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}},
                          lights=[{"class": "Lamp", "position": [3, 1, 2]}])
         (self.folder / "scene.json").rename(self.folder / "lit.json")
         self.write_scene()
-        # Code is kept or left out before traces are compiled, and before machine code is optimised: the examples have
-        # one kind of trace each, in turn, without optimisation.
+        # Code is kept or left out before traces are compiled, and before machine code is optimised:
+        # the examples have one kind of trace each, in turn, without optimisation.
         traces = ("recurse", "split")
         rows = [(self.folder / scene, f"--trace={trace}") for scene in ("scene.json", "lit.json") for trace in traces]
         rows += [(scene, f"--trace={traces[number % 2]}", "-O0") for number, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json")))]
@@ -222,7 +224,8 @@ class Explain(Case):
         self.assertGreater(saved["objects"]["instructions"], 10)
 
     def change_methods(self, items):
-        """Empties the void methods that are left out, where no class needs one of that name. How many there were."""
+        """Empties the void methods that are left out, where no class needs one of that name. How
+        many there were."""
         needed = {subject.split(".")[-1] for item in ("methods", "states") for subject, entry in items[item].items() if entry[0]}
         changed = 0
         for item in self.document["items"]:

@@ -1,4 +1,5 @@
-"""rtslc new: files to start from. Each is correct and renders; nothing is overwritten or half written."""
+"""rtslc new: files to start from. Each is correct and renders; nothing is overwritten or half
+written."""
 
 import os
 import pathlib

@@ -1,7 +1,9 @@
-"""docs/tutorial.md: its files, commands, outputs and pictures. `test_tutorial.py --renew` writes outputs and pictures anew.
+"""docs/tutorial.md: its files, commands, outputs and pictures. `test_tutorial.py --renew` writes
+outputs and pictures anew.
 
-A file's text follows its name; a diff changes it. A command is followed by what it prints; it fails if that has an error. The
-picture that is shown after commands is the last one that they rendered."""
+A file's text follows its name; a diff changes it. A command is followed by what it prints; it fails
+if that has an error. The picture that is shown after commands is the last one that they
+rendered."""
 
 import os
 import re

@@ -1,4 +1,5 @@
-"""Buffers from files: .npy, .csv, .ply and bytes, as members of every type, and files that are wrong."""
+"""Buffers from files: .npy, .csv, .ply and bytes, as members of every type, and files that are
+wrong."""
 
 import json
 import random

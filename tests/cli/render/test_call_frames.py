@@ -1,4 +1,5 @@
-"""Methods that trace and are called through references: recursion of objects, with frames of its own on the machine."""
+"""Methods that trace and are called through references: recursion of objects, with frames of its
+own on the machine."""
 
 import json
 import os

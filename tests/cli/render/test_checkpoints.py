@@ -1,4 +1,5 @@
-"""`rtslc render --checkpoint`: a rendering that goes on where it was interrupted, whatever has ended it."""
+"""`rtslc render --checkpoint`: a rendering that goes on where it was interrupted, whatever has
+ended it."""
 
 import json
 import os
@@ -223,7 +224,8 @@ class Writing(Checkpoints):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
     def test_a_full_disk_at_the_end(self):
-        """A limit on the size of files stands in for it. The old checkpoint stays, and the picture is written."""
+        """A limit on the size of files stands in for it. The old checkpoint stays, and the picture
+        is written."""
         self.render("a.exr", "--spp=2", "--checkpoint=a.ckpt")
         before = self.checkpoint()
         arguments = self.arguments("a.png", "--spp=5", "--checkpoint=a.ckpt", "--diagnostics=json")

@@ -1,4 +1,5 @@
-"""What ends recursion: the scene's depth limit, chance, the weight of a ray, or the depth that a shader requests."""
+"""What ends recursion: the scene's depth limit, chance, the weight of a ray, or the depth that a
+shader requests."""
 
 import json
 import unittest
@@ -75,7 +76,8 @@ class DepthLimits(Case):
         self.write("scene.json", json.dumps(scene))
 
     def overflows(self, material, depth):
-        """How many of the 128 samples met the limit: the same on each way, with the same picture."""
+        """How many of the 128 samples met the limit: the same on each way, with the same
+        picture."""
         self.scene(material, depth)
         counts = []
         for i, way in enumerate(WAYS):

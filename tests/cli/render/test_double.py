@@ -1,4 +1,5 @@
-"""--fp=double: what is folded, and what the scene sets, is computed in double; --keep changes no picture."""
+"""--fp=double: what is folded, and what the scene sets, is computed in double; --keep changes no
+picture."""
 
 import json
 import unittest

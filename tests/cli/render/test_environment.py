@@ -83,7 +83,8 @@ class Images(EnvironmentCase):
             self.assert_gray(1.0, 0.01)
 
     def test_both_ways_find_the_same_light(self):
-        """Smooth, glossy and diffuse surfaces and a lamp under a sky with strong contrast, rotated and in each wrap."""
+        """Smooth, glossy and diffuse surfaces and a lamp under a sky with strong contrast, rotated
+        and in each wrap."""
         values = [0.2 + 5 * math.exp(-((i % 16 - 11) ** 2 + (i // 16 - 5) ** 2)) for i in range(16 * 8)]
         for wrap, material in ((("repeat", "clamp"), {"class": "Conductor", "alpha": 0.2}), (("black", "black"), {"class": "Plastic"}),
                                (("mirror", "mirror"), CLAY)):

@@ -1,5 +1,5 @@
-"""rtslc render --target=gpu: the scene goes to the driver whole, what is wrong with a device is said, and where the machine has a
-GPU the picture has the bits of the host megakernel."""
+"""rtslc render --target=gpu: the scene goes to the driver whole, what is wrong with a device is
+said, and where the machine has a GPU the picture has the bits of the host megakernel."""
 
 import ctypes
 import json
@@ -53,7 +53,8 @@ class Gpu(Case):
         self.assertEqual(json.loads(out)["laneBytes"], gpu["laneBytes"])
 
     def test_a_rendering_goes_on_with_its_sums(self):
-        """They go to the device and come back; sample n of the stand-in is n times what it paints."""
+        """They go to the device and come back; sample n of the stand-in is n times what it
+        paints."""
         whole = json.loads(self.render(*SMALL[:2], "--spp=9", "--checkpoint=whole.ckpt", "--json")[0])
         (self.folder / "a.exr").rename(self.folder / "whole.exr")
         for spp in (2, 5, 9):

@@ -1,4 +1,5 @@
-"""The scene graph beyond instances: objects that hold several primitives, selectors, ids, and variables along the graph."""
+"""The scene graph beyond instances: objects that hold several primitives, selectors, ids, and
+variables along the graph."""
 
 import copy
 import json
@@ -127,8 +128,9 @@ class Counts(GraphCase):
             self.assert_same_bits(first, second)
 
     def test_a_ray_that_leaves_a_primitive_meets_its_neighbours(self):
-        """Their t is known to 0.1 only: within that, a ray must not meet the ball that it leaves, but must meet others, however they
-        are grouped. Two rays leave each hit, so that the second one starts after another ray was traced."""
+        """Their t is known to 0.1 only: within that, a ray must not meet the ball that it leaves,
+        but must meet others, however they are grouped. Two rays leave each hit, so that the second
+        one starts after another ray was traced."""
         self.write("Rough.rtsl", """
             class RoughBalls : Balls {
               void intersect() {
@@ -186,8 +188,9 @@ class Counts(GraphCase):
         self.assert_same_bits(first, second)
 
     def test_primitives_of_one_object_shine_like_several_objects(self):
-        """Chosen by what each sends out; the mean of the picture is known, and must not depend on how they are grouped. (Their
-        emission reads no state, above all no normal, which the density of a point on them depends on.)"""
+        """Chosen by what each sends out; the mean of the picture is known, and must not depend on
+        how they are grouped. (Their emission reads no state, above all no normal, which the density
+        of a point on them depends on.)"""
         self.write("Floor.rtsl", """
 class Floor : rt_Primitive {
   void intersect() {
@@ -214,7 +217,8 @@ class Under : rt_Camera {
 
         together = lit({"lamps": balls(*lamps, transform={"scale": 1.25})}, ["lamps"])
         apart = lit({f"l{i}": balls(lamp, transform={"scale": 1.25}) for i, lamp in enumerate(lamps)}, [f"l{i}" for i in range(4)])
-        # A sphere of radiance L under the angle asin(r / d) lights a white floor by L (r / d)^2 cos(theta).
+        # A sphere of radiance L under the angle asin(r / d) lights a white floor by L (r / d)^2
+        # cos(theta).
         distances = [math.hypot(*lamp[:3]) for lamp in lamps]
         exact = sum(8 * (lamp[3] / d) ** 2 * lamp[1] / d for lamp, d in zip(lamps, distances))
         for one in (together, apart):

@@ -1,4 +1,5 @@
-"""Images: sampler2D and sampler3D against an oracle in double precision, on every path, and image files that are wrong."""
+"""Images: sampler2D and sampler3D against an oracle in double precision, on every path, and image
+files that are wrong."""
 
 import json
 import math
@@ -10,6 +11,8 @@ import unittest
 import zlib
 
 from harness import RTSLC, SECONDS, Case
+from image_files import png, hdr, tiff
+from image_oracle import Oracle, decode_srgb, encode_srgb
 
 RTSL_RUN = os.environ["RTSL_RUN"]
 
@@ -77,135 +80,6 @@ class Bindless : rt_RayGeneration {
 """
 
 
-def png(width, height, pixel, bits=8, channels=3):
-    """A PNG file of integers; `pixel(x, y)` from the top left."""
-    color_type = {1: 0, 2: 4, 3: 2, 4: 6}[channels]
-    form = ">%d%s" % (channels, "B" if bits == 8 else "H")
-    rows = b"".join(b"\0" + b"".join(struct.pack(form, *pixel(x, y)) for x in range(width)) for y in range(height))
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    header = struct.pack(">IIBBBBB", width, height, bits, color_type, 0, 0, 0)
-    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
-
-
-def hdr(width, height, pixel):
-    """A Radiance file; `pixel` gives mantissas and an exponent."""
-    header = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n" % (height, width)
-    return header + b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width))
-
-
-def tiff(width, height, pixel, form, sample_format):
-    """A little-endian TIFF of three channels, not compressed; `form` is the letter of struct."""
-    data = b"".join(struct.pack("<3" + form, *pixel(x, y)) for y in range(height) for x in range(width))
-    bits = 8 * struct.calcsize(form)
-    entries = [(256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, 8), (259, 3, 1, 1), (262, 3, 1, 2), (273, 4, 1, 200),
-               (277, 3, 1, 3), (278, 4, 1, height), (279, 4, 1, len(data)), (339, 3, 3, 14)]
-    directory = struct.pack("<H", len(entries)) + b"".join(struct.pack("<HHII", *e) for e in entries) + struct.pack("<I", 0)
-    head = b"II*\0" + struct.pack("<I", 20) + struct.pack("<3H", *[bits] * 3) + struct.pack("<3H", *[sample_format] * 3)
-    return (head + directory).ljust(200, b"\0") + data
-
-
-def decode_srgb(value):
-    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
-
-
-def encode_srgb(value):
-    return 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-
-
-class Oracle:
-    """An image as a list of levels; a level maps (x, y, z) from the lower left front to four numbers."""
-
-    def __init__(self, size, texel, wrap, filter, anisotropy=16, round_level=lambda value: value):
-        self.wrap, self.filter, self.anisotropy = wrap, filter, anisotropy
-        self.sizes, self.levels = [tuple(size)], [{at: texel(*at) for at in self.all(size)}]
-        if filter in ("trilinear", "anisotropic"):
-            while max(self.sizes[-1]) > 1:
-                before = self.sizes[-1]
-                after = tuple(max(n // 2, 1) for n in before)
-                self.levels.append({at: round_level(self.mean(self.levels[-1], before, after, at)) for at in self.all(after)})
-                self.sizes.append(after)
-
-    @staticmethod
-    def all(size):
-        return [(x, y, z) for x in range(size[0]) for y in range(size[1]) for z in range(size[2])]
-
-    @staticmethod
-    def mean(level, before, after, at):
-        axes = []
-        for n, m, i in zip(before, after, at):
-            begin, end = i * n / m, (i + 1) * n / m
-            axes.append([(j, min(end, j + 1) - max(begin, j)) for j in range(n) if min(end, j + 1) > max(begin, j)])
-        total = [0.0] * 4
-        weights = 0.0
-        for x, a in axes[0]:
-            for y, b in axes[1]:
-                for z, c in axes[2]:
-                    weights += a * b * c
-                    total = [t + a * b * c * v for t, v in zip(total, level[x, y, z])]
-        return tuple(t / weights for t in total)
-
-    def texel(self, level, at):
-        place = []
-        for i, n, wrap in zip(at, self.sizes[level], self.wrap):
-            if wrap == "repeat":
-                i %= n
-            elif wrap == "mirror":
-                i %= 2 * n
-                i = min(i, 2 * n - 1 - i)
-            elif wrap == "clamp":
-                i = min(max(i, 0), n - 1)
-            elif not 0 <= i < n:
-                return (0.0,) * 4
-            place.append(i)
-        return self.levels[level][tuple(place)]
-
-    def linear(self, p, level):
-        position = [c * n - 0.5 for c, n in zip(p, self.sizes[level])]
-        corner = [math.floor(c) for c in position]
-        total = [0.0] * 4
-        for step in self.all((2, 2, 2 if len(p) == 3 else 1)):
-            weight = 1.0
-            for c, low, s in zip(position, corner, step):
-                weight *= c - low if s else 1 - (c - low)
-            if weight:
-                at = [low + s for low, s in zip(corner, step)] + [0] * (3 - len(p))
-                total = [t + weight * v for t, v in zip(total, self.texel(level, at))]
-        return total
-
-    def sample(self, p, lod=0.0):
-        if self.filter == "nearest":
-            return self.texel(0, [math.floor(c * n) for c, n in zip(p, self.sizes[0])] + [0] * (3 - len(p)))
-        lod = min(max(lod, 0.0), len(self.levels) - 1)
-        finer = int(lod)
-        value = self.linear(p, finer)
-        if lod == finer:
-            return value
-        return [a + (b - a) * (lod - finer) for a, b in zip(value, self.linear(p, finer + 1))]
-
-    def sample_grad(self, p, dx, dy):
-        if self.filter in ("nearest", "bilinear"):
-            return self.sample(p)
-        sides = [math.sqrt(sum((c * n) ** 2 for c, n in zip(d, self.sizes[0]))) for d in (dx, dy)]
-        longer, shorter = max(sides), min(sides)
-        if self.filter == "trilinear":
-            return self.sample(p, math.log2(longer) if longer else 0.0)
-        count = min(math.ceil(longer / shorter), self.anisotropy) if longer > shorter > 0 else self.anisotropy if longer > 0 else 1
-        along = dx if sides[0] >= sides[1] else dy
-        total = [0.0] * 4
-        for i in range(count):
-            at = [c + ((i + 0.5) / count - 0.5) * d for c, d in zip(p, along)]
-            total = [t + v for t, v in zip(total, self.sample(at, math.log2(longer / count)))]
-        return [t / count for t in total]
-
-    def load(self, at, level=0):
-        level = min(level, len(self.levels) - 1)
-        inside = [min(max(i, 0), n - 1) for i, n in zip(list(at) + [0] * (3 - len(at)), self.sizes[level])]
-        return self.levels[level][tuple(inside)]
-
-
 def numbers_of(line):
     return [float(n) for n in line.split(": ", 1)[1].replace("vec4(", "").replace("ivec2(", "").replace("ivec3(", "")
             .replace(")", "").replace(",", " ").split()]
@@ -227,8 +101,8 @@ class Images(Case):
         return [numbers_of(line) for line in output.splitlines()]
 
     def check(self, cases, axes, seed=1, count=40, options=()):
-        """Random lookups, some far outside of [0, 1], against oracles: a list of (oracle, image, tolerance), the latter as a part of
-        the largest texel."""
+        """Random lookups, some far outside of [0, 1], against oracles: a list of (oracle, image,
+        tolerance), the latter as a part of the largest texel."""
         chance = random.Random(seed)
         single = lambda x: struct.unpack("<f", struct.pack("<f", x))[0]
         vector = lambda low, high: [single(chance.uniform(low, high)) for _ in range(axes)]

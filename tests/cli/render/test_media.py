@@ -41,7 +41,8 @@ class MediaCase(Case):
 
 class ClosedForms(MediaCase):
     def test_beers_law(self):
-        """Of a sky seen through a medium that only absorbs, by delta tracking; of a light on a floor, without noise."""
+        """Of a sky seen through a medium that only absorbs, by delta tracking; of a light on a
+        floor, without noise."""
         absorption = [0.7, 0.1, 1.0]
         self.scene({"class": "HomogeneousMedium", "scattering": 0, "absorption": absorption}, background=SKY, spp=256)
         self.assert_color([math.exp(-2 * a) for a in absorption], 0.02)
@@ -51,7 +52,8 @@ class ClosedForms(MediaCase):
         self.assert_color([2 * math.exp(-4 * a) for a in absorption], 0.04)
 
     def test_single_scattering_in_a_slab(self):
-        """Light that enters at an angle, is scattered once and leaves: an integral of exponentials."""
+        """Light that enters at an angle, is scattered once and leaves: an integral of
+        exponentials."""
         s, a, g = 0.8, 0.4, 0.5
         for elevation in (90, 40):
             mu = math.sin(math.radians(elevation))
@@ -62,7 +64,8 @@ class ClosedForms(MediaCase):
             self.assert_color([s * phase * math.pi * 2 * (1 - math.exp(-rate)) / rate] * 3, 0.01)
 
     def test_a_grid(self):
-        """Density that rises along z, for all rays alike: what passes depends on its integral alone."""
+        """Density that rises along z, for all rays alike: what passes depends on its integral
+        alone."""
         passes = math.exp(-1.5 * 2 * (0.25 * 0.25 + 0.5 * 0.625 + 0.25 * 1))
         self.scene(self.grid([0.25] * 4 + [1.0] * 4, [2, 2, 2], scattering=0, absorption=1.5), background=SKY, spp=1024)
         self.assert_color([passes] * 3, 0.015)
@@ -78,7 +81,8 @@ class ClosedForms(MediaCase):
             self.assert_color([1, 1, 1], 0.01)
 
     def test_ways_to_find_light(self):
-        """A lamp in the medium, found by the search and by chance; and one behind the boundary, by chance alone."""
+        """A lamp in the medium, found by the search and by chance; and one behind the boundary, by
+        chance alone."""
         ball = {"class": "Sphere", "center": [0.5, 0.2, 0], "radius": 0.25}
         fog = {"class": "HomogeneousMedium", "scattering": [0.5, 0.6, 0.7], "absorption": 0.2, "anisotropy": 0.3}
         lamp = {"primitive": ball, "material": {"class": "Emitter", "radiance": 9}}

@@ -112,7 +112,8 @@ class EveryPath(MotionCase):
             self.assert_same_bits(self.render(lit, *options), expected, options)
 
     def test_points_vectors_and_normals_find_back_to_object_space(self):
-        """The ball is a ball there, and its normals are, below every transform and at every time."""
+        """The ball is a ball there, and its normals are, below every transform and at every
+        time."""
         self.write("Spaces.rtsl", """
             import std.spaces;
             class Spaces : rt_Material {
@@ -160,7 +161,8 @@ class Times(MotionCase):
         return scene(nodes, root="one", **more, render={"size": [48, 32], "spp": 4, "shutter": [time, time]})
 
     def test_rays_see_the_scene_at_their_time(self):
-        """A picture with the shutter at a time is that of a scene at rest, as far as roundings go."""
+        """A picture with the shutter at a time is that of a scene at rest, as far as roundings
+        go."""
         def at(time):
             """The ball of `moving`, at rest."""
             degrees = 720 * time
@@ -182,7 +184,8 @@ class Times(MotionCase):
         self.assert_same_bits(self.render(self.frozen(0.5, moving)), self.render(self.frozen(0.5, still)))
 
     def test_blur_is_the_mean_over_time(self):
-        """A bright square that crosses a quarter of the picture is seen there for a share of the time."""
+        """A bright square that crosses a quarter of the picture is seen there for a share of the
+        time."""
         self.write("Glow.rtsl", "class Glow : rt_Material; void shade() { rt_SampleColor = color(1.0); }")
         moving = scene({"one": {"mesh": "flat.obj", "material": "glow", "transform": {"keys": [{"translate": [-4, 0, 0]}, {"translate": [4, 0, 0]}]}}},
                        root="one", background=0, materials={"glow": {"class": "Glow"}}, render={"size": [32, 32], "spp": 64})

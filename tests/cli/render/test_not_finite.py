@@ -1,5 +1,5 @@
-"""Samples that are infinite or not a number, and rays that the depth limit cuts off: left out, counted and said, the same on
-every path."""
+"""Samples that are infinite or not a number, and rays that the depth limit cuts off: left out,
+counted and said, the same on every path."""
 
 import json
 import os
@@ -84,8 +84,8 @@ class NotFinite(ShaderCase):
                 for key in ("samplesNotFinite", "pixelsWithoutSample", "notFinite"):
                     self.assertEqual(figures[key], first[key], key)
                 self.assert_same_bits("a.exr", f"{i}.exr")
-        # Each good sample lies between 0.5 and 0.625, and so does the mean of a pixel that has one; a bad one that counted as 0
-        # would pull it below.
+        # Each good sample lies between 0.5 and 0.625, and so does the mean of a pixel that has one;
+        # a bad one that counted as 0 would pull it below.
         out, _ = self.run_rtslc("compare", "a.exr", "a.exr", "--json")
         mean = json.loads(out)["means"][0][0]
         self.assertTrue(0.5 * 7 / 8 < mean < 0.625 * 7 / 8, mean)
@@ -141,7 +141,8 @@ class NotFinite(ShaderCase):
         self.run_rtslc("compare", "a.exr", "b.exr")
 
     def test_a_constant_and_a_payload(self):
-        """What no operation makes infinite shows where it is stored; what a payload carries goes back to who made it."""
+        """What no operation makes infinite shows where it is stored; what a payload carries goes
+        back to who made it."""
         self.write("shaders.rtsl", SHADERS + """
 class Constant : rt_Material {
   void shade() {

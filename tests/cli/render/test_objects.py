@@ -1,4 +1,5 @@
-"""Objects of a scene: helpers, references that may be empty, recursion through members; the same bits on every path."""
+"""Objects of a scene: helpers, references that may be empty, recursion through members; the same
+bits on every path."""
 
 import json
 import os

@@ -1,4 +1,5 @@
-"""The engine `path`: pictures of scenes whose light is known, with materials of the library and of authors."""
+"""The engine `path`: pictures of scenes whose light is known, with materials of the library and of
+authors."""
 
 import json
 import math
@@ -113,7 +114,8 @@ class PathCase(Case):
         self.write("shaders.rtsl", SHADERS)
 
     def scene(self, objects, camera="Inside", spp=64, depth=64, size=(16, 16), **rest):
-        # Pictures do not depend on the level of optimisation: without it, few samples take less time in all.
+        # Pictures do not depend on the level of optimisation: without it, few samples take less
+        # time in all.
         self.level = "-O0" if spp * size[0] * size[1] <= 1 << 14 else "-O2"
         listed = [{"primitive": primitive, "material": material} for primitive, material in objects]
         self.write("scene.json", json.dumps({
@@ -138,7 +140,8 @@ class ClosedForms(PathCase):
         self.assert_gray(0.75, 1e-6)
 
     def test_an_oven(self):
-        """In a closed surface of albedo a that sends out e, the radiance is e / (1 - a) everywhere."""
+        """In a closed surface of albedo a that sends out e, the radiance is e / (1 - a)
+        everywhere."""
         for albedo in (0.3, 0.8):
             self.scene([(BALL, {"class": "Own", "albedo": albedo, "glow": 0.5})], depth=200, spp=256)
             self.assert_gray(0.5 / (1 - albedo), 0.02)
@@ -158,7 +161,8 @@ class ClosedForms(PathCase):
                 self.assert_gray(1.0, 0.002)
 
     def test_materials_that_lose_nothing(self):
-        """A ball of them cannot be told from a sky of 1; those of metal and lacquer lose some light, and gain none."""
+        """A ball of them cannot be told from a sky of 1; those of metal and lacquer lose some
+        light, and gain none."""
         white = {"class": "Lambert", "reflectance": 1}
         mirror = {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}
         lossless = [{"class": "Dielectric"}, {"class": "ThinGlass"}, {"class": "Cutout", "material": white, "opacity": 0.4},
@@ -196,7 +200,8 @@ class ClosedForms(PathCase):
         self.assert_gray(0.5 * 2 * factor, 0.01)
         self.scene([(FLOOR, {"class": "Blind"}), (square, lamp)], camera="Under", spp=1024)
         self.assert_gray(0.5 * 2 * factor, 0.01)
-        # As a mesh of two triangles of another size, and as a node with a transform that shears and mirrors.
+        # As a mesh of two triangles of another size, and as a node with a transform that shears and
+        # mirrors.
         self.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n")
         for transform in ({"scale": 2, "translate": corner}, {"matrix": [-2, 0, 0, 0, 5, 3, 7, 0, 0, 0, 2, 0, 1, 1, -1, 1]}):
             for geometry in ({"mesh": "square.obj"}, {"primitive": {"class": "Parallelogram", "constructor": [[0, 0, 0], [0, 0, 1], [1, 0, 0]]}}):
@@ -206,7 +211,8 @@ class ClosedForms(PathCase):
                     self.assert_gray(0.5 * 2 * factor, 0.01)
 
     def test_a_lamp_among_many(self):
-        """Lamps are chosen by their power: of a thousand only the bright one matters, and it is found."""
+        """Lamps are chosen by their power: of a thousand only the bright one matters, and it is
+        found."""
         dim = [({"class": "Sphere", "center": [x, 40, z], "radius": 0.01}, {"class": "Emitter", "radiance": 1e-4})
                for x in range(-16, 16) for z in range(-16, 16)]
         bright = ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.1}, {"class": "Emitter", "radiance": 900})
@@ -215,7 +221,8 @@ class ClosedForms(PathCase):
         self.assert_gray(900 * (0.1 / 3) ** 2, 0.02)
 
     def test_both_ways_find_the_same_light(self):
-        """The path tracer with and without its search for surfaces that shine; the second needs many more samples."""
+        """The path tracer with and without its search for surfaces that shine; the second needs
+        many more samples."""
         objects = [({"class": "Sphere", "center": [0, 0, 0], "radius": 3}, {"class": "Own", "albedo": 0.5}),
                    ({"class": "Sphere", "center": [1, 1, 1], "radius": 0.8}, {"class": "Emitter", "radiance": 2}),
                    ({"class": "Sphere", "center": [-1, 0, 1.5], "radius": 0.7}, {"class": "Conductor", "alpha": 0.3}),
@@ -264,7 +271,8 @@ class ClosedForms(PathCase):
                     self.assertAlmostEqual(one, other, delta=2e-4 * other)
 
     def test_a_normal_of_its_own_stays_in_other_materials(self):
-        """Materials made of one with a leaning normal look as it does, alone or as a part; half of it is half of the way."""
+        """Materials made of one with a leaning normal look as it does, alone or as a part; half of
+        it is half of the way."""
         lights = [{"class": "PointLight", "position": [2, 3, 1], "intensity": 9}, {"class": "DistantLight", "direction": [-1, 1, 0.5]}]
         clay = {"class": "Lambert", "reflectance": 0.5}
 
@@ -314,7 +322,8 @@ class BadInput(PathCase):
         self.assert_gray(0.5, 0.01)
 
     def test_the_brightest_lamp_is_found(self):
-        """Its power is more than a float can hold; light is proportional to the radiance, sample by sample."""
+        """Its power is more than a float can hold; light is proportional to the radiance, sample by
+        sample."""
         means = []
         for glow in (1.0, 2.0 ** 125):
             self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": glow})],
@@ -351,14 +360,16 @@ class Broken : Own {
 
 class Views(PathCase):
     def test_what_they_show(self):
-        """Of a ball of radius 2 around the origin, from the origin and from a point above a floor."""
+        """Of a ball of radius 2 around the origin, from the origin and from a point above a
+        floor."""
         own = {"class": "Own", "albedo": 0.25}
         self.scene([(FLOOR, own)], camera="Down", spp=16, size=(4, 4))
         for engine, expected in (("normals", [0.5, 1, 0.5]), ("depth", [5, 5, 5]), ("albedo", [0.25] * 3), ("occlusion", [1, 1, 1])):
             with self.subTest(engine=engine):
                 for one, wanted in zip(self.mean("--set", f"render.engine={engine}"), expected):
                     self.assertAlmostEqual(one, wanted, delta=1e-3)
-        # Half of the directions of a floor below a half-infinite ceiling are open; with a short reach all are.
+        # Half of the directions of a floor below a half-infinite ceiling are open; with a short
+        # reach all are.
         ceiling = {"class": "Parallelogram", "constructor": [[0, 1, -1e4], [1e4, 0, 0], [0, 0, 2e4]]}
         self.scene([(FLOOR, own), (ceiling, own)], camera="Under", spp=4096, size=(4, 4))
         self.assert_gray(0.5, 0.02, "--set", "render.engine=occlusion")
@@ -366,7 +377,8 @@ class Views(PathCase):
                          'rayGeneration={"class": "OcclusionView", "reach": 0.5}')
 
     def test_ids_differ(self):
-        """Of seven balls, of which one after the other is in front of the camera and the rest behind it."""
+        """Of seven balls, of which one after the other is in front of the camera and the rest
+        behind it."""
         means = set()
         for seen in range(7):
             self.scene([({"class": "Sphere", "center": [0, 0.1 if i == seen else 20, 0], "radius": 0.5}, {"class": "Shines"})

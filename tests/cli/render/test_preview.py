@@ -11,7 +11,8 @@ LIBRARY = pathlib.Path(RTSLC).parent.parent / "share/rtslc/library"
 SMALL = ("--size", "32x24", "--spp", "2", "-O", "0")
 KINDS = ("material", "texture", "primitive", "light", "camera")
 GREY = "class Grey : rt_Material {\n  void shade() { rt_SampleColor = color(0.5); }\n};\n"
-# A material, a texture and a helper class under names of the library, and functions and a struct under others of its names.
+# A material, a texture and a helper class under names of the library, and functions and a struct
+# under others of its names.
 OWN_NAMES = """struct Scattering { float share; };
 const float gradient = 0.5;
 float frameAround(vec3 n) { return n.x; }
@@ -201,7 +202,8 @@ class Preview(Case):
             proposed = re.search(r"`--set (.*)='(.*)'` gives them", self.refused(file)["notes"][0])
             self.render(file, "--set", f"{proposed.group(1)}={proposed.group(2)}", "-Wno-depth-limit")
         self.assertIn("`rtslc new scene NAME`", message["notes"][1])
-        # A camera that derives from one of the library has the arguments of the one that it replaces.
+        # A camera that derives from one of the library has the arguments of the one that it
+        # replaces.
         self.write("a.rtsl", "import std.cameras;\nclass Close : ViewCamera { void generateRay() { rt_RayOrigin = position; "
                              "rt_RayDirection = toWorld(vec3(0.1 * pictureCoord(), 1.0)); } };\n")
         self.render("a.rtsl", "-Werror")

@@ -58,8 +58,8 @@ class Progressive(Case):
         self.assertAlmostEqual(fine["spp"] / coarse["spp"], 4, delta=1.5)  # halved by four times as many samples
 
     def test_noise_is_not_below_the_error(self):
-        """Pictures with different seeds differ by the root of 2 times their error. Samples that are spread evenly make it smaller
-        than that of independent ones, which is estimated."""
+        """Pictures with different seeds differ by the root of 2 times their error. Samples that are
+        spread evenly make it smaller than that of independent ones, which is estimated."""
         for noise in ("0.05", "0.02"):
             with self.subTest(noise=noise):
                 estimate = self.render("a.exr", f"--noise={noise}")["noise"]

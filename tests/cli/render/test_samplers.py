@@ -1,4 +1,5 @@
-"""`--sampler`: the same bits everywhere, the same picture with less noise, and no trace of it without."""
+"""`--sampler`: the same bits everywhere, the same picture with less noise, and no trace of it
+without."""
 
 import json
 import unittest

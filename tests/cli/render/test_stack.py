@@ -1,4 +1,5 @@
-"""Local variables that stay alive over `trace` need stack for each ray that is under way: it is there, or refused with its size."""
+"""Local variables that stay alive over `trace` need stack for each ray that is under way: it is
+there, or refused with its size."""
 
 import json
 import os

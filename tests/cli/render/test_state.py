@@ -1,4 +1,5 @@
-"""State of a ray that is never written: no picture depends on its value (docs/language.md, state.holds)."""
+"""State of a ray that is never written: no picture depends on its value (docs/language.md,
+state.holds)."""
 
 import json
 import unittest
@@ -65,8 +66,8 @@ class Sky : rt_Miss {
 
 class State(Case):
     def pictures_are_one(self, scene, *options, ways=tuple(WAYS), turn=None):
-        """With every pattern; with a `turn`, each way has one of them beside `leave`, the next time the other.
-        Gives the pairs of a way and a pattern."""
+        """With every pattern; with a `turn`, each way has one of them beside `leave`, the next time
+        the other. Gives the pairs of a way and a pattern."""
         first, rendered = None, set()
         for pattern in PATTERNS:
             for number, way in enumerate(ways):
@@ -105,7 +106,8 @@ class State(Case):
         self.pictures_are_one(self.scene(sets=True))
 
     def test_examples(self):
-        """The ways that differ in how state is stored, in every example; the others in turn, two in each."""
+        """The ways that differ in how state is stored, in every example; the others in turn, two in
+        each."""
         rendered = set()
         for turn, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json"))):
             others = tuple(IN_TURN[(2 * turn + i) % len(IN_TURN)] for i in range(2))

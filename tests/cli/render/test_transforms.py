@@ -1,5 +1,5 @@
-"""What does not depend on where an object is: a scene that is moved as a whole, camera and lights included, has the same picture, and so
-has a mesh in place of a primitive of the same shape."""
+"""What does not depend on where an object is: a scene that is moved as a whole, camera and lights
+included, has the same picture, and so has a mesh in place of a primitive of the same shape."""
 
 import json
 import math
@@ -95,8 +95,9 @@ class Motions(TransformCase):
 
 class Meshes(TransformCase):
     def test_a_mesh_has_the_patterns_of_a_primitive(self):
-        """Two triangles and the parallelogram that they cover, squeezed and turned. What is computed from points in space and
-        from texture coordinates must agree; a mesh without such points would differ by 0.1."""
+        """Two triangles and the parallelogram that they cover, squeezed and turned. What is
+        computed from points in space and from texture coordinates must agree; a mesh without such
+        points would differ by 0.1."""
         anchor, e1, e2 = [-3, -2, 0], [6, 0, 0.5], [0.5, 4, -1]
         corners = [[a + u * b + v * c for a, b, c in zip(anchor, e1, e2)] for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))]
         self.write("mesh.obj", "".join("v {} {} {}\n".format(*corner) for corner in corners) +

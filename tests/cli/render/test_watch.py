@@ -27,7 +27,8 @@ class Watch(Case):
 
     def start(self, *arguments, small=SMALL):
         """Starts it, and waits for the first picture."""
-        # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would be.
+        # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would
+        # be.
         self.running = subprocess.Popen([RTSLC, "render", *arguments, "--watch", *small], cwd=self.folder, stderr=subprocess.PIPE,
                                         text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
         self.addCleanup(self.running.stderr.close)

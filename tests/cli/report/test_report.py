@@ -1,4 +1,5 @@
-"""`rtslc report`: what it writes, that it resumes after an interruption, and its messages for unusable references."""
+"""`rtslc report`: what it writes, that it resumes after an interruption, and its messages for
+unusable references."""
 
 import csv
 import json
@@ -47,7 +48,8 @@ class Report(Case):
         self.assertNotRegex(page, r"https?://")
         self.assertFalse((self.folder / "out" / "partial").exists())
 
-    # Of 24x16 pixels with some 32 000 samples each in the reference an eighth meets one that is ten thousand times as bright.
+    # Of 24x16 pixels with some 32 000 samples each in the reference an eighth meets one that is ten
+    # thousand times as bright.
     HOT = "class Hot : rt_Miss { void miss() { rt_SampleColor = color(rand() < 0.00004 ? 1000000.0 : 0.05); } };"
 
     def test_rare_hot_samples_have_no_interval(self):

@@ -1,4 +1,5 @@
-"""Output buffers: `rtslc run`, on every path, with elements of every type, passes that share buffers, and what is wrong."""
+"""Output buffers: `rtslc run`, on every path, with elements of every type, passes that share
+buffers, and what is wrong."""
 
 import json
 import math
@@ -78,7 +79,8 @@ class OutputBuffers(Case):
         self.assertEqual([(cells[4 * i + 2], cells[4 * i + 3]) for i in range(48)], [(i % 8, i // 8) for i in range(48)])
 
     def test_printed_cpp_writes_the_same(self):
-        """As rtslc prints it: elements are assigned where they lie, and the state machine keeps what it read."""
+        """As rtslc prints it: elements are assigned where they lie, and the state machine keeps
+        what it read."""
         for way in ("recurse", "split"):
             text, _ = self.run_rtslc("compile", "probe.rtsl", "--emit=cpp", f"--trace={way}")
             self.assertIn("rtsl::OutputBuffer<float, 2> distance{};", text)

@@ -1,4 +1,5 @@
-"""examples/line-of-sight and examples/photons: the same bits on every path, and what must hold of their results."""
+"""examples/line-of-sight and examples/photons: the same bits on every path, and what must hold of
+their results."""
 
 import json
 import shutil

@@ -1,4 +1,5 @@
-"""rtslc trace: hits of random rays against those of an oracle in exact arithmetic, on every path, and files that are wrong."""
+"""rtslc trace: hits of random rays against those of an oracle in exact arithmetic, on every path,
+and files that are wrong."""
 
 import random
 import struct
@@ -36,7 +37,8 @@ def dot(a, b):
 
 
 def nearest(triangles, ray):
-    """The nearest hit of a ray (origin, tmin, direction, tmax), and how far from an edge or from another hit it is: exact."""
+    """The nearest hit of a ray (origin, tmin, direction, tmax), and how far from an edge or from
+    another hit it is: exact."""
     origin, tmin, direction, tmax = ray[:3], ray[3], ray[4:7], ray[7]
     hits, doubt = [], Fraction(1)
     for number, (a, b, c) in enumerate(triangles):

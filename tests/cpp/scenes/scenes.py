@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""scenes.py RTSLC SOURCE LIBRARY-FOLDER CPP-RENDER: scenes whose shaders were printed as C++ give the pictures, the printed
-lines and the counted exceptions of the compiler's own machine code, to the last bit."""
+"""scenes.py RTSLC SOURCE LIBRARY-FOLDER CPP-RENDER: scenes whose shaders were printed as C++ give
+the pictures, the printed lines and the counted exceptions of the compiler's own machine code, to
+the last bit."""
 import json
 import pathlib
 import shutil
@@ -112,12 +113,14 @@ def names():
 
 
 def objects(layers):
-    """Helpers, references that may be empty, definitions of bases, recursion through members (Objects.rtsl)."""
+    """Helpers, references that may be empty, definitions of bases, recursion through members
+    (Objects.rtsl)."""
     return objects_scene(here / "Objects.rtsl", glass / "Sphere.rtsl", layers)
 
 
 def paths():
-    """The path tracer: materials that call their own methods, default classes, surfaces that shine as lights, one of which moves."""
+    """The path tracer: materials that call their own methods, default classes, surfaces that shine
+    as lights, one of which moves."""
     library = pathlib.Path(source, "library/std")
     return {
         "rtsl": 1,

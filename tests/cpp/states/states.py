@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""states.py RTSLC GLASS PROGRAM...: the programs' pictures are that of the same scene by machine code, to the last bit,
-and recursion, states and the host megakernel make one picture of it too, with the traversal that all three have."""
+"""states.py RTSLC GLASS PROGRAM...: the programs' pictures are that of the same scene by machine
+code, to the last bit, and recursion, states and the host megakernel make one picture of it too,
+with the traversal that all three have."""
 import json
 import pathlib
 import sys

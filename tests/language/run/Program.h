@@ -2,11 +2,12 @@
 //
 // A program is the text of some files, and its tests:
 //
-//   int name(int zero)       a function at file level; it gives 0, or the number of what went wrong. `zero` is 0, which
-//                            no compiler can derive.
-//   //! material: {...}      an object of a material, as a scene file has it, in front of the camera; it gives color 0
-//                            or the number of what went wrong
-//   //! object: {...}        the same with a primitive; $X stands for the left edge of the unit square that is looked at
+//   int name(int zero)       a function at file level; it gives 0, or the number of what went
+//                            wrong. `zero` is 0, which no compiler can derive.
+//   //! material: {...}      an object of a material, as a scene file has it, in front of the
+//                            camera; it gives color 0 or the number of what went wrong
+//   //! object: {...}        the same with a primitive; $X stands for the left edge of the unit
+//                            square in front of the camera
 //   //! texture name: {...}  and `light: {...}`: what the materials refer to
 //
 // All tests of a program are compiled together, and run as the pixels of one picture. The material

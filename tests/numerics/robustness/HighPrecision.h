@@ -33,7 +33,8 @@ inline Precise length(const PreciseVec3 &a) {
   return sqrt(dot(a, a));
 }
 
-/// |value - exact| in rounding units of `exact`, 2^-24 of it; subnormal results may be off by half of the smallest float.
+/// |value - exact| in rounding units of `exact`, 2^-24 of it; subnormal results may be off by half
+/// of the smallest float.
 inline double roundingUnits(float value, const Precise &exact) {
   if (!std::isfinite(value))
     return std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 //===- Main.cpp - stiff and extreme cases against their bounds ------------===//
 //
-//   numerics-robustness [ROW...] [--quick] [--json] --bounds bounds.json          rows of the runtime
-//   numerics-shaders [ROW...] [--path strict|fast|double|cpp|megakernel|gpu] ...  rows of compiled shaders
+//   numerics-robustness [ROW...] [--quick] [--json] --bounds bounds.json   rows of the runtime
+//   numerics-shaders [ROW...] [--path strict|fast|double|cpp|megakernel|gpu] ...   of shaders
 //
 // Runs the rows whose names begin with one of the arguments, all of them if there are none. Exit
 // status: 0 all bounds hold, 1 some do not, 2 wrong arguments.

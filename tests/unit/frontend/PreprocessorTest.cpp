@@ -1,7 +1,8 @@
 //===- PreprocessorTest.cpp - expanded texts, the way back, and limits ----===//
 //
 // What the preprocessor accepts and refuses is in tests/language/preprocessor. Here: how messages
-// are shown, what fixes touch, what the text looks like, and limits of what a few lines can expand to.
+// are shown, what fixes touch, what the text looks like, and limits of what a few lines can expand
+// to.
 //
 //===----------------------------------------------------------------------===//
 #include "frontend/preprocessor/Preprocessor.h"

@@ -1,10 +1,11 @@
+#include "tests/unit/support/Files.h"
+
 #include "report/measures/ErrorMetrics.h"
 #include "runtime/geometry/AssimpFile.h"
 #include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
 #include "runtime/image/Image.h"
-#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -26,39 +27,11 @@
 namespace report = rtsl::report;
 using namespace rtsl;
 using namespace rtsl::runtime;
+using rtsl::test::errorOf;
+using rtsl::test::Files;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder that is gone after the test.
-class Files : public ::testing::Test {
-protected:
-  Files() : folder(fs::path(::testing::TempDir()) / ("rtslFiles" + std::to_string(::getpid()))) {
-    fs::create_directories(folder);
-  }
-  ~Files() override { fs::remove_all(folder); }
-
-  std::string path(const std::string &name) const { return (folder / name).string(); }
-  std::string put(const std::string &name, const std::string &text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-  std::size_t fileCount() const {
-    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-  }
-
-  fs::path folder;
-};
-
-template <typename Action>
-std::string errorOf(Action action) {
-  try {
-    action();
-  } catch (const Error &error) {
-    return std::string(name(error.code)) + ": " + error.what();
-  }
-  return "no error";
-}
 
 Image gradient(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
   Image image(width, height, channels);
@@ -68,62 +41,6 @@ Image gradient(std::uint32_t width, std::uint32_t height, std::uint32_t channels
 }
 
 } // namespace
-
-//===----------------------------------------------------------------------===//
-// Atomic files
-//===----------------------------------------------------------------------===//
-
-using AtomicFile = Files;
-
-TEST_F(AtomicFile, WritesReplacesAndKeepsRights) {
-  std::string file = put("a.txt", "old");
-  ::chmod(file.c_str(), 0640);
-  writeFileAtomically(file, "new");
-  EXPECT_EQ(readFile(file), "new");
-  struct stat status;
-  ::stat(file.c_str(), &status);
-  EXPECT_EQ(status.st_mode & 0777, 0640u);
-  EXPECT_EQ(fileCount(), 1u);
-}
-
-TEST_F(AtomicFile, FollowsLinks) {
-  std::string file = put("target.txt", "old");
-  fs::create_symlink("target.txt", path("link.txt"));
-  writeFileAtomically(path("link.txt"), "new");
-  EXPECT_EQ(readFile(file), "new");
-  EXPECT_TRUE(fs::is_symlink(path("link.txt")));
-}
-
-TEST_F(AtomicFile, ReportsWhyItCannotWrite) {
-  EXPECT_EQ(errorOf([&] { writeFileAtomically(path("no/such/a.png"), "x"); }),
-            "fileUnwritable: cannot write `" + path("no/such/a.png") +
-                "`: No such file or directory");
-  EXPECT_EQ(errorOf([&] { checkFileWritable(folder.string()); }),
-            "fileUnwritable: cannot write `" + folder.string() + "`: Is a directory");
-  EXPECT_EQ(errorOf([&] { checkFileWritable(put("file", "") + "/a.png"); }),
-            "fileUnwritable: cannot write `" + path("file/a.png") + "`: Not a directory");
-  EXPECT_EQ(errorOf([&] { checkFileWritable(path("fine.png")); }), "no error");
-  EXPECT_FALSE(fs::exists(path("fine.png")));
-  EXPECT_EQ(errorOf([&] { writeFileAtomically("/dev/full", "x"); }),
-            "fileUnwritable: cannot write `/dev/full`: No space left on device");
-}
-
-// A limit on the size of files stands in for a full disk.
-TEST_F(AtomicFile, AFullDiskLeavesTheOldFileAndNoOther) {
-  std::string file = put("a.exr", "old");
-  rlimit before;
-  getrlimit(RLIMIT_FSIZE, &before);
-  auto *handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit limit = before;
-  limit.rlim_cur = 10000;
-  setrlimit(RLIMIT_FSIZE, &limit);
-  std::string error = errorOf([&] { writeFileAtomically(file, std::string(100000, 'x')); });
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_EQ(error, "fileUnwritable: cannot write `" + file + "`: File too large");
-  EXPECT_EQ(readFile(file), "old");
-  EXPECT_EQ(fileCount(), 1u);
-}
 
 //===----------------------------------------------------------------------===//
 // Pictures

@@ -88,8 +88,8 @@ Mesh movingClump(std::mt19937 &random, int triangles) {
 }
 
 /// Instances of three meshes, of which two are in world space too, of spheres, and of rows of
-/// spheres; some of them below selectors, one of which is below the other. One mesh moves, and so do
-/// some instances.
+/// spheres; some of them below selectors, one of which is below the other. One mesh moves, and so
+/// do some instances.
 Scene randomScene(unsigned seed, int instances) {
   std::mt19937 random(seed);
   Scene scene(fakeProgram());

@@ -174,7 +174,8 @@ TEST(Random, IsAsUniformNearZeroAsElsewhere) {
 }
 
 TEST(Random, FreePathsHaveTheirDistribution) {
-  // -log(u) is exponential: its moments are factorials, and however long a path is, one of them is longer.
+  // -log(u) is exponential: its moments are factorials, and however long a path is, one of them is
+  // longer.
   double first = 0, second = 0;
   constexpr std::uint32_t draws = 1u << 22;
   const std::uint32_t key[2] = {99, 1};

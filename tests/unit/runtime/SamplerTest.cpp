@@ -21,8 +21,8 @@ std::pair<double, double> point(std::uint32_t sampler, std::uint32_t sample, std
           evenFraction(sampler, sample, place, pair, 1) * 0x1p-32};
 }
 
-/// The mean square error of an integral over the unit square, of a function that jumps, with `count`
-/// samples.
+/// The mean square error of an integral over the unit square, of a function that jumps, with
+/// `count` samples.
 template <typename Point>
 double errorOfIntegral(std::uint32_t count, Point at) {
   constexpr unsigned repeats = 400;

@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(Language, Errors, testing::ValuesIn(allCases()),
                          });
 
 // Codes that no text of reasonable length can provoke; LimitsTest.cpp does, and
-// ../frontend/PreprocessorTest.cpp and cli/common/test_preprocessor.py. W2901 is found after sema, and
-// tests/cli provokes it.
+// ../frontend/PreprocessorTest.cpp and cli/common/test_preprocessor.py. W2901 is found after sema,
+// and tests/cli provokes it.
 const char *const provokedElsewhere[] = {"E0320", "E0606", "E0608", "E0609", "E0611", "W2901",
                                          "E0145", "E0147", "E0148", "E0164", "E0165"};
 

@@ -1,11 +1,10 @@
-//===- TablesTest.cpp - types, conversions, overloads, suggestions --------===//
+//===- TablesTest.cpp - types, conversions, overloads ---------------------===//
 #include "sema/check/Suggest.h"
 #include "sema/fold/ConstantFold.h"
 #include "sema/model/Builtins.h"
 #include "sema/model/ClassModel.h"
 #include "sema/model/Conversion.h"
 #include "sema/typed/TypeProperties.h"
-#include "support/ClosestName.h"
 
 #include <gtest/gtest.h>
 
@@ -163,16 +162,6 @@ TEST(ClassModel, StateIsWrittenByTheMethodsOfTheTable) {
   EXPECT_EQ(methodsThatWrite(S::Depth), "");
   EXPECT_EQ(methodsWith(Ability::Trace), "`shade` and `closestHit` of an rt_Material, `generate` "
                                          "of an rt_RayGeneration and `miss` of an rt_Miss");
-}
-
-TEST(Suggestions, AreCloseNames) {
-  EXPECT_EQ(closestName("radus", {"radius", "center"}), "radius");
-  EXPECT_EQ(closestName("Radius", {"radius"}), "radius");
-  EXPECT_EQ(closestName("RADIUS", {"radius"}), "radius");
-  EXPECT_EQ(closestName("raidus", {"radius"}), "radius");
-  EXPECT_EQ(closestName("x", {"y"}), "");
-  EXPECT_EQ(closestName("completely", {"different"}), "");
-  EXPECT_EQ(closestName(std::string(100000, 'a'), {"a"}), "");
 }
 
 } // namespace

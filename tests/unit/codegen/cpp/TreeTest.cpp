@@ -1,4 +1,5 @@
-// The tree that is printed as C++: where it needs parentheses, braces and line breaks, and its text.
+// The tree that is printed as C++: where it needs parentheses, braces and line breaks, and its
+// text.
 #include "codegen/cpp/tree/Print.h"
 
 #include <gtest/gtest.h>

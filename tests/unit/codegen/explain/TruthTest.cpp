@@ -1,6 +1,6 @@
-// Is the output of `rtslc explain` true? For each thing that it calls needed the examples are compiled
-// without it, and the PTX must be another; what it calls left out can be taken away again, and the
-// PTX must stay.
+// Is the output of `rtslc explain` true? For each thing that it calls needed the examples are
+// compiled without it, and the PTX must be another; what it calls left out can be taken away again,
+// and the PTX must stay.
 #include "codegen/driver/Stages.h"
 #include "scenefile/SceneFile.h"
 #include "tools/rtslc/common/SceneShaders.h"
