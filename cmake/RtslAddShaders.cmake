@@ -1,7 +1,9 @@
-# rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse] [FP strict|fast]): compiles RTSL files to C++ when the target is built, again when one of
-# them or what they import changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
-# (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE selects how methods that trace are compiled:
-# their states, or calls. FP fast lets the C++ compiler change the last digits for speed (docs/fast.md).
+# rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse] [FP strict|fast]):
+# compiles RTSL files to C++ when the target is built, again when one of them or what they import
+# changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
+# (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE selects how methods
+# that trace are compiled: their states, or calls. FP fast lets the C++ compiler change the last
+# digits for speed (docs/fast.md).
 function(rtsl_add_shaders target)
   cmake_parse_arguments(ARG "" "NAME;TRACE;FP" "SHADERS" ${ARGN})
   if(NOT ARG_NAME OR NOT ARG_SHADERS)
@@ -23,12 +25,15 @@ function(rtsl_add_shaders target)
   file(MAKE_DIRECTORY "${folder}")
   set(generated "${folder}/${ARG_NAME}.cpp")
   add_custom_command(OUTPUT "${generated}"
-    COMMAND rtsl::rtslc compile ${files} --emit=cpp ${options} -o "${generated}" -MD -MF "${generated}.d"
+    COMMAND rtsl::rtslc compile ${files} --emit=cpp ${options} -o "${generated}" -MD
+      -MF "${generated}.d"
     DEPENDS ${files} rtsl::rtslc DEPFILE "${generated}.d"
     COMMENT "Compiling the shaders of ${ARG_NAME} to C++" VERBATIM)
   target_sources(${target} PRIVATE "${generated}")
   # Square roots and fused operations as instructions: the results are the same, and quicker.
-  set_source_files_properties("${generated}" PROPERTIES COMPILE_OPTIONS "-fno-math-errno;$<$<BOOL:${RTSL_SHADER_FLAGS}>:${RTSL_SHADER_FLAGS}>")
+  set_source_files_properties("${generated}"
+    PROPERTIES COMPILE_OPTIONS
+      "-fno-math-errno;$<$<BOOL:${RTSL_SHADER_FLAGS}>:${RTSL_SHADER_FLAGS}>")
   target_link_libraries(${target} PRIVATE rtsl::runtime)
 endfunction()
 

@@ -1,16 +1,20 @@
-# rtsl_bitcode(library symbol TARGET SOURCES...): compiles freestanding C++ to LLVM bitcode for a TARGET, host or gpu, and
-# embeds the linked module into a static library, as the bytes between the symbols <symbol>Begin and <symbol>End.
+# rtsl_bitcode(library symbol TARGET SOURCES...): compiles freestanding C++ to LLVM bitcode for a
+# TARGET, host or gpu, and embeds the linked module into a static library, as the bytes between the
+# symbols <symbol>Begin and <symbol>End.
 find_program(RTSL_CLANG NAMES clang++-22 PATHS /usr/lib/llvm-22/bin REQUIRED)
 find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/bin REQUIRED)
 
 # No errno: a square root is then one instruction.
 set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno
     -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra)
-# The features are those of the host's baseline and no others, so that the code generator may inline these functions into
-# shaders. For a GPU the code generator replaces them by those of the requested architecture.
+# The features are those of the host's baseline and no others, so that the code generator may inline
+# these functions into shaders. For a GPU the code generator replaces them by those of the requested
+# architecture.
 set(RTSL_BITCODE_FLAGS_host -march=x86-64-v3)
-# Without a CUDA toolkit clang's default PTX version is too old for current GPUs; sm_75 needs at least 6.3.
-set(RTSL_BITCODE_FLAGS_gpu --target=nvptx64-nvidia-cuda -march=sm_75 -Xclang -target-feature -Xclang +ptx63)
+# Without a CUDA toolkit clang's default PTX version is too old for current GPUs; sm_75 needs at
+# least 6.3.
+set(RTSL_BITCODE_FLAGS_gpu --target=nvptx64-nvidia-cuda -march=sm_75 -Xclang -target-feature
+  -Xclang +ptx63)
 
 function(rtsl_bitcode library symbol target)
   set(modules)
@@ -18,9 +22,11 @@ function(rtsl_bitcode library symbol target)
     get_filename_component(stem "${source}" NAME_WE)
     set(module "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.${stem}.bc")
     add_custom_command(OUTPUT "${module}"
-      COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} ${RTSL_BITCODE_FLAGS_${target}} -I "${PROJECT_SOURCE_DIR}" -MD -MF "${module}.d" -MT "${module}"
+      COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} ${RTSL_BITCODE_FLAGS_${target}}
+        -I "${PROJECT_SOURCE_DIR}" -MD -MF "${module}.d" -MT "${module}"
               -emit-llvm -c "${source}" -o "${module}"
-      DEPENDS "${source}" DEPFILE "${module}.d" COMMENT "Compiling ${stem} to bitcode for the ${target}" VERBATIM)
+      DEPENDS "${source}" DEPFILE "${module}.d"
+        COMMENT "Compiling ${stem} to bitcode for the ${target}" VERBATIM)
     list(APPEND modules "${module}")
   endforeach()
   set(linked "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.bc")
@@ -40,8 +46,8 @@ asm(".section .rodata.@symbol@, \"a\", @progbits\n"
     ".byte 0\n"
     ".text\n");
 ]] @ONLY)
-  # Without ccache, which does not see what .incbin reads and would return an object with earlier bytes. The launcher is a
-  # property of targets only.
+  # Without ccache, which does not see what .incbin reads and would return an object with earlier
+  # bytes. The launcher is a property of targets only.
   set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${linked}")
   add_library(${symbol}Bytes OBJECT "${embedding}")
   set_target_properties(${symbol}Bytes PROPERTIES CXX_COMPILER_LAUNCHER "")

@@ -1,26 +1,29 @@
 # How everything is compiled: warnings, the host's baseline architecture and strict floating point.
 find_program(RTSL_CCACHE ccache)
 if(RTSL_CCACHE)
-  # ccache needs this sloppiness to cache precompiled headers. It takes the names of headers from the compiler, and does not
-  # run the preprocessor first, which takes a tenth of the time of a first build.
+  # ccache needs this sloppiness to cache precompiled headers. It takes the names of headers from
+  # the compiler, and does not run the preprocessor first, which takes a tenth of the time of a
+  # first build.
   set(rtslCcacheSettings CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_DEPEND=true)
   set(CMAKE_C_COMPILER_LAUNCHER "${RTSL_CCACHE}")
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env ${rtslCcacheSettings} "${RTSL_CCACHE}")
 endif()
 
-# Optimised lightly, with assertions and line tables: tests run fast and a crash still has a backtrace.
+# Optimised lightly, with assertions and line tables: tests run fast and a crash still has a
+# backtrace.
 set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g1")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
 
-# Contraction would make the bits of a picture depend on the compiler; x86-64-v3 has the fused operations that
-# correctly rounded functions request explicitly.
+# Contraction would make the bits of a picture depend on the compiler; x86-64-v3 has the fused
+# operations that correctly rounded functions request explicitly.
 add_compile_options(-ffp-contract=off -march=x86-64-v3 -ffunction-sections -fdata-sections)
 
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # g++ 12 vectorises {float(a), float(b)} in doubles and does not round one of them.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-tree-slp-vectorize>)
 elseif(CMAKE_CXX_COMPILER_ID STREQUAL Clang)
-  # A precompiled header out of ccache is older than the headers that it was made of; ccache has compared those.
+  # A precompiled header out of ccache is older than the headers that it was made of; ccache has
+  # compared those.
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")
   # std::stable_sort of libstdc++ 12 uses std::get_temporary_buffer.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-deprecated-declarations>)
@@ -45,9 +48,9 @@ function(rtsl_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wno-unused-parameter)
 endfunction()
 
-# rtsl_library(name [SOURCES...] [FOLDERS folders...] [LINK libraries...]): a static library of this tree. Without
-# sources it has all of the folders, by default of this one. Includes are written from the root of the tree, or of the
-# build tree for generated files.
+# rtsl_library(name [SOURCES...] [FOLDERS folders...] [LINK libraries...]): a static library of this
+# tree. Without sources it has all of the folders, by default of this one. Includes are written from
+# the root of the tree, or of the build tree for generated files.
 function(rtsl_library name)
   cmake_parse_arguments(ARG "" "" "FOLDERS;LINK" ${ARGN})
   set(sources ${ARG_UNPARSED_ARGUMENTS})
@@ -65,8 +68,9 @@ function(rtsl_library name)
   rtsl_warnings(${name})
 endfunction()
 
-# rtsl_command_line(target): for targets that read a command line by CLI11, whose templates take longer than our code:
-# two thirds of it to optimise. So they are optimised less, and the headers precompiled, by rtslCommandLine.
+# rtsl_command_line(target): for targets that read a command line by CLI11, whose templates take
+# longer than our code: two thirds of it to optimise. So they are optimised less, and the headers
+# precompiled, by rtslCommandLine.
 function(rtsl_command_line target)
   target_compile_options(${target} PRIVATE -O1)
   if(target STREQUAL rtslCommandLine)
@@ -76,8 +80,9 @@ function(rtsl_command_line target)
   endif()
 endfunction()
 
-# For targets that read MLIR's headers: they are precompiled once, by rtslIr. Of g++'s result ccache reads a checksum
-# (codegen/ir/CMakeLists.txt): hashing its 484 MB for each file would take as long as compiling the file.
+# For targets that read MLIR's headers: they are precompiled once, by rtslIr. Of g++'s result ccache
+# reads a checksum (codegen/ir/CMakeLists.txt): hashing its 484 MB for each file would take as long
+# as compiling the file.
 function(rtsl_precompiled_ir target)
   target_precompile_headers(${target} REUSE_FROM rtslIr)
   if(TARGET rtslPrecompiledChecksum)

@@ -1,11 +1,13 @@
-# The libraries that rtslc uses; docs/dependencies.md gives the reason for each. `make dependencies` installs them.
+# The libraries that rtslc uses; docs/dependencies.md gives the reason for each. `make dependencies`
+# installs them.
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 
-# Debian's MLIR accepts only its exact version, so none is required here. Its targets carry the shared LLVM in their link
-# interface; together with the static components that would put two LLVMs into one process.
+# Debian's MLIR accepts only its exact version, so none is required here. Its targets carry the
+# shared LLVM in their link interface; together with the static components that would put two LLVMs
+# into one process.
 list(APPEND CMAKE_PREFIX_PATH /usr/lib/llvm-22)
 set(MLIR_DIR /usr/lib/llvm-22/lib/cmake/mlir CACHE PATH "where MLIRConfig.cmake lies")
 find_package(MLIR REQUIRED CONFIG)

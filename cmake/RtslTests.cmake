@@ -1,10 +1,12 @@
-# rtsl_unit_test(NAME [EACH] SOURCES... LINK libraries...): the GoogleTest program test-NAME. CTest runs it as one test, NAME,
-# which takes less time than a process for each of its hundreds of tests; --gtest_filter=Suite.Test chooses among them. With
-# EACH, for tests that take seconds, they are tests of CTest, called NAME.Suite.Test.
+# rtsl_unit_test(NAME [EACH] SOURCES... LINK libraries...): the GoogleTest program test-NAME. CTest
+# runs it as one test, NAME, which takes less time than a process for each of its hundreds of tests;
+# --gtest_filter=Suite.Test chooses among them. With EACH, for tests that take seconds, they are
+# tests of CTest, called NAME.Suite.Test.
 include(GoogleTest)
 
-# rtsl_precompiled_tests(NAME [OTHER]): for tests that do not read MLIR's headers. GoogleTest's are precompiled for
-# test-NAME, or those of test-OTHER are used, which is compiled with the same options.
+# rtsl_precompiled_tests(NAME [OTHER]): for tests that do not read MLIR's headers. GoogleTest's are
+# precompiled for test-NAME, or those of test-OTHER are used, which is compiled with the same
+# options.
 function(rtsl_precompiled_tests name)
   if(ARGC EQUAL 1)
     target_precompile_headers(test-${name} PRIVATE <gtest/gtest.h> <fmt/format.h>)
@@ -22,7 +24,8 @@ function(rtsl_unit_test name)
   rtsl_warnings(test-${name})
   if(ARG_EACH)
     # Tests are listed when they are run: a build starts none of the programs that it makes.
-    gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 120 DISCOVERY_MODE PRE_TEST)
+    gtest_discover_tests(test-${name} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 120
+      DISCOVERY_MODE PRE_TEST)
   else()
     add_test(NAME ${name} COMMAND test-${name} --gtest_brief=1)
   endif()

@@ -17,7 +17,7 @@
 //     Logarithm.h             log log2 log1p         LogarithmKernel.h
 //     InverseHyperbolic.h     asinh acosh atanh      LogarithmKernel.h
 //     Power.h                 pow                    both kernels, DoubleDoubleFunctions.h
-//     PowerLanes.h            pow of four lanes      Power.h, DoubleLanes.h (host alone, not included here)
+//     PowerLanes.h            pow of four lanes      Power.h, DoubleLanes.h (host only, apart)
 //     InverseSquareRoot.h     inversesqrt sqrt
 //
 // Fast.h has approximations for --fp=fast.

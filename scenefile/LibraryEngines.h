@@ -15,9 +15,9 @@ const std::vector<std::string> &libraryEngines();
 const std::vector<std::string> &libraryViews();
 
 /// Makes a scene for one of these engines the same for the engine `programs`: imports its class,
-/// whose object generates the rays unless the scene names an object of that class itself, to set its
-/// members; sets a limit of rays to the scene's `depth`; and makes a background color an object that
-/// rays with a payload can meet. `engine` is the value in the scene.
+/// whose object generates the rays unless the scene names an object of that class itself, to set
+/// its members; sets a limit of rays to the scene's `depth`; and makes a background color an object
+/// that rays with a payload can meet. `engine` is the value in the scene.
 void useLibraryEngine(SceneDescription &scene, const JsonValue &engine);
 
 } // namespace rtsl::scene

@@ -1,8 +1,8 @@
 //===- Models.h - glTF files that a scene mentions ------------------------===//
 //
-// {"model": "chair.glb"} in the place of a node is short for the nodes, materials, images and lights
-// that an author would write for the file: they are added to the scene's JSON before it is read, and
-// the mention becomes a child.
+// {"model": "chair.glb"} in the place of a node is short for the nodes, materials, images and
+// lights that an author would write for the file: they are added to the scene's JSON before it is
+// read, and the mention becomes a child.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -231,7 +231,8 @@ struct NamedBuffers {
 /// An output buffer of the ray generation that is not set gets the size of the launch.
 runtime::Scene buildScene(const SceneDescription &description,
                           std::shared_ptr<const runtime::Program> program);
-/// The same for one of several launches that share buffers: uses those made before, and adds others.
+/// The same for one of several launches that share buffers: uses those made before, and adds
+/// others.
 runtime::Scene buildScene(const SceneDescription &description,
                           std::shared_ptr<const runtime::Program> program, NamedBuffers &buffers);
 

@@ -5,8 +5,8 @@
 
 namespace rtsl::scene {
 
-/// Reads size, samples, depth and seed, where `value` has them. The size may be the name of a buffer
-/// of the scene, or of a member of the ray generation, null without one. Throws OutOfRange,
+/// Reads size, samples, depth and seed, where `value` has them. The size may be the name of a
+/// buffer of the scene, or of a member of the ray generation, null without one. Throws OutOfRange,
 /// WrongType or UnknownName.
 void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
                   const JsonValue *rayGeneration);

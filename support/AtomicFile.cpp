@@ -30,8 +30,8 @@ constexpr const char *standardOutput = "-";
 
 constexpr std::string_view temporarySuffix = ".tmp";
 
-/// Folder, with a slash at its end or empty, and beginning of the names of temporary files. They are
-/// in the same folder, so that renaming stays within one file system.
+/// Folder, with a slash at its end or empty, and beginning of the names of temporary files. They
+/// are in the same folder, so that renaming stays within one file system.
 std::pair<std::string, std::string> temporaryPrefix(const std::string &path) {
   std::size_t slash = path.find_last_of('/');
   std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
@@ -46,8 +46,8 @@ std::string temporaryName(const std::string &path) {
   return fmt::format("{}{}{}-{}{}", folder, prefix, ::getpid(), counter++, temporarySuffix);
 }
 
-/// Creates the temporary file with the permissions of a new file. It is locked until it is closed or
-/// the process ends, which shows removeUnfinishedFiles() that it is in use.
+/// Creates the temporary file with the permissions of a new file. It is locked until it is closed
+/// or the process ends, which shows removeUnfinishedFiles() that it is in use.
 int createTemporary(const std::string &path, std::string &temporary) {
   for (int attempt = 0; attempt < 100; ++attempt) {
     temporary = temporaryName(path);

@@ -1,1 +1,2 @@
-"""What bench/run is made of: running programs, statistics, and one module for each thing that is measured."""
+"""What bench/run is made of: running programs, statistics, and one module for each thing that is
+measured."""

@@ -1,4 +1,5 @@
-"""What continuations cost: bytes saved at each trace beside plain liveness, and instructions beside saving all that is live."""
+"""What continuations cost: bytes saved at each trace beside plain liveness, and instructions beside
+saving all that is live."""
 
 import json
 import re
@@ -49,8 +50,8 @@ def count_instructions(program, package, samples, size, folder):
 
 
 def instructions_per_sample(build, scene, way, size, folder):
-    """Of the scene's package on the host megakernel, so nothing is compiled while callgrind counts. Between runs of few and many
-    samples: what a run takes before the first sample is in both."""
+    """Of the scene's package on the host megakernel, so nothing is compiled while callgrind counts.
+    Between runs of few and many samples: what a run takes before the first sample is in both."""
     # Without debug information, which valgrind's reader does not understand.
     program, package = folder / "rtsl-run", folder / f"{way}.rtslpkg"
     if not program.exists():
@@ -72,7 +73,8 @@ def measure(build, size, with_instructions):
                     way: instructions_per_sample(build, scene, way, size, Path(folder)) for way in WAYS
                 }
         results.append(result)
-    # A trace of a class that several examples share counts once, unless it saves something else in one of them.
+    # A trace of a class that several examples share counts once, unless it saves something else in
+    # one of them.
     traces = {(trace["function"], trace["location"], trace["live"], trace["saved"]) for result in results for trace in result["traces"]}
     ratios = [saved / live for _, _, live, saved in traces if live]
     return {"scenes": results, "medianShareSaved": median(ratios), "tracesCounted": len(ratios), "size": size}

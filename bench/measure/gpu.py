@@ -1,9 +1,10 @@
 """The GPU: rays through halls of scanned meshes, and pictures of scenes of ours.
 
-A hall is a grid of copies of a mesh in a closed room, as one list of triangles. Its rays: `primary`, those of a camera;
-`ao`, seven from each point that these meet, of length 1, for which any hit will do; `diffuse`, one of any length;
-`shuffled`, the same in random order. They are traced by `rtslc trace --repeat`, that is by a ray generation that reads 32
-bytes and writes 16 for each, and the time is that of the launch by the device's clock: the median of 12 after a first one.
+A hall is a grid of copies of a mesh in a closed room, as one list of triangles. Its rays:
+`primary`, those of a camera; `ao`, seven from each point that these meet, of length 1, for which
+any hit will do; `diffuse`, one of any length; `shuffled`, the same in random order. They are traced
+by `rtslc trace --repeat`, that is by a ray generation that reads 32 bytes and writes 16 for each,
+and the time is that of the launch by the device's clock: the median of 12 after a first one.
 """
 
 import array

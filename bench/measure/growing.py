@@ -7,7 +7,8 @@ EXAMPLE = Path(__file__).resolve().parent.parent.parent / "examples" / "glass"
 
 
 def scene(folder, imports=(), **parts):
-    """A small scene with the example's camera, to which `parts` add or replace. The path of its file."""
+    """A small scene with the example's camera, to which `parts` add or replace. The path of its
+    file."""
     document = {
         "rtsl": 1,
         "import": [str(EXAMPLE / f"{name}.rtsl") for name in ("PinholeCamera", "Sphere", "Lambert", "Solid", "BallLight")]

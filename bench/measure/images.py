@@ -1,4 +1,5 @@
-"""Bilinear lookups in an image: of a shader, of a plain loop by hand, and of OpenImageIO's texture system."""
+"""Bilinear lookups in an image: of a shader, of a plain loop by hand, and of OpenImageIO's texture
+system."""
 
 import json
 import random

@@ -37,7 +37,8 @@ def write_torus(path, center, axes, large, small):
 
 
 def write_scene(folder):
-    """382 tori, 262,052 triangles, in a box that the camera looks into. Gives the scene's file and the meshes'."""
+    """382 tori, 262,052 triangles, in a box that the camera looks into. Gives the scene's file and
+    the meshes'."""
     dice = random.Random(7)
     files = []
     for number in range(MESHES):

@@ -20,8 +20,8 @@ class Run:
 
 
 def run(arguments, keep_output=True):
-    """Runs a program (a path and its arguments) to its end. Its messages go where ours go. Raises Failed if it cannot
-    be started or ends with anything but 0."""
+    """Runs a program (a path and its arguments) to its end. Its messages go where ours go. Raises
+    Failed if it cannot be started or ends with anything but 0."""
     with tempfile.TemporaryFile() if keep_output else open(os.devnull, "wb") as sink:
         actions = [
             (os.POSIX_SPAWN_OPEN, 0, os.devnull, os.O_RDONLY, 0),

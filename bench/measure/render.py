@@ -12,8 +12,9 @@ SCENE = ROOT / "examples" / "glass" / "scene.json"
 MESH = ROOT / "examples" / "glass" / "knot.obj"
 VARIANTS = {"v3": "bench-handwritten", "native": "bench-handwritten-native", "fast": "bench-handwritten-fast"}
 
-# Both pictures come from the same random numbers, but not from the same roundings: where a ray passes an edge, a sample
-# may fall on its other side. Pictures that are further apart than this do not show the same thing.
+# Both pictures come from the same random numbers, but not from the same roundings: where a ray
+# passes an edge, a sample may fall on its other side. Pictures that are further apart than this do
+# not show the same thing.
 LARGEST_MEAN_DIFFERENCE = 1e-3  # of a channel's mean, relative
 LARGEST_ROOT_MEAN_SQUARE = 1e-2
 
@@ -85,7 +86,8 @@ def measure(build, pairs, variants, render_options, rtslc_options):
             program.run()
             program.forget()
         for round_ in range(pairs):
-            # Each round begins with another program, so that none always profits from what ran before it.
+            # Each round begins with another program, so that none always profits from what ran
+            # before it.
             first = round_ % len(programs)
             for program in programs[first:] + programs[:first]:
                 program.run()

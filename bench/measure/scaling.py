@@ -10,8 +10,8 @@ LIMIT = 1.2  # of exponents
 SPREAD = 0.03  # of a time from run to run, relatively
 RESOLUTION = 0.005  # of a time, in seconds
 
-# What grows, and to what sizes. The largest takes some seconds at most, the smallest several times what a program of
-# size 1 takes where that is possible.
+# What grows, and to what sizes. The largest takes some seconds at most, the smallest several times
+# what a program of size 1 takes where that is possible.
 SERIES = {
     "classes": (growing.classes, (100, 300, 1000)),
     "traces in an if": (growing.traces, (30, 100, 300)),
@@ -43,15 +43,17 @@ JOBS = {
 
 
 def processor_time(arguments, runs):
-    """The least of some runs, in seconds of processor time over all threads; and of time by the clock."""
+    """The least of some runs, in seconds of processor time over all threads; and of time by the
+    clock."""
     done = [process.run([str(one) for one in arguments], keep_output=False) for _ in range(runs)]
     return min(run.user + run.system for run in done), min(run.wall for run in done)
 
 
 def fit(points, constant):
-    """The exponent of the power of the size with which the time beyond `constant` grows, and its standard error: the slope
-    of a line through the logarithms, by least squares. Points count by how well the growth is known, which is badly where it
-    is a small part of a time. None where the largest program takes hardly more than the smallest possible one."""
+    """The exponent of the power of the size with which the time beyond `constant` grows, and its
+    standard error: the slope of a line through the logarithms, by least squares. Points count by
+    how well the growth is known, which is badly where it is a small part of a time. None where the
+    largest program takes hardly more than the smallest possible one."""
     def spread(time):
         return hypot(SPREAD * time, RESOLUTION)
 

@@ -1,4 +1,5 @@
-"""Shaders that rtslc prints as C++ beside the same shaders written by hand: processor time of a call."""
+"""Shaders that rtslc prints as C++ beside the same shaders written by hand: processor time of a
+call."""
 
 import json
 import shutil
@@ -31,7 +32,8 @@ def compile_file(compiler, source, target, flags):
 
 
 def build_programs(compiler, printed, folder, library):
-    """A program a pairing; `printed` has the files of each arithmetic. What both sides call is the same object file."""
+    """A program a pairing; `printed` has the files of each arithmetic. What both sides call is the
+    same object file."""
     shared = [compile_file(compiler, BY_HAND / f"{name}.cpp", folder / f"{name}.o", ()) for name in ("Main", "Surroundings")]
     objects = {}
     for arithmetic, sources in printed.items():

@@ -12,8 +12,8 @@ MATERIAL = Path(__file__).resolve().parent.parent / "inputs" / "RoughMetal.rtsl"
 
 
 def long_material():
-    """A material of 500 lines with ten traces: coats one upon the other, each of which weakens and tints what comes
-    through the one below."""
+    """A material of 500 lines with ten traces: coats one upon the other, each of which weakens and
+    tints what comes through the one below."""
     lines = ["class Coats : rt_Material;", "", "public float strength = 0.5;", "", "void shade() {",
              "  color sum = color(0.0);", "  vec3 n = normalize(rt_ShadingNormal);", "  vec3 d = rt_RayDirection;",
              "  float w = strength;"]

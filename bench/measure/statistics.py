@@ -26,10 +26,11 @@ class Summary:
 
 
 def summarise(values, confidence=0.95):
-    """The interval lies between two order statistics, which assumes nothing of the distribution except that the values are
-    independent: the k-th smallest and the k-th largest of n enclose the median with probability 1 - 2 P(B < k), B
-    binomial with n and 1/2 (Thompson 1936). The largest k that keeps `confidence` is taken; below 6 values even k = 1
-    does not, and the actual confidence is returned."""
+    """The interval lies between two order statistics, which assumes nothing of the distribution
+    except that the values are independent: the k-th smallest and the k-th largest of n enclose the
+    median with probability 1 - 2 P(B < k), B binomial with n and 1/2 (Thompson 1936). The largest k
+    that keeps `confidence` is taken; below 6 values even k = 1 does not, and the actual confidence
+    is returned."""
     ordered = sorted(values)
     n = len(ordered)
 

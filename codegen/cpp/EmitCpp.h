@@ -1,8 +1,8 @@
 //===- EmitCpp.h - a checked module as C++ --------------------------------===//
 //
 // Prints RTSL as one file of C++17 on GLM and rtsl/shader.h. It is printed from the typed tree,
-// which still has the author's loops, expressions and names; docs/cpp-output.md explains why, and how
-// the output keeps the bits of the compiler's own machine code. The description of the
+// which still has the author's loops, expressions and names; docs/cpp-output.md explains why, and
+// how the output keeps the bits of the compiler's own machine code. The description of the
 // program (types of rays, places of attributes, what of a hit is read) comes from linking.
 //
 //===----------------------------------------------------------------------===//

@@ -3,8 +3,8 @@
 // A class with scratch members has a struct `Scratch` of them, which its methods take: in
 // `intersect` it is a variable of that call, elsewhere what the hit that won has stored. A material
 // finds a primitive's attribute by name and type, so equal ones have the same place
-// (codegen/link/steps/PlaceAttributes.cpp). Classes that derive from one another share one `Scratch`,
-// with the members of all.
+// (codegen/link/steps/PlaceAttributes.cpp). Classes that derive from one another share one
+// `Scratch`, with the members of all.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

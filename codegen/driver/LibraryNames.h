@@ -9,8 +9,8 @@
 
 namespace rtsl {
 
-/// For messages about unknown names. The library's files are read at the first call; only those that
-/// contain the name are parsed, each once.
+/// For messages about unknown names. The library's files are read at the first call; only those
+/// that contain the name are parsed, each once.
 class LibraryNames {
 public:
   /// The module that defines a class, struct, constant or function of this name at file level:

@@ -1,8 +1,8 @@
 //===- Parts.h - large programs in parts that are compiled in parallel ----===//
 //
-//   @shade ─── switch ──┬─> @M0.shade           @shade ─── switch ──┬─> (@M0.shade)     @M0.shade   @M500.shade
-//                       ├─> @M1.shade    ==>                        ├─> (@M1.shade)     @M1.shade   @M501.shade
-//                       ┆                                           ┆                   ┆           ┆
+//   @shade ── switch ─┬> @M0.shade         @shade ── switch ─┬> (@M0.shade)  @M0.shade  @M500.shade
+//                     ├> @M1.shade   ==>                     ├> (@M1.shade)  @M1.shade  @M501.shade
+//                     ┆                                      ┆               ┆          ┆
 //
 // Functions that stay separate anyway (codegen/ir/Separate.h) can be compiled in different parts at
 // no loss. The distribution depends only on the program, not on the host, so the code is the same

@@ -28,8 +28,8 @@ inline mlir::Operation *variableOperation(mlir::Value address) {
   return base;
 }
 
-/// Whether the address is in an output buffer, which the launch changes. `address` has no value that
-/// is constant for the launch then.
+/// Whether the address is in an output buffer, which the launch changes. `address` has no value
+/// that is constant for the launch then.
 inline bool isInOutputBuffer(mlir::Value address) {
   auto element = llvm::dyn_cast_or_null<BufferElementOp>(baseOperation(address));
   return element &&

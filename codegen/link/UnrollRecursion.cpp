@@ -1,9 +1,10 @@
 //===- UnrollRecursion.cpp - copies of recursive functions ----------------===//
 //
-//   func @dispatch.Layer.at(%o, %p)  { call @Mixed.at }      func @dispatch.Layer.at    { call @Mixed.at }
-//   func @Mixed.at(%self, %p)                                func @Mixed.at             { call @dispatch.Layer.at.2 }
-//     { call @dispatch.Layer.at(%inner, ...) }         ==>   func @dispatch.Layer.at.2  { call @Mixed.at.2 }
-//                                                            func @Mixed.at.2           { 0 }
+//   func @dispatch.Layer.at(%o, %p)              func @dispatch.Layer.at   { call @Mixed.at }
+//     { call @Mixed.at }                  ==>    func @Mixed.at
+//   func @Mixed.at(%self, %p)                      { call @dispatch.Layer.at.2 }
+//     { call @dispatch.Layer.at(%inner, ...) }   func @dispatch.Layer.at.2 { call @Mixed.at.2 }
+//                                                func @Mixed.at.2          { 0 }
 //
 // A GPU has no memory for recursion whose depth depends on the scene; and recursive functions are
 // never inlined. Each iteration of such a cycle calls through a reference, to an object that is

@@ -1,8 +1,8 @@
 //===- HideConstants.h - no folding in single precision -------------------===//
 //
-// With --fp=double arithmetic is widened on LLVM IR (codegen/emit/rewrites/DoublePrecision.h). Anything
-// folded before that was computed in single precision: 1 - exp(-1e-6) has lost its digits. So
-// lowering does not fold arithmetic, and the sources of numbers are hidden from the passes:
+// With --fp=double arithmetic is widened on LLVM IR (codegen/emit/rewrites/DoublePrecision.h).
+// Anything folded before that was computed in single precision: 1 - exp(-1e-6) has lost its digits.
+// So lowering does not fold arithmetic, and the sources of numbers are hidden from the passes:
 // constants, loads, integers that become floats, bit casts.
 //
 //===----------------------------------------------------------------------===//

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""pictures.py RTSLC FOLDER [--quick] [CLASS...]: renders a picture of each class of the standard library into FOLDER.
+"""pictures.py RTSLC FOLDER [--quick] [CLASS...]: renders a picture of each class of the standard
+library into FOLDER.
 
-docs/library.md shows them; --quick, for tests, renders few samples of few pixels and compares them with the pictures of
-the document. Each scene is written beside its picture while it is rendered, and removed after."""
+docs/library.md shows them; --quick, for tests, renders few samples of few pixels and compares them
+with the pictures of the document. Each scene is written beside its picture while it is rendered,
+and removed after."""
 import json
 import pathlib
 import struct
@@ -131,7 +133,8 @@ def scenes():
 
 
 def cells(png):
-    """The mean colors, 0 to 255, of 4 x 3 equal parts of a picture as rtslc writes it: RGB of 8 bits."""
+    """The mean colors, 0 to 255, of 4 x 3 equal parts of a picture as rtslc writes it: RGB of 8
+    bits."""
     data, at, packed = png.read_bytes(), 8, b""
     width, height = struct.unpack(">II", data[16:24])
     while at < len(data):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""make-tiles.py: writes the hundred images of this example, tiles/00.png to tiles/99.png, 64 x 64 pixels each."""
+"""make-tiles.py: writes the hundred images of this example, tiles/00.png to tiles/99.png, 64 x 64
+pixels each."""
 import math
 import pathlib
 import struct

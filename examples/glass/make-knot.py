@@ -26,7 +26,8 @@ def unit(a):
 
 
 def frame(s):
-    """Two unit vectors across the curve: away from the knot's axis, and the rest of a right-handed frame."""
+    """Two unit vectors across the curve: away from the knot's axis, and the rest of a right-handed
+    frame."""
     tangent = unit(sub(curve(s + 1e-4), curve(s - 1e-4)))
     p = curve(s)
     away = (p[0], p[1], 0.0)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes a glTF model with each feature that scenes read: still-life.gltf, its buffer, and its images.
+"""Writes a glTF model with each feature that scenes read: still-life.gltf, its buffer, and its
+images.
 
     model.py FOLDER
 

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""make-smoke.py: writes smoke.raw, a column of smoke that rises, sways and breaks up, as 40 x 64 x 40 densities of 8 bits.
+"""make-smoke.py: writes smoke.raw, a column of smoke that rises, sways and breaks up, as 40 x 64 x
+40 densities of 8 bits.
 
-The axis of the column is bent by noise that grows with the height, and its edge frayed by octaves of noise whose domain is
-warped by other noise, so that it curls."""
+The axis of the column is bent by noise that grows with the height, and its edge frayed by octaves
+of noise whose domain is warped by other noise, so that it curls."""
 import math
 import pathlib
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the scene of this example and its one mesh; with a path to rtslc, renders the frames of the animation, and puts them
-into one animated PNG.
+"""Writes the scene of this example and its one mesh; with a path to rtslc, renders the frames of
+the animation, and puts them into one animated PNG.
 
 usage: make-whirligig.py [RTSLC [FRAMES]]
 """

@@ -4,8 +4,8 @@
  * (rtsl/runtime.h) with handles in place of classes. Shaders come from `rtslc compile --emit=cpp`,
  * which exports `const RtslShaders *name_shaders(void)`.
  *
- * A function that fails returns 0 (or a null pointer), and rtslError returns the reason. Handles may be used
- * by one thread at a time.
+ * A function that fails returns 0 (or a null pointer), and rtslError returns the reason. Handles
+ * may be used by one thread at a time.
  *
 \*===------------------------------------------------------------------------===*/
 #ifndef RTSL_RTSL_H
@@ -24,7 +24,8 @@ typedef struct RtslScene RtslScene;
 /* An object of the scene; 0 is none. */
 typedef uint32_t RtslObject;
 
-/* The error of the last function that failed in this thread; "" if none did. Valid until the next call. */
+/* The error of the last function that failed in this thread; "" if none did. Valid until the next
+ * call. */
 const char *rtslError(void);
 
 RtslScene *rtslSceneCreate(const RtslShaders *shaders);
@@ -47,8 +48,9 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
  * Between them the numbers are interpolated linearly. */
 int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *times, uint32_t count,
                     uint32_t mask);
-/* The same by keys of scale, rotation (a quaternion x, y, z, w, of any length but 0) and translation,
- * applied in this order. Rotations take the shortest turn from each key to the next. */
+/* The same by keys of scale, rotation (a quaternion x, y, z, w, of any length but 0) and
+ * translation, applied in this order. Rotations take the shortest turn from each key to the next.
+ * */
 typedef struct RtslPlacementKey {
   double scale[3], rotation[4], translation[3];
   float time;
@@ -109,15 +111,16 @@ typedef struct RtslRenderSettings {
 /* 960 x 540, 16 samples, depth 8, seed 1, all cores. */
 RtslRenderSettings rtslRenderDefaults(void);
 
-/* Renders into `pixels`: width * height * channels floats of linear light, rows from the top, with as
- * many channels as the shaders' colors have (rtslSceneChannels). */
+/* Renders into `pixels`: width * height * channels floats of linear light, rows from the top, with
+ * as many channels as the shaders' colors have (rtslSceneChannels). */
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels);
 uint32_t rtslSceneChannels(const RtslScene *scene);
 /* Renders and writes an .exr or .png. */
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
 
-/* Statistics of the last rendering of this thread. Samples that are infinite or not a number are left out of the means of their
- * pixels, and rays deeper than maxDepth are not sent: neither stops a rendering. */
+/* Statistics of the last rendering of this thread. Samples that are infinite or not a number are
+ * left out of the means of their pixels, and rays deeper than maxDepth are not sent: neither stops
+ * a rendering. */
 typedef struct RtslRenderFacts {
   uint64_t samples;
   uint64_t samplesNotFinite,
@@ -126,7 +129,8 @@ typedef struct RtslRenderFacts {
 } RtslRenderFacts;
 RtslRenderFacts rtslLastRendering(void);
 
-/* Calls `take` with each line that shaders (compiled with --print) have printed since the last call, in the order of pixels. */
+/* Calls `take` with each line that shaders (compiled with --print) have printed since the last
+ * call, in the order of pixels. */
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
                     void *context);
 

@@ -170,8 +170,8 @@ public:
     unsigned depth;
   };
 
-  /// Subtrees of up to `smallest` boxes are left out. What other threads run meanwhile has no effect
-  /// on the tree.
+  /// Subtrees of up to `smallest` boxes are left out. What other threads run meanwhile has no
+  /// effect on the tree.
   Builder(std::vector<NumberedBox> &boxes, std::size_t smallest, unsigned threads)
       : boxes(boxes), smallest(smallest), threads(threads) {}
 

@@ -36,12 +36,12 @@ struct BinaryTree {
   std::vector<NumberedBox> boxes; // in the order of the leaves
 };
 
-/// No path from the root is longer than device::maxBvhDepth. `threads` 0: one per core; the tree does
-/// not depend on their number.
+/// No path from the root is longer than device::maxBvhDepth. `threads` 0: one per core; the tree
+/// does not depend on their number.
 BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads);
 
-/// Of a tree of so many boxes: subtrees of up to this many are left to one thread each, whatever the
-/// number of threads.
+/// Of a tree of so many boxes: subtrees of up to this many are left to one thread each, whatever
+/// the number of threads.
 inline std::size_t largestForOneThread(std::size_t boxes) {
   return std::max<std::size_t>(4096, boxes / 256);
 }

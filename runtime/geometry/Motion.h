@@ -74,8 +74,9 @@ bool operator==(const MovingTransform &a, const MovingTransform &b);
 /// An order of any kind, for sorted containers.
 bool operator<(const MovingTransform &a, const MovingTransform &b);
 
-/// A box around all places of the box [lower, upper] at times from `begin` to `end`, in double. `size` is a
-/// bound of the coordinates that occur in the computation. An infinite side stays infinite.
+/// A box around all places of the box [lower, upper] at times from `begin` to `end`, in double.
+/// `size` is a bound of the coordinates that occur in the computation. An infinite side stays
+/// infinite.
 ///
 /// Between two times at a distance h, a point that is accelerated by at most a is within h^2 a / 8
 /// of the segment between its places at these times. So the boxes at some times, and the

@@ -18,8 +18,8 @@ struct Layer {
 /// Whether writeImage(path, ..., format) writes an EXR file, which can have layers.
 bool isExr(const std::string &path, PictureFormat format);
 
-/// As writeImage(), to an EXR file in which channel `C` of a layer is called `layer.C`. All have the
-/// size and the place of `image`.
+/// As writeImage(), to an EXR file in which channel `C` of a layer is called `layer.C`. All have
+/// the size and the place of `image`.
 void writeLayers(const std::string &path, const Image &image, const std::vector<Layer> &layers);
 
 } // namespace rtsl::runtime

@@ -34,8 +34,8 @@ void writeCheckpoint(const std::string &path, const Identity &identity,
                      const PartialRendering &rendering);
 
 /// The contents of a file with this name. Throws BadCheckpoint: it is no checkpoint, of another
-/// version or another rendering, truncated, or damaged (a change of any one byte is found). The sums
-/// have this many pixels and components.
+/// version or another rendering, truncated, or damaged (a change of any one byte is found). The
+/// sums have this many pixels and components.
 PartialRendering parseCheckpoint(std::string_view bytes, const std::string &path,
                                  const Identity &identity, std::uint64_t pixels,
                                  std::uint32_t components);

@@ -16,8 +16,8 @@ public:
 
   unsigned count() const { return threads; }
 
-  /// Runs `work(0)` ... `work(count() - 1)` in parallel, each on one thread. If memory is short some
-  /// are skipped, but `work(0)` always runs: throws OutOfMemory if there is no stack for it.
+  /// Runs `work(0)` ... `work(count() - 1)` in parallel, each on one thread. If memory is short
+  /// some are skipped, but `work(0)` always runs: throws OutOfMemory if there is no stack for it.
   /// Rethrows exceptions of `work`.
   void run(const std::function<void(unsigned)> &work) const;
 

@@ -15,9 +15,9 @@ struct PassState {
   std::uint32_t samplesPerPixel = 0; // that every pixel has
   double seconds = 0;
   /// The estimated relative error of the picture: the root of the mean over the pixels of the
-  /// variance of their means, divided by the mean of the picture. A pixel's value is the mean of its
-  /// components, its variance the sample variance divided by the number of samples, as if these were
-  /// independent: they are spread evenly, so the true error is smaller. Measured at
+  /// variance of their means, divided by the mean of the picture. A pixel's value is the mean of
+  /// its components, its variance the sample variance divided by the number of samples, as if these
+  /// were independent: they are spread evenly, so the true error is smaller. Measured at
   /// certain numbers of samples, which do not depend on time; infinite before the first of them.
   double error = std::numeric_limits<double>::infinity();
 };
@@ -49,8 +49,8 @@ struct PassOptions {
 };
 
 /// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are
-/// short, so that the limits are met and Ctrl-C need not wait, and long enough that starting threads
-/// costs nothing. None passes a number of samples at which the error is measured.
+/// short, so that the limits are met and Ctrl-C need not wait, and long enough that starting
+/// threads costs nothing. None passes a number of samples at which the error is measured.
 std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes, std::uint32_t most);
 
 /// The next number of samples at which the error is measured: 16, 20, 25, ...

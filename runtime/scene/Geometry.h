@@ -39,8 +39,8 @@ public:
   std::uint32_t addMeshInstance(const Objects &objects, std::uint32_t mesh, RtslRef material,
                                 const Placement &placement);
 
-  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops mesh attributes that no
-  /// material reads, unless the program keeps them.
+  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops mesh attributes that
+  /// no material reads, unless the program keeps them.
   void useProgram(const Objects &objects);
   /// Set by useProgram.
   const std::vector<MeshAttribute> &meshAttributes() const { return attributes; }

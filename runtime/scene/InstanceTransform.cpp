@@ -88,8 +88,8 @@ void setWorldBounds(RtslInstance &instance, const Bounds &bounds, const MovingTr
   }
   const SweptBox swept = sweptBox(map, bounds.lower, bounds.upper, begin, end);
   for (std::size_t i = 0; i < 3; ++i) {
-    // A moving map is rounded to floats, and the ray that is tested inside is rounded once more than
-    // the one that meets this box.
+    // A moving map is rounded to floats, and the ray that is tested inside is rounded once more
+    // than the one that meets this box.
     const double margin = swept.size[i] * 0x1p-19 + double(std::numeric_limits<float>::min());
     const auto side = [](double x) {
       return float(std::clamp(x, -double(largestSide), double(largestSide)));

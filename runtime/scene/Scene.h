@@ -47,8 +47,8 @@ public:
 
   /// The times of samples are drawn between these two, 0 <= open <= close <= 1; rays of other times
   /// see the scene as when it opens or closes. Without it they are drawn from all of [0, 1] if
-  /// something moves, and are 0 if nothing does. Throws OutOfRange, and NotSettable if anything that
-  /// moves has been added: bounds hold for these times alone.
+  /// something moves, and are 0 if nothing does. Throws OutOfRange, and NotSettable if anything
+  /// that moves has been added: bounds hold for these times alone.
   void setShutter(float open, float close);
 
   /// Adds an instance of an RTSL primitive to what rays can hit. Its bounds are computed at once:

@@ -59,7 +59,8 @@ struct BufferPlace {
   bool isOutput;        // the program writes it
 };
 
-/// A buffer that launches of the scene write. Its elements stay where they are as long as the scene.
+/// A buffer that launches of the scene write. Its elements stay where they are as long as the
+/// scene.
 struct OutputBuffer {
   std::string member;
   ValueType type;

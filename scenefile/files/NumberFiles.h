@@ -36,7 +36,8 @@ private:
 };
 
 /// Reads numbers between commas, a row a line. The first line may have names; `columns` chooses by
-/// them, in this order; empty: all. Throws BadBuffer, UnknownName, and the errors of reading a file.
+/// them, in this order; empty: all. Throws BadBuffer, UnknownName, and the errors of reading a
+/// file.
 NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns);
 
 /// The places of the chosen columns among the names of a file. `where` begins the message. Throws

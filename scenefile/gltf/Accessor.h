@@ -22,8 +22,8 @@ public:
   std::size_t count() const { return elementCount; }
   const JsonValue &json() const { return *value; }
 
-  /// All numbers; normalised integers as those from 0, or -1, to 1. Throws BadBuffer, and the errors
-  /// of reading buffers.
+  /// All numbers; normalised integers as those from 0, or -1, to 1. Throws BadBuffer, and the
+  /// errors of reading buffers.
   std::vector<float> floats() const;
   /// All numbers, which must be unsigned integers.
   std::vector<std::uint32_t> integers() const;

@@ -141,8 +141,8 @@ JsonValue cameraOf(const File &file, const std::string &name, const Transform &t
   throw error;
 }
 
-/// Candela and lux are of radiation that falls on a surface; our lights give the radiance of a white
-/// surface, which is a pi-th of it.
+/// Candela and lux are of radiation that falls on a surface; our lights give the radiance of a
+/// white surface, which is a pi-th of it.
 JsonValue lightOf(const File &file, const JsonValue &lightNumber, const std::string &user,
                   Modules &modules, std::vector<Warning> &warnings) {
   const std::size_t index = file.index("lights", lightNumber, "`light` of " + user);

@@ -37,8 +37,8 @@ struct Motion {
 /// The motion of a node without a matrix. Throws WrongType, OutOfRange.
 Motion motionOf(const JsonValue &node, const std::string &what);
 
-/// What the elements of a list are called: their name if no other has it, and else their place, such
-/// as "nodes.3".
+/// What the elements of a list are called: their name if no other has it, and else their place,
+/// such as "nodes.3".
 class Labels {
 public:
   Labels(const File &file, const char *list);

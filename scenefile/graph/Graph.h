@@ -1,9 +1,9 @@
 //===- Graph.h - the nodes of a scene file --------------------------------===//
 //
 // A node is a geometry (a mesh or a primitive, with a material), or a light, or has children, other
-// nodes, and perhaps a selector among them; each may have a transform, an id and variables, which apply to all
-// that is below. Nodes may be shared: a node is an instance of its geometry for each way from a
-// root down to it. docs/scene-format.md has the keys.
+// nodes, and perhaps a selector among them; each may have a transform, an id and variables, which
+// apply to all that is below. Nodes may be shared: a node is an instance of its geometry for each
+// way from a root down to it. docs/scene-format.md has the keys.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -24,9 +24,9 @@ struct NodeReaders {
 };
 
 /// Reads `nodes`, and `root` or `roots`, of a scene: appends the geometries that a root leads to,
-/// with their instances, to `scene.objects`, and lights to `scene.lights`, and sets `scene.roots`, `scene.nodes`,
-/// `scene.selectors` and `scene.scopes`. Nodes that no root leads to are noted in `scene.warnings`. Adds mistakes to
-/// `errors`.
+/// with their instances, to `scene.objects`, and lights to `scene.lights`, and sets `scene.roots`,
+/// `scene.nodes`, `scene.selectors` and `scene.scopes`. Nodes that no root leads to are noted in
+/// `scene.warnings`. Adds mistakes to `errors`.
 void readGraph(const JsonValue &root, const NodeReaders &readers, SceneDescription &scene,
                ErrorCollector &errors);
 

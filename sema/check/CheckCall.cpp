@@ -298,8 +298,8 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   return node;
 }
 
-/// Constructors and most methods of the table are called by the engine alone; a few may be called by
-/// other methods of the same object, where these may do what they do.
+/// Constructors and most methods of the table are called by the engine alone; a few may be called
+/// by other methods of the same object, where these may do what they do.
 bool FunctionChecker::requireCallable(const typed::Function &callee, SourceRange range,
                                       bool onOtherObject) {
   if (!callee.isConstructor && !callee.isStateMethod)

@@ -86,8 +86,8 @@ void Program::findDefaults() {
   }
 }
 
-/// The default class from which a class derives that names an rt_ class as its base: the first whose
-/// required methods, those without a body, it defines. Null if there is none.
+/// The default class from which a class derives that names an rt_ class as its base: the first
+/// whose required methods, those without a body, it defines. Null if there is none.
 ClassScope *Program::defaultOf(const ClassScope &scope) const {
   const auto candidates = defaults.find(scope.root);
   if (candidates == defaults.end() || scope.declaration->defaultRange.isValid())

@@ -18,8 +18,8 @@ const Expr &rootOf(const Expr &expr);
 /// The lvalue that `place` is part of: as above, and also through components.
 const Expr &wholeOf(const Expr &place);
 
-/// Does it name all components of a vector in their order, such as `v.xyz` of a vec3? Then it is the
-/// vector.
+/// Does it name all components of a vector in their order, such as `v.xyz` of a vec3? Then it is
+/// the vector.
 bool isWholeVector(const SwizzleExpr &expr);
 
 /// Is it an element of an output buffer, or a part of one?

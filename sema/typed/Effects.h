@@ -1,7 +1,7 @@
 //===- Effects.h - what evaluation reads and writes -----------------------===//
 //
-// The one analysis of effects on typed trees. RTSL evaluates operands from left to right, C++ in any
-// order: the printer finds with it which operands depend on the order, which functions take the
+// The one analysis of effects on typed trees. RTSL evaluates operands from left to right, C++ in
+// any order: the printer finds with it which operands depend on the order, which functions take the
 // ray's state and which methods are const; reflection prints the same facts. These are properties
 // of the author's expressions, which passes have changed in the IR. What operations of the IR read
 // and write is found there (codegen/ir/MemoryAccesses.h). Which rays an

@@ -2,7 +2,7 @@
 //
 //   static RtslShaders describe() {
 //     rtsl::Program<3> program;
-//     program.add<Glass>(static_cast<std::uint32_t>(Id::Glass), "Glass", ...).member(...).needs(...);
+//     program.add<Glass>(static_cast<std::uint32_t>(Id::Glass), "Glass", ...).member(...);
 //     program.slots().rt_Material_shade = &slots::shade;
 //     ...
 //

@@ -1,8 +1,8 @@
 //===- Payloads.h - rays that carry a struct ------------------------------===//
 //
 // A struct that rays carry has a number, and flags for how hits of its rays are searched: both come
-// from linking (codegen/link/steps/RayTypes.cpp). Methods that take a payload are reached through slots
-// that test which it is.
+// from linking (codegen/link/steps/RayTypes.cpp). Methods that take a payload are reached through
+// slots that test which it is.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

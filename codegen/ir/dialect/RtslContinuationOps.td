@@ -1,7 +1,7 @@
 //===- RtslContinuationOps.td - continuations (level 2) -------------------===//
 //
-// The operations that replace `rtsl.trace` when a function is split there, in the order in which the
-// passes of codegen/passes/continuation make them. Included by RtslOps.td.
+// The operations that replace `rtsl.trace` when a function is split there, in the order in which
+// the passes of codegen/passes/continuation make them. Included by RtslOps.td.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CONTINUATION_OPS_TD
@@ -16,20 +16,23 @@ def Rtsl_SuspendOp : Rtsl_Op<"suspend", [Terminator, AttrSizedOperandSegments,
     DeclareOpInterfaceMethods<BranchOpInterface>]> {
   let summary = "traces a ray and resumes at a block when it returns";
   let description = [{
-    Every value that is live in the `resume` block has to survive the trace. The operands passed to its arguments are
-    saved and restored; `names` gives the name of each in the source. A value has one unique name in the whole function,
-    so that it keeps its slot from trace to trace. The `resume` block begins with `rtsl.trace_result`, and this op is
-    its only predecessor. A ray with a payload is prepared before, by `rtsl.spawn_payload`: then no ray is named here,
-    and the `resume` block begins with `rtsl.trace_returned`. A call is prepared before by `rtsl.enter`; its block
-    begins with `rtsl.call_returned`.
+    Every value that is live in the `resume` block has to survive the trace. The operands passed to
+    its arguments are saved and restored; `names` gives the name of each in the source. A value has
+    one unique name in the whole function, so that it keeps its slot from trace to trace. The
+    `resume` block begins with `rtsl.trace_result`, and this op is its only predecessor. A ray with
+    a payload is prepared before, by `rtsl.spawn_payload`: then no ray is named here, and the
+    `resume` block begins with `rtsl.trace_returned`. A call is prepared before by `rtsl.enter`; its
+    block begins with `rtsl.call_returned`.
 
     Example: `rtsl.suspend %origin, %direction, ^resume(%i : i32) names ["i"]`
   }];
-  let arguments = (ins Optional<Rtsl_Vec3>:$origin, Optional<Rtsl_Vec3>:$direction, Variadic<Rtsl_Value>:$saved,
+  let arguments = (ins Optional<Rtsl_Vec3>:$origin, Optional<Rtsl_Vec3>:$direction,
+                       Variadic<Rtsl_Value>:$saved,
                        DefaultValuedAttr<StrArrayAttr, "{}">:$names);
   let successors = (successor AnySuccessor:$resume);
   let assemblyFormat = [{
-    ($origin^ `,` $direction `,`)? $resume (`(` $saved^ `:` type($saved) `)`)? (`names` $names^)? attr-dict
+    ($origin^ `,` $direction `,`)? $resume (`(` $saved^ `:` type($saved) `)`)?
+    (`names` $names^)? attr-dict
   }];
   let hasVerifier = 1;
 }
@@ -74,7 +77,8 @@ def Rtsl_FrameStoreOp : Rtsl_Op<"frame_store", [MemoryEffects<[MemWrite<Rtsl_Fra
   let description = [{
     Example: `rtsl.frame_store %i, "i"[0] : i32`
   }];
-  let arguments = (ins Rtsl_Value:$value, StrAttr:$name, I32Attr:$offset, OptionalAttr<I32Attr>:$bit);
+  let arguments = (ins Rtsl_Value:$value, StrAttr:$name, I32Attr:$offset,
+                       OptionalAttr<I32Attr>:$bit);
   let assemblyFormat = "$value `,` $name `[` $offset `]` (`bit` $bit^)? attr-dict `:` type($value)";
   let hasVerifier = 1;
 }
@@ -82,7 +86,8 @@ def Rtsl_FrameStoreOp : Rtsl_Op<"frame_store", [MemoryEffects<[MemWrite<Rtsl_Fra
 def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
   let summary = "address of a variable in the frame";
   let description = [{
-    For a variable that is indexed at run time and live across a trace. It shares no words with saved values while live.
+    For a variable that is indexed at run time and live across a trace. It shares no words with
+    saved values while live.
 
     Example: `%table = rtsl.frame_object "table"[8] : !rtsl.ptr<!rtsl.array<4 x f32>>`
   }];
@@ -94,8 +99,9 @@ def Rtsl_FrameObjectOp : Rtsl_Op<"frame_object", [Pure, Rtsl_Named]> {
 def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
   let summary = "prepares the ray that is traced when this state ends";
   let description = [{
-    Followed by the end of the state, with `rtsl.next trace`. With `last` the ray is a tail trace and replaces the one
-    that sends it: then `rtsl.next last` follows, and control does not return here.
+    Followed by the end of the state, with `rtsl.next trace`. With `last` the ray is a tail trace
+    and replaces the one that sends it: then `rtsl.next last` follows, and control does not return
+    here.
 
     Example: `rtsl.spawn %origin, %direction`
   }];
@@ -106,17 +112,19 @@ def Rtsl_SpawnOp : Rtsl_Op<"spawn", []> {
 def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
   let summary = "prepares a ray with a payload, which is traced when this state ends";
   let description = [{
-    Has the operands of `rtsl.trace_payload`. The payload is in the frame; with `last`, for a tail trace (see
-    `rtsl.spawn`), it is the payload of the ray that sends this one.
+    Has the operands of `rtsl.trace_payload`. The payload is in the frame; with `last`, for a tail
+    trace (see `rtsl.spawn`), it is the payload of the ray that sends this one.
 
-    Example: `rtsl.spawn_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
+    Example: `rtsl.spawn_payload %o, %d from %a to %b carries %p
+             : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
   let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, F32:$tmin, F32:$tmax,
                        Rtsl_PtrToStruct:$payload, Optional<I32>:$root,
                        Optional<I32>:$mask, Optional<F32>:$time, OptionalAttr<I32Attr>:$ray_type,
                        OptionalAttr<I32Attr>:$how, UnitAttr:$last);
   let assemblyFormat = [{
-    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)? (`mask` $mask^)? (`time` $time^)?
+    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)?
+    (`mask` $mask^)? (`time` $time^)?
     (`last` $last^)? attr-dict `:` type($payload)
   }];
 }
@@ -124,22 +132,26 @@ def Rtsl_SpawnPayloadOp : Rtsl_Op<"spawn_payload", [AttrSizedOperandSegments]> {
 // Calls with a frame of their own. The callee runs for the same ray, on a frame above that of its
 // caller:
 //
-//   bytes 0 to 11   the state in which the caller resumes, the caller's object, and how far below this frame its own begins
+//   bytes 0 to 11   the state in which the caller resumes, the caller's object, and how far below
+//                   this frame its own begins
 //   from 16 on      arguments, then results, then the values that the callee saves
 
 def Rtsl_EnterOp : Rtsl_Op<"enter", []> {
   let summary = "prepares a call that is made when this state ends";
   let description = [{
-    Comes before a suspend that names no ray. If the callee is a method, its object is the first argument; `offsets` are
-    those of the other arguments in its frame. `writes` names the state variables that the call may change; without it,
-    all. `resume` is the state in which the caller resumes, once it is known.
+    Comes before a suspend that names no ray. If the callee is a method, its object is the first
+    argument; `offsets` are those of the other arguments in its frame. `writes` names the state
+    variables that the call may change; without it, all. `resume` is the state in which the caller
+    resumes, once it is known.
 
     Example: `rtsl.enter @Tint.follow(%tint, %d) at [16] : !rtsl.ref<"Tint">, vector<3xf32>`
   }];
-  let arguments = (ins FlatSymbolRefAttr:$callee, Variadic<AnyType>:$operands, DenseI32ArrayAttr:$offsets,
+  let arguments = (ins FlatSymbolRefAttr:$callee, Variadic<AnyType>:$operands,
+                       DenseI32ArrayAttr:$offsets,
                        OptionalAttr<StrArrayAttr>:$writes, OptionalAttr<FlatSymbolRefAttr>:$resume);
   let assemblyFormat = [{
-    $callee `(` $operands `)` `at` $offsets (`writes` $writes^)? (`then` $resume^)? attr-dict (`:` type($operands)^)?
+    $callee `(` $operands `)` `at` $offsets (`writes` $writes^)? (`then` $resume^)? attr-dict
+    (`:` type($operands)^)?
   }];
 }
 
@@ -215,7 +227,8 @@ def Rtsl_KeptAddressOp : Rtsl_Op<"kept_address", []> {
 }
 
 def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
-    I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">, I32EnumCase<"Jump", 2, "jump">,
+    I32EnumCase<"Done", 0, "done">, I32EnumCase<"Trace", 1, "trace">,
+    I32EnumCase<"Jump", 2, "jump">,
     I32EnumCase<"Last", 3, "last">, I32EnumCase<"Return", 4, "return">]> {
   let cppNamespace = "::rtsl::ir";
 }
@@ -223,17 +236,19 @@ def Rtsl_Transition : I32Enum<"Transition", "what happens when a state ends", [
 def Rtsl_NextOp : Rtsl_Op<"next", [Pure]> {
   let summary = "the transition at the end of this state, as a number";
   let description = [{
-    `done`: the method has returned. `trace @s`: the spawned ray is traced, then state `@s` runs. `jump @s`: state `@s`
-    runs at once. `last`: the spawned ray is a tail trace that replaces this one. `return`: the caller's state runs at
-    once. Numbers are assigned when the program is complete: 0 for done, the number of the state for `trace`, its
-    negative for `jump` and `return`, RTSL_NEXT_LAST for `last`.
+    `done`: the method has returned. `trace @s`: the spawned ray is traced, then state `@s` runs.
+    `jump @s`: state `@s` runs at once. `last`: the spawned ray is a tail trace that replaces this
+    one. `return`: the caller's state runs at once. Numbers are assigned when the program is
+    complete: 0 for done, the number of the state for `trace`, its negative for `jump` and `return`,
+    RTSL_NEXT_LAST for `last`.
 
     Example: `%next = rtsl.next trace @Glass.shade.state1`
   }];
   let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_Transition, "transition">:$transition,
                        OptionalAttr<FlatSymbolRefAttr>:$state);
   let results = (outs I32:$result);
-  let assemblyFormat = "`` $transition ($state^)? attr-dict"; // the attribute prints a space before itself
+  // the attribute prints a space before itself
+  let assemblyFormat = "`` $transition ($state^)? attr-dict";
   let hasVerifier = 1;
 }
 

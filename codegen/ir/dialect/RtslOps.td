@@ -30,12 +30,13 @@ defvar Rtsl_SymbolUser = DeclareOpInterfaceMethods<SymbolUserOpInterface>;
 // Module level
 //===----------------------------------------------------------------------===//
 
-def Rtsl_ClassOp : Rtsl_Op<"class", [Symbol, SymbolTable, SingleBlock, NoTerminator, NoRegionArguments,
+def Rtsl_ClassOp : Rtsl_Op<"class",
+                           [Symbol, SymbolTable, SingleBlock, NoTerminator, NoRegionArguments,
                                      IsolatedFromAbove, HasParent<"::mlir::ModuleOp">]> {
   let summary = "a class: the members of its objects' records";
   let description = [{
-    Holds a `rtsl.member_decl` for every member, inherited ones first, in the order of a record. `root`
-    is the `rt_` class at the end of the chain of bases; `base` another class of the source.
+    Holds a `rtsl.member_decl` for every member, inherited ones first, in the order of a record.
+    `root` is the `rt_` class at the end of the chain of bases; `base` another class of the source.
 
     ```mlir
     rtsl.class @Glass root "rt_Material" {
@@ -47,7 +48,8 @@ def Rtsl_ClassOp : Rtsl_Op<"class", [Symbol, SymbolTable, SingleBlock, NoTermina
     }
     ```
   }];
-  let arguments = (ins SymbolNameAttr:$sym_name, StrAttr:$root, OptionalAttr<FlatSymbolRefAttr>:$base);
+  let arguments = (ins SymbolNameAttr:$sym_name, StrAttr:$root,
+                       OptionalAttr<FlatSymbolRefAttr>:$base);
   let regions = (region SizedRegion<1>:$body);
   let assemblyFormat = "$sym_name `root` $root (`base` $base^)? attr-dict-with-keyword $body";
   let hasVerifier = 1;
@@ -64,8 +66,8 @@ def Rtsl_ClassOp : Rtsl_Op<"class", [Symbol, SymbolTable, SingleBlock, NoTermina
 def Rtsl_MemberDeclOp : Rtsl_Op<"member_decl", [Symbol, HasParent<"ClassOp">]> {
   let summary = "a member of a class";
   let description = [{
-    `access` is "public" (the scene sets it), "private" (the constructor sets it) or "scratch" (a value of the ray, which
-    takes no space in the record).
+    `access` is "public" (the scene sets it), "private" (the constructor sets it) or "scratch" (a
+    value of the ray, which takes no space in the record).
   }];
   let arguments = (ins SymbolNameAttr:$sym_name, TypeAttr:$type, StrAttr:$access);
   let assemblyFormat = "$sym_name `:` $type `access` $access attr-dict";
@@ -79,11 +81,13 @@ def Rtsl_MemberDeclOp : Rtsl_Op<"member_decl", [Symbol, HasParent<"ClassOp">]> {
 // Memory
 //===----------------------------------------------------------------------===//
 
-def Rtsl_VarOp : Rtsl_Op<"var", [Rtsl_Named, DeclareOpInterfaceMethods<PromotableAllocationOpInterface>,
+def Rtsl_VarOp : Rtsl_Op<"var",
+                         [Rtsl_Named, DeclareOpInterfaceMethods<PromotableAllocationOpInterface>,
                                  DeclareOpInterfaceMethods<DestructurableAllocationOpInterface>]> {
   let summary = "a local variable";
   let description = [{
-    Gives the address of a variable that is all zeros at this point, each time that control reaches it.
+    Gives the address of a variable that is all zeros at this point, each time that control reaches
+    it.
 
     Example: `%sum = rtsl.var "sum" : !rtsl.ptr<f32>`
   }];
@@ -144,7 +148,8 @@ def Rtsl_CopyOp : Rtsl_Op<"copy", [AllTypesMatch<["source", "target"]>, Rtsl_Acc
 def Rtsl_FieldOp : Rtsl_Op<"field", [Pure, Rtsl_Accessor, Rtsl_Safe]> {
   let summary = "address of a field of a struct";
   let description = [{
-    Example: `%o = rtsl.field %ray["origin"] : !rtsl.ptr<!rtsl.struct<"Ray", {origin: f32}>> -> !rtsl.ptr<f32>`
+    Example: `%o = rtsl.field %ray["origin"]
+             : !rtsl.ptr<!rtsl.struct<"Ray", {origin: f32}>> -> !rtsl.ptr<f32>`
   }];
   let arguments = (ins Rtsl_PtrToStruct:$base, StrAttr:$field);
   let results = (outs Rtsl_Ptr:$result);
@@ -174,7 +179,8 @@ def Rtsl_ElementOp : Rtsl_Op<"element", [Pure, Rtsl_Accessor, Rtsl_Safe]> {
 def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
   let summary = "address of a member of an object";
   let description = [{
-    The object must not be null. Members are constant for a launch, except in the constructor of their object.
+    The object must not be null. Members are constant for a launch, except in the constructor of
+    their object.
 
     Example: `%eta = rtsl.member %self["eta"] : !rtsl.ref<"Glass"> -> !rtsl.ptr<f32>`
   }];
@@ -186,8 +192,8 @@ def Rtsl_MemberOp : Rtsl_Op<"member", [Pure, Rtsl_Named, Rtsl_SymbolUser]> {
 def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
   let summary = "address of a state variable of the ray";
   let description = [{
-    The names are those of language/StateVariables.def: `RayOrigin` is `rt_RayOrigin` in the source. `hitError` is that
-    of RtslState, which has no name in the source.
+    The names are those of language/StateVariables.def: `RayOrigin` is `rt_RayOrigin` in the source.
+    `hitError` is that of RtslState, which has no name in the source.
 
     Example: `%o = rtsl.state "RayOrigin" : !rtsl.ptr<vector<3xf32>>`
   }];
@@ -201,8 +207,9 @@ def Rtsl_StateOp : Rtsl_Op<"state", [Pure, Rtsl_Named]> {
 def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
   let summary = "address of a scratch member of the hit";
   let description = [{
-    The value that `intersect` wrote for the nearest hit. The linker matches names between primitives and materials and
-    sets `offset`, in 32-bit words from the start of `RtslState::attributes`; without it the op cannot be compiled.
+    The value that `intersect` wrote for the nearest hit. The linker matches names between
+    primitives and materials and sets `offset`, in 32-bit words from the start of
+    `RtslState::attributes`; without it the op cannot be compiled.
 
     Example: `%n = rtsl.attribute "n" {offset = 0 : i32} : !rtsl.ptr<vector<3xf32>>`
   }];
@@ -241,8 +248,10 @@ def Rtsl_BufferElementOp : Rtsl_Op<"buffer_element", []> {
 }
 
 def Rtsl_AtomicKind : I32Enum<"AtomicKind", "what an atomic operation makes of a word", [
-  I32EnumCase<"Add", 0, "add">, I32EnumCase<"MinSigned", 1, "smin">, I32EnumCase<"MaxSigned", 2, "smax">,
-  I32EnumCase<"MinUnsigned", 3, "umin">, I32EnumCase<"MaxUnsigned", 4, "umax">, I32EnumCase<"And", 5, "and">,
+  I32EnumCase<"Add", 0, "add">, I32EnumCase<"MinSigned", 1, "smin">,
+  I32EnumCase<"MaxSigned", 2, "smax">,
+  I32EnumCase<"MinUnsigned", 3, "umin">, I32EnumCase<"MaxUnsigned", 4, "umax">,
+  I32EnumCase<"And", 5, "and">,
   I32EnumCase<"Or", 6, "or">, I32EnumCase<"Xor", 7, "xor">, I32EnumCase<"Exchange", 8, "exchange">,
   I32EnumCase<"CompareExchange", 9, "compare_exchange">
 ]> {
@@ -252,13 +261,14 @@ def Rtsl_AtomicKind : I32Enum<"AtomicKind", "what an atomic operation makes of a
 def Rtsl_AtomicOp : Rtsl_Op<"atomic"> {
   let summary = "changes a word of an output buffer in one step";
   let description = [{
-    The result is the word as it was. `compare_exchange` writes `value` if the word equals `expected`, which the others
-    do not have.
+    The result is the word as it was. `compare_exchange` writes `value` if the word equals
+    `expected`, which the others do not have.
 
     Example: `%old = rtsl.atomic add %address, %value : !rtsl.ptr<i32>`
   }];
   let arguments = (ins EnumAttr<Rtsl_Dialect, Rtsl_AtomicKind, "atomic_kind">:$kind,
-                       Arg<Rtsl_PtrToValue, "", [MemRead, MemWrite]>:$address, I32:$value, Optional<I32>:$expected);
+                       Arg<Rtsl_PtrToValue, "", [MemRead, MemWrite]>:$address, I32:$value,
+                       Optional<I32>:$expected);
   let results = (outs I32:$result);
   let assemblyFormat = "$kind $address `,` $value (`if` $expected^)? attr-dict `:` type($address)";
   let hasVerifier = 1;
@@ -291,7 +301,8 @@ def Rtsl_NullRefOp : Rtsl_Op<"null_ref", [Pure]> {
 def Rtsl_CastRefOp : Rtsl_Op<"cast_ref", [Pure]> {
   let summary = "the same object seen as one of another class";
   let description = [{
-    Costs nothing and checks nothing: to a base class, or to a derived class where the class is known.
+    Costs nothing and checks nothing: to a base class, or to a derived class where the class is
+    known.
 
     Example: `%t = rtsl.cast_ref %checker : !rtsl.ref<"Checker"> -> !rtsl.ref<"rt_Texture">`
   }];
@@ -326,14 +337,16 @@ def Rtsl_EqualRefOp : Rtsl_Op<"equal_ref", [Pure]> {
 def Rtsl_CallMethodOp : Rtsl_Op<"call_method"> {
   let summary = "calls the method that the object's class defines";
   let description = [{
-    A dispatch slot: linking, when all classes are known, replaces it by a call of a function that switches over them.
+    A dispatch slot: linking, when all classes are known, replaces it by a call of a function that
+    switches over them.
 
     Example: `%c = rtsl.call_method "weight" on %t(%x) : !rtsl.ref<"rt_Texture">, (f32) -> f32`
   }];
   let arguments = (ins StrAttr:$method, Rtsl_Ref:$object, Variadic<AnyType>:$arguments);
   let results = (outs Variadic<Rtsl_Value>:$results);
   let assemblyFormat = [{
-    $method `on` $object `(` $arguments `)` attr-dict `:` type($object) `,` functional-type($arguments, $results)
+    $method `on` $object `(` $arguments `)`
+    attr-dict `:` type($object) `,` functional-type($arguments, $results)
   }];
 }
 
@@ -355,8 +368,9 @@ def Rtsl_ElementaryAttr : EnumAttr<Rtsl_Dialect, Rtsl_Elementary, "elementary"> 
 def Rtsl_ElementaryOp : Rtsl_Op<"elementary", [Pure, SameOperandsAndResultType]> {
   let summary = "an elementary function, component by component";
   let description = [{
-    `pow` (base, exponent) and `atan2` (y, x) have two operands, the others one. Correctly rounded: the value does not
-    depend on the host that compiles or the device that runs it. That is why the ops of `math` are not used.
+    `pow` (base, exponent) and `atan2` (y, x) have two operands, the others one. Correctly rounded:
+    the value does not depend on the host that compiles or the device that runs it. That is why the
+    ops of `math` are not used.
 
     Example: `%s = rtsl.elementary <sin> %x : vector<3xf32>`
   }];
@@ -379,8 +393,9 @@ def Rtsl_RefractOp : Rtsl_Op<"refract", [Pure, AllTypesMatch<["incident", "norma
 def Rtsl_HideOp : Rtsl_Op<"hide", [Pure, SameOperandsAndResultType]> {
   let summary = "its operand, opaque to all passes";
   let description = [{
-    If arithmetic is done in double, nothing may be folded in single precision: constants, and integers that become
-    floats, are hidden until LLVM IR has been widened (codegen/lower/HideConstants.h).
+    If arithmetic is done in double, nothing may be folded in single precision: constants, and
+    integers that become floats, are hidden until LLVM IR has been widened
+    (codegen/lower/HideConstants.h).
 
     Example: `%h = rtsl.hide %c : f32`
   }];
@@ -390,7 +405,8 @@ def Rtsl_HideOp : Rtsl_Op<"hide", [Pure, SameOperandsAndResultType]> {
 }
 
 class Rtsl_ToIntOp<string opMnemonic, string range> : Rtsl_Op<opMnemonic, [Pure,
-    TypesMatchWith<"the result has the operand's shape", "input", "result", "::rtsl::ir::intLike($_self)">]> {
+    TypesMatchWith<"the result has the operand's shape", "input", "result",
+                   "::rtsl::ir::intLike($_self)">]> {
   let summary = "float to integer in " # range # ": truncates, saturates, NaN gives 0";
   let description = "Example: `%i = rtsl." # opMnemonic # " %x : f32`";
   let arguments = (ins Rtsl_FloatLike:$input);
@@ -401,11 +417,12 @@ class Rtsl_ToIntOp<string opMnemonic, string range> : Rtsl_Op<opMnemonic, [Pure,
 def Rtsl_ToSintOp : Rtsl_ToIntOp<"to_sint", "[-2^31, 2^31)">;
 def Rtsl_ToUintOp : Rtsl_ToIntOp<"to_uint", "[0, 2^32)">;
 
-class Rtsl_DivisionOp<string opMnemonic, string what> : Rtsl_Op<opMnemonic, [Pure, SameOperandsAndResultType]> {
+class Rtsl_DivisionOp<string opMnemonic, string what> : Rtsl_Op<opMnemonic,
+                                                                [Pure, SameOperandsAndResultType]> {
   let summary = what # "; by zero gives 0";
   let description = [{
-    Defined for all operands: by zero the result is 0, and the smallest signed number divided by -1 is itself, with
-    remainder 0. Rounds towards zero.
+    Defined for all operands: by zero the result is 0, and the smallest signed number divided by -1
+    is itself, with remainder 0. Rounds towards zero.
 
   }] # "Example: `%q = rtsl." # opMnemonic # " %a, %b : i32`";
   let arguments = (ins Rtsl_IntLike:$lhs, Rtsl_IntLike:$rhs);
@@ -425,7 +442,8 @@ def Rtsl_URemOp : Rtsl_DivisionOp<"urem", "unsigned remainder">;
 def Rtsl_IfOp : Rtsl_Op<"if", [NoRegionArguments]> {
   let summary = "a choice";
   let description = [{
-    Each region ends in `rtsl.yield` (continue after the `rtsl.if`), `rtsl.break`, `rtsl.continue` or `rtsl.return`.
+    Each region ends in `rtsl.yield` (continue after the `rtsl.if`), `rtsl.break`, `rtsl.continue`
+    or `rtsl.return`.
 
     ```mlir
     rtsl.if %c {
@@ -443,10 +461,11 @@ def Rtsl_IfOp : Rtsl_Op<"if", [NoRegionArguments]> {
 def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
   let summary = "a loop";
   let description = [{
-    Runs `cond`, which ends in `rtsl.condition`, then, while that is true, `do` and `step`. With `post_test` the test
-    comes after `step`: `do`, `step`, `cond`, and again. A missing `cond` is always true, a missing `step` does nothing.
-    `rtsl.continue` and `rtsl.yield` in the body go to `step`, `rtsl.break` leaves the loop. `cond` and `step` contain
-    no break, continue or return of their own.
+    Runs `cond`, which ends in `rtsl.condition`, then, while that is true, `do` and `step`. With
+    `post_test` the test comes after `step`: `do`, `step`, `cond`, and again. A missing `cond` is
+    always true, a missing `step` does nothing. `rtsl.continue` and `rtsl.yield` in the body go to
+    `step`, `rtsl.break` leaves the loop. `cond` and `step` contain no break, continue or return of
+    their own.
 
     ```mlir
     rtsl.loop cond {
@@ -461,9 +480,11 @@ def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
     ```
   }];
   let arguments = (ins UnitAttr:$postTest);
-  let regions = (region MaxSizedRegion<1>:$condition, SizedRegion<1>:$body, MaxSizedRegion<1>:$step);
+  let regions = (region MaxSizedRegion<1>:$condition, SizedRegion<1>:$body,
+                        MaxSizedRegion<1>:$step);
   let assemblyFormat = [{
-    (`post_test` $postTest^)? (`cond` $condition^)? `do` $body (`step` $step^)? attr-dict-with-keyword
+    (`post_test` $postTest^)? (`cond` $condition^)? `do` $body (`step` $step^)?
+    attr-dict-with-keyword
   }];
   let hasRegionVerifier = 1;
 }
@@ -471,8 +492,8 @@ def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
 def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
   let summary = "a choice among several by a number";
   let description = [{
-    Control enters at the arm that lists the value, or at `default`, or skips the switch. An arm that ends in `rtsl.yield`
-    falls into the next (the last one: leaves); `rtsl.break` leaves.
+    Control enters at the arm that lists the value, or at `default`, or skips the switch. An arm
+    that ends in `rtsl.yield` falls into the next (the last one: leaves); `rtsl.break` leaves.
 
     ```mlir
     rtsl.switch %v : i32 {
@@ -493,8 +514,8 @@ def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
   let hasVerifier = 1;
   let skipDefaultBuilders = 1;
   let builders = [
-    // `values` has one entry for each arm; each arm gets an empty block. `defaultArm` is the index of
-    // an arm.
+    // `values` has one entry for each arm; each arm gets an empty block. `defaultArm` is the index
+    // of an arm.
     OpBuilder<(ins "::mlir::Value":$value, "::llvm::ArrayRef<::llvm::SmallVector<int32_t>>":$values,
                    "std::optional<unsigned>":$defaultArm)>];
   let extraClassDeclaration = [{
@@ -506,8 +527,8 @@ def Rtsl_SwitchOp : Rtsl_Op<"switch", [NoRegionArguments]> {
 def Rtsl_IlluminanceOp : Rtsl_Op<"illuminance", [AttrSizedOperandSegments, NoRegionArguments]> {
   let summary = "a loop over the lights that reach a point";
   let description = [{
-    The body runs for each light for which `rtsl.illuminate` would give true, with LightDirection, LightDistance and
-    LightColor set. `rtsl.break` and `rtsl.continue` work as in a loop.
+    The body runs for each light for which `rtsl.illuminate` would give true, with LightDirection,
+    LightDistance and LightColor set. `rtsl.break` and `rtsl.continue` work as in a loop.
 
     ```mlir
     rtsl.illuminance %point normal %n cos %c {
@@ -522,7 +543,8 @@ def Rtsl_IlluminanceOp : Rtsl_Op<"illuminance", [AttrSizedOperandSegments, NoReg
 }
 
 def Rtsl_YieldOp : Rtsl_Op<"yield", [Pure, Terminator,
-                                     ParentOneOf<["IfOp", "LoopOp", "SwitchOp", "IlluminanceOp"]>]> {
+                                     ParentOneOf<["IfOp", "LoopOp", "SwitchOp",
+                                                  "IlluminanceOp"]>]> {
   let summary = "end of a region; the structured op determines where control goes";
   let assemblyFormat = "attr-dict";
 }

@@ -10,7 +10,8 @@
 def Rtsl_TraceOp : Rtsl_Op<"trace"> {
   let summary = "traces a ray and shades what it hits";
   let description = [{
-    The state variables of this ray are unchanged when the child ray returns: the child ray has its own.
+    The state variables of this ray are unchanged when the child ray returns: the child ray has its
+    own.
 
     Example: `%c = rtsl.trace %origin, %direction : vector<3xf32>`
   }];
@@ -22,19 +23,22 @@ def Rtsl_TraceOp : Rtsl_Op<"trace"> {
 def Rtsl_TracePayloadOp : Rtsl_Op<"trace_payload", [AttrSizedOperandSegments]> {
   let summary = "traces a ray that carries a payload";
   let description = [{
-    Hits count from `tmin` to `tmax`. The methods that run for the ray read and write the payload at `payload`, whose
-    type selects these methods. `root`, `mask` and `time` default to those of this ray. Linking numbers the ray types of
-    a scene and determines how their hits are searched for (RTSL_FIRST_HIT ... of runtime/device/ray/Abi.h): `ray_type`
-    and `how`; without them the op cannot be compiled.
+    Hits count from `tmin` to `tmax`. The methods that run for the ray read and write the payload at
+    `payload`, whose type selects these methods. `root`, `mask` and `time` default to those of this
+    ray. Linking numbers the ray types of a scene and determines how their hits are searched for
+    (RTSL_FIRST_HIT ... of runtime/device/ray/Abi.h): `ray_type` and `how`; without them the op
+    cannot be compiled.
 
-    Example: `rtsl.trace_payload %o, %d from %a to %b carries %p : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
+    Example: `rtsl.trace_payload %o, %d from %a to %b carries %p
+             : !rtsl.ptr<!rtsl.struct<"P", {x: f32}>>`
   }];
   let arguments = (ins Rtsl_Vec3:$origin, Rtsl_Vec3:$direction, F32:$tmin, F32:$tmax,
                        Rtsl_PtrToStruct:$payload, Optional<I32>:$root,
                        Optional<I32>:$mask, Optional<F32>:$time, OptionalAttr<I32Attr>:$ray_type,
                        OptionalAttr<I32Attr>:$how);
   let assemblyFormat = [{
-    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)? (`mask` $mask^)? (`time` $time^)?
+    $origin `,` $direction `from` $tmin `to` $tmax `carries` $payload (`root` $root^)?
+    (`mask` $mask^)? (`time` $time^)?
     attr-dict `:` type($payload)
   }];
 }
@@ -60,7 +64,8 @@ def Rtsl_RayTypeOp : Rtsl_Op<"ray_type", [Pure]> {
 }
 
 def Rtsl_HitAnswer : I32Enum<"HitAnswer", "what `anyHit` makes of a hit", [
-    I32EnumCase<"Accept", 0, "accept">, I32EnumCase<"Ignore", 1, "ignore">, I32EnumCase<"Terminate", 2, "terminate">]> {
+    I32EnumCase<"Accept", 0, "accept">, I32EnumCase<"Ignore", 1, "ignore">,
+    I32EnumCase<"Terminate", 2, "terminate">]> {
   let cppNamespace = "::rtsl::ir";
 }
 
@@ -98,7 +103,8 @@ def Rtsl_VisitChildOp : Rtsl_Op<"visit_child"> {
 def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
   let summary = "records that the sample has raised an exception";
   let description = [{
-    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader continues; its results are discarded.
+    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader continues; its
+    results are discarded.
 
     Example: `rtsl.raise 3`
   }];
@@ -109,8 +115,9 @@ def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
 def Rtsl_PrintOp : Rtsl_Op<"print"> {
   let summary = "prints text and values";
   let description = [{
-    Prints one item after the other: a text, which takes no words, or the name of a type and as many of `values`, all of
-    its scalars in order, as it has words. Linking numbers the prints of a program in `format`.
+    Prints one item after the other: a text, which takes no words, or the name of a type and as many
+    of `values`, all of its scalars in order, as it has words. Linking numbers the prints of a
+    program in `format`.
 
     Example: `rtsl.print ["at", "vec2"] words [0, 2](%x, %y) : f32, f32`
   }];
@@ -121,7 +128,7 @@ def Rtsl_PrintOp : Rtsl_Op<"print"> {
 }
 
 def Rtsl_HitOp : Rtsl_Op<"hit"> {
-  let summary = "reports an intersection at parameter t; true if it is the primitive's nearest so far";
+  let summary = "reports an intersection at parameter t; true if it is the nearest so far";
   let description = [{
     With `error` the author states a bound of the error of t.
 
@@ -165,13 +172,15 @@ def Rtsl_LightCountOp : Rtsl_Op<"light_count", [Pure]> {
 def Rtsl_IlluminateOp : Rtsl_Op<"illuminate", [AttrSizedOperandSegments]> {
   let summary = "lights a point with one light; true if any arrives";
   let description = [{
-    Sets the state variables LightDirection, LightDistance and LightColor (shadows applied). With `normal` and `cos`, only
-    for a light within that angle of the normal. Level 2 has it in place of `rtsl.illuminance`. Without an index the light
-    is one of the surfaces that shine, and PDF the density with which its direction was chosen.
+    Sets the state variables LightDirection, LightDistance and LightColor (shadows applied). With
+    `normal` and `cos`, only for a light within that angle of the normal. Level 2 has it in place of
+    `rtsl.illuminance`. Without an index the light is one of the surfaces that shine, and PDF the
+    density with which its direction was chosen.
 
     Example: `%lit = rtsl.illuminate %point light %index normal %n cos %c`
   }];
-  let arguments = (ins Optional<I32>:$index, Rtsl_Vec3:$point, Optional<Rtsl_Vec3>:$normal, Optional<F32>:$cosAngle);
+  let arguments = (ins Optional<I32>:$index, Rtsl_Vec3:$point, Optional<Rtsl_Vec3>:$normal,
+                       Optional<F32>:$cosAngle);
   let results = (outs I1:$lit);
   let assemblyFormat = "$point (`light` $index^)? (`normal` $normal^ `cos` $cosAngle)? attr-dict";
   let hasVerifier = 1;

@@ -11,14 +11,17 @@
 def Rtsl_ExpressionOp : Rtsl_Op<"expression", [Pure]> {
   let summary = "an expression of the source without side effects";
   let description = [{
-    `source` is its number in the table. The operands are the parts of it whose values may change: local variables,
-    state variables, and parts that have effects. `cost` estimates the number of instructions.
+    `source` is its number in the table. The operands are the parts of it whose values may change:
+    local variables, state variables, and parts that have effects. `cost` estimates the number of
+    instructions.
 
     Example: `%w = rtsl.expression 3 cost 2 (%cosine, %ratio) : (f32, f32) -> f32`
   }];
   let arguments = (ins I32Attr:$source, I32Attr:$cost, Variadic<Rtsl_Value>:$operands);
   let results = (outs Rtsl_Value:$result);
-  let assemblyFormat = "$source `cost` $cost `(` $operands `)` attr-dict `:` functional-type($operands, $result)";
+  let assemblyFormat = [{
+    $source `cost` $cost `(` $operands `)` attr-dict `:` functional-type($operands, $result)
+  }];
 }
 
 def Rtsl_ValueOrPtr : AnyTypeOf<[Rtsl_Value, Rtsl_Ptr]>;
@@ -26,16 +29,19 @@ def Rtsl_ValueOrPtr : AnyTypeOf<[Rtsl_Value, Rtsl_Ptr]>;
 def Rtsl_EvaluateOp : Rtsl_Op<"evaluate"> {
   let summary = "a call in the source that may have side effects";
   let description = [{
-    The operands are the parts of it whose values may change: values, and addresses of variables that stay whole.
-    `writes` names the state variables that it may change; without it, all. Attributes.def explains `rtsl.into`,
-    `rtsl.changes`, `rtsl.plain` and `rtsl.nested`, which describe its other effects.
+    The operands are the parts of it whose values may change: values, and addresses of variables
+    that stay whole. `writes` names the state variables that it may change; without it, all.
+    Attributes.def explains `rtsl.into`, `rtsl.changes`, `rtsl.plain` and `rtsl.nested`, which
+    describe its other effects.
 
     Example: `%f = rtsl.evaluate 4 (%x) writes ["LightColor"] : (f32) -> f32`
   }];
-  let arguments = (ins I32Attr:$source, Variadic<Rtsl_ValueOrPtr>:$operands, OptionalAttr<StrArrayAttr>:$writes);
+  let arguments = (ins I32Attr:$source, Variadic<Rtsl_ValueOrPtr>:$operands,
+                       OptionalAttr<StrArrayAttr>:$writes);
   let results = (outs Variadic<Rtsl_Value>:$results);
   let assemblyFormat = [{
-    $source `(` $operands `)` (`writes` $writes^)? attr-dict `:` functional-type($operands, $results)
+    $source `(` $operands `)` (`writes` $writes^)?
+    attr-dict `:` functional-type($operands, $results)
   }];
 }
 

@@ -4,7 +4,8 @@
 // SamplingSlots.def on an object, the `intersect` of a given class, the defaults of a class on a
 // new record, and the constructor of a class on packed arguments:
 //
-//   func.func @Glass.construct(%self: !rtsl.ref<"Glass">, %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
+//   func.func @Glass.construct(%self: !rtsl.ref<"Glass">,
+//                              %arguments: !rtsl.ptr<!rtsl.struct<"Glass.arguments", {...}>>)
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"

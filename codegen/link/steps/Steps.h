@@ -69,7 +69,8 @@ void dropUnusedClasses(LinkContext &context);
 /// UsedObjects.cpp: finds the objects of the scene that something refers to: LinkedClass::isUsed.
 void findUsedObjects(LinkContext &context);
 
-/// Whether an operation lights a point with lights of the scene, and not with a surface that shines.
+/// Whether an operation lights a point with lights of the scene, and not with a surface that
+/// shines.
 bool isLitByLights(mlir::Operation *op);
 
 /// Whether a method that rendering runs loops over lights. Runs before slots are resolved.
@@ -91,8 +92,8 @@ void deriveHitErrors(LinkContext &context);
 /// Erases the methods that are never run. Runs after slots are resolved.
 void dropUnreached(LinkContext &context);
 
-/// The name of a function in the source: "Painted.closestHit(Radiance)"; of the definition of a base
-/// class that is called on an object, "Coated.Glass::shade".
+/// The name of a function in the source: "Painted.closestHit(Radiance)"; of the definition of a
+/// base class that is called on an object, "Coated.Glass::shade".
 std::string shownName(mlir::func::FuncOp function);
 
 /// Erases stores of outputs that are never read, and records which outputs of hits and samples are

@@ -2,7 +2,7 @@
 //
 //   func.func @Sphere.intersect(%self)          func.func @Sphere.rt_boundHitError(%self)
 //     ...                                         %T = HitDistance
-//     %h = rtsl.hit %t                   ==>      ... with t in double beside it, %t64 (RunningError.h)
+//     %h = rtsl.hit %t                   ==>      ... with t in double, %t64 (RunningError.h)
 //     ...                                         %h = T < t
 //                                                 bound = t64 is nearest to T ? |T - t64| : bound
 //                                                 ...

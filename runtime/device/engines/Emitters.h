@@ -1,11 +1,11 @@
 //===- Emitters.h - surfaces that shine, as lights ------------------------===//
 //
-// `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters, with the probability that the table gives,
-// and a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of an
-// object with several primitives one of them, likewise. A ray towards the point finds what is seen
-// there; only if that is the point itself does its light count, so that each direction has the
-// density of one point. A ray that meets an emitter by chance finds the same density in rt_PDF: an
-// engine weighs the two against one another (Veach and Guibas,
+// `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters, with the
+// probability that the table gives, and a point on it: on a mesh uniformly by area, on a primitive
+// by its `generateSample`; of an object with several primitives one of them, likewise. A ray
+// towards the point finds what is seen there; only if that is the point itself does its light
+// count, so that each direction has the density of one point. A ray that meets an emitter by chance
+// finds the same density in rt_PDF: an engine weighs the two against one another (Veach and Guibas,
 // "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
 //
 //===----------------------------------------------------------------------===//

@@ -93,10 +93,10 @@ __attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, ui
   return floatOfFraction(words);
 }
 
-/// The number in [0, 1) whose first 32 binary digits are `first` and whose others are hashed, with 24
-/// significant bits even near 0. (With the leading bits of one word only, as in unitFloat(), there
-/// is nothing between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point Values",
-/// 2007.)
+/// The number in [0, 1) whose first 32 binary digits are `first` and whose others are hashed, with
+/// 24 significant bits even near 0. (With the leading bits of one word only, as in unitFloat(),
+/// there is nothing between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point
+/// Values", 2007.)
 inline float numberOfWord(const uint32_t key[2], uint32_t dimension, uint32_t first) {
   if (first < 1u << 23)
     return smallRandomNumber(key[0], key[1], dimension, first);

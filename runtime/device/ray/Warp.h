@@ -60,8 +60,8 @@ inline int32_t vote(int32_t wish, int32_t) {
 #endif
 
 /// Adds 1 to a counter that is shared with other lanes and threads, and returns its old value. On a
-/// GPU the lanes that call together add their number at once, because additions to one place run one
-/// after the other.
+/// GPU the lanes that call together add their number at once, because additions to one place run
+/// one after the other.
 inline uint64_t countUp(uint64_t *counter) {
 #ifdef __NVPTX__
   const uint32_t lanes = __nvvm_activemask(), before = lanes & __nvvm_read_ptx_sreg_lanemask_lt();

@@ -121,9 +121,9 @@ struct InstanceRay : TriangleRay {
   Range range; // in the instance's box, widened: hits are moved into it, as in moveIntoBox
 };
 
-/// The ray in the object space of an instance with a transform, at a time. False if it cannot hit anything
-/// there before `limit`: its direction vanishes in object space, or it misses the instance's box,
-/// as it then does in every traversal.
+/// The ray in the object space of an instance with a transform, at a time. False if it cannot hit
+/// anything there before `limit`: its direction vanishes in object space, or it misses the
+/// instance's box, as it then does in every traversal.
 inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, uint32_t number,
                           float time, float epsilon, float limit, InstanceRay &entered) {
   const RtslInstance &instance = instanceAt(launch, number);

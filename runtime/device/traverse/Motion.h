@@ -155,8 +155,8 @@ inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &mot
   return transform;
 }
 
-/// The three numbers of a vertex, of positions or normals of a mesh that has several keys, at a time
-/// in the shutter.
+/// The three numbers of a vertex, of positions or normals of a mesh that has several keys, at a
+/// time in the shutter.
 inline Vec3 vertexAt(const RtslMesh &mesh, const float *values, uint32_t vertex, float time) {
   const KeyTime at =
       findKey(mesh.keyCount, time, [&mesh](uint32_t key) { return mesh.keyTimes[key]; });
@@ -174,8 +174,8 @@ inline Vec3 vertexAt(const RtslLaunch &launch, const RtslMesh &mesh, const float
                              : load(values + 3 * size_t(vertex));
 }
 
-/// A box around a triangle while the shutter is open: around its places when it opens and closes and
-/// at the keys in between, enlarged by the rounding of places in between.
+/// A box around a triangle while the shutter is open: around its places when it opens and closes
+/// and at the keys in between, enlarged by the rounding of places in between.
 inline RtslBox boxOfTriangle(const RtslLaunch &launch, const RtslMesh &mesh, uint32_t triangle) {
   const uint32_t *index = mesh.indices + 3 * size_t(triangle);
   RtslBox box;

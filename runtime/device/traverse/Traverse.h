@@ -256,9 +256,9 @@ bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Sl
 }
 
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
-/// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU that have
-/// primitives left then test them together, each its own. Unrolling both loops completely would
-/// make all that they read of the scene constant, and is slower: the program exceeds the
+/// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU
+/// that have primitives left then test them together, each its own. Unrolling both loops completely
+/// would make all that they read of the scene constant, and is slower: the program exceeds the
 /// instruction cache.
 template <typename Limit, typename Visit>
 void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,

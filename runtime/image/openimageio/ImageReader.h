@@ -25,8 +25,9 @@ struct ImageFile {
   char message[512]; // of a bad file
 };
 
-/// Reads the first image of a file, unless it has more bytes than `mostBytes`; if `bytes` is not null,
-/// of these bytes, which are a file's. `allocate(context, bytes)` returns null if there is no memory.
+/// Reads the first image of a file, unless it has more bytes than `mostBytes`; if `bytes` is not
+/// null, of these bytes, which are a file's. `allocate(context, bytes)` returns null if there is no
+/// memory.
 using ReadImageFile = void (*)(const char *path, const void *bytes, std::uint64_t size,
                                std::uint64_t mostBytes,
                                void *(*allocate)(void *context, std::uint64_t), void *context,

@@ -22,8 +22,8 @@ void addPreprocessorOptions(CLI::App &command, PreprocessorOptions &options);
 /// Adds -MD, -MF and -MT.
 void addDependencyOptions(CLI::App &command, DependencyOptions &options);
 
-/// Spells the options of two letters behind one dash (`-MD`) as the command line library expects them
-/// (`--MD`).
+/// Spells the options of two letters behind one dash (`-MD`) as the command line library expects
+/// them (`--MD`).
 std::vector<std::string> withLongDashes(int argc, char **argv);
 
 /// The rule `target: files` for make and ninja.

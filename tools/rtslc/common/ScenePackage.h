@@ -8,9 +8,9 @@
 
 namespace rtsl::tool {
 
-/// Compiles the module for the scene that `build` creates, stores the code in `package`, and returns
-/// the scene. Constructors and bounds run here; the package has only their results. Nothing if there
-/// were errors.
+/// Compiles the module for the scene that `build` creates, stores the code in `package`, and
+/// returns the scene. Constructors and bounds run here; the package has only their results. Nothing
+/// if there were errors.
 inline std::optional<runtime::Scene>
 compileScenePackage(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, Diagnostics &diagnostics,

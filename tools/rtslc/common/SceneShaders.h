@@ -13,8 +13,8 @@ namespace rtsl::tool {
 /// Whether a file is a scene, or a glTF file, and no shaders.
 bool isScene(const std::string &file);
 
-/// Reads a scene file, or makes a scene of a glTF file; "-" is standard input. Throws with a hint if it is given RTSL;
-/// `command` is for that.
+/// Reads a scene file, or makes a scene of a glTF file; "-" is standard input. Throws with a hint
+/// if it is given RTSL; `command` is for that.
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command);

@@ -151,8 +151,8 @@ std::string quoted(const std::string &word) {
   return text + "'";
 }
 
-/// Writes a file that must not exist yet: reserves the name, so that no other program's file of that
-/// name is replaced, and then fills it at once.
+/// Writes a file that must not exist yet: reserves the name, so that no other program's file of
+/// that name is replaced, and then fills it at once.
 void writeNewFile(const fs::path &path, const std::string &text) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) {

@@ -18,8 +18,8 @@ struct Frames {
 void addFrameOptions(CLI::App &command, std::optional<double> &frame,
                      std::optional<Frames> &frames);
 
-/// Throws unless the file name of `option` has one place for the number of the frame: `%d`, or `%04d`
-/// for four digits.
+/// Throws unless the file name of `option` has one place for the number of the frame: `%d`, or
+/// `%04d` for four digits.
 void checkFrameName(const std::string &option, const std::string &name);
 
 /// The name with the number in its place.

@@ -233,8 +233,8 @@ private:
   }
 
   /// What a scene has in place of an object of a class: its class, and objects for references that
-  /// must be set. Nothing, and reported, if it needs more. `standIn` is the object that it replaces;
-  /// null for objects that others refer to, which overrides do not concern.
+  /// must be set. Nothing, and reported, if it needs more. `standIn` is the object that it
+  /// replaces; null for objects that others refer to, which overrides do not concern.
   std::optional<Json> objectOf(const typed::Class &one, const Json *standIn) {
     Json object = {{"class", one.name}};
     const typed::Function *constructor = constructorOf(one);

@@ -33,7 +33,8 @@ struct Preview {
 };
 
 /// Checks the file and makes the scene. References that a scene must set are to objects of the
-/// library. Nothing if there are errors, which are reported. Throws Error for mistakes in overrides.
+/// library. Nothing if there are errors, which are reported. Throws Error for mistakes in
+/// overrides.
 std::optional<Preview> makePreview(const PreviewRequest &request, const CommonOptions &options,
                                    Messages &messages);
 

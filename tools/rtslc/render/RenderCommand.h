@@ -51,9 +51,9 @@ struct RenderCommandOptions {
   bool hasGpuArchitecture = false; // --gpu-arch was given
 };
 
-/// Renders unless there are errors, and gives whether a picture was written. `files` gets those that
-/// it depends on. `stop` stops the rendering; null: a signal does. The unfinished picture is written
-/// unless `--watch` was given.
+/// Renders unless there are errors, and gives whether a picture was written. `files` gets those
+/// that it depends on. `stop` stops the rendering; null: a signal does. The unfinished picture is
+/// written unless `--watch` was given.
 bool renderScene(const RenderCommandOptions &options, Messages &messages,
                  const std::atomic<bool> *stop, std::vector<std::string> &files);
 

@@ -22,8 +22,8 @@ struct RenderInput {
   bool raisesExceptions;
 };
 
-/// With --fp=fast also the target, the traversal and how traces are compiled: other arithmetic gives
-/// the same bits on all of them. Not the number of samples. Throws what readFile does.
+/// With --fp=fast also the target, the traversal and how traces are compiled: other arithmetic
+/// gives the same bits on all of them. Not the number of samples. Throws what readFile does.
 runtime::Identity identityOf(const RenderInput &input);
 
 } // namespace rtsl::tool

@@ -21,8 +21,8 @@ class RenderTarget {
 public:
   virtual ~RenderTarget() = default;
 
-  /// Compiles the module for the scene that `build` creates, and returns the scene. Nothing if there
-  /// were errors.
+  /// Compiles the module for the scene that `build` creates, and returns the scene. Nothing if
+  /// there were errors.
   virtual std::optional<runtime::Scene>
   compile(const typed::Module &module, const LinkRequest &request, const CompileOptions &options,
           Diagnostics &diagnostics, const BuildScene &build) = 0;

@@ -17,8 +17,8 @@ std::int64_t recomputeCost(mlir::Operation *op);
 /// Estimated executions of a block in `depth` loops for each execution outside of loops.
 std::int64_t loopFrequency(unsigned depth);
 
-/// The cost of saving a value of this type across a trace that runs `traceFrequency` times, if it is
-/// defined `madeFrequency` times: stored when defined, loaded after the trace.
+/// The cost of saving a value of this type across a trace that runs `traceFrequency` times, if it
+/// is defined `madeFrequency` times: stored when defined, loaded after the trace.
 std::int64_t saveCost(mlir::Type type, std::int64_t madeFrequency, std::int64_t traceFrequency);
 
 } // namespace rtsl::continuation

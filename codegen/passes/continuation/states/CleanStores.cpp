@@ -1,7 +1,7 @@
 //===- CleanStores.cpp - do not store what the slot already holds ---------===//
 //
 //   %i = rtsl.frame_load "i"[0]
-//   ...                                 the store is removed, and the load too if it has no other use
+//   ...                                 the store is removed, and the load if it has no other use
 //   rtsl.frame_store %i, "i"[0]   ==>
 //
 // Stores are only at the ends of states, so between a load and a store of a state no other

@@ -3,12 +3,12 @@
 // Makes the frame a parameter (PassFrame.h), numbers the states, and adds the functions that
 // runtime/device/engines/Machine.h calls:
 //
-//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32   runs a state, returns the next transition
-//   func @rtsl_frame_size(%chain: i32) -> i32                   bytes of the largest frame
-//   func @rtsl_calls() -> i32                                   whether some state calls a function on its own frame
-//   func @rtsl_rt_Material_shade_first() -> i32                 the first state of an entry point
-//   func @rtsl_rays_sent(%kind: i32) -> i32                     the data that bounds the stack (RayGraph.h)
-//   func @rtsl_rays_kept(%part: i32) -> i32                     the state that waiting rays read later (KeptState.h)
+//   func @rtsl_run_state(%state: i32, %object, %frame) -> i32  runs a state, returns the next
+//   func @rtsl_frame_size(%chain: i32) -> i32                  bytes of the largest frame
+//   func @rtsl_calls() -> i32                                  whether a state calls a function
+//   func @rtsl_rt_Material_shade_first() -> i32                the first state of an entry point
+//   func @rtsl_rays_sent(%kind: i32) -> i32                    what bounds the stack (RayGraph.h)
+//   func @rtsl_rays_kept(%part: i32) -> i32                    what waiting rays read (KeptState.h)
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"

@@ -1,9 +1,9 @@
 //===- CutJoins.cpp - states for code that many states reach --------------===//
 //
-//   ^resume1: br ^join       ^resume2: br ^join             ^resume1: br ^cut       ^resume2: br ^cut
-//   ^join:                                          ==>     ^cut: rtsl.suspend ^join {rtsl.join}
-//     rest                                                  ^join: rtsl.trace_returned
-//                                                             rest
+//   ^resume1: br ^join   ^resume2: br ^join         ^resume1: br ^cut   ^resume2: br ^cut
+//   ^join:                                    ==>   ^cut: rtsl.suspend ^join {rtsl.join}
+//     rest                                          ^join: rtsl.trace_returned
+//                                                     rest
 //
 // Each state has a copy of the blocks that its beginning reaches before the next trace. If traces
 // are in consecutive branches, the first state has copies of all the following code, the second of
