@@ -59,8 +59,8 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
 /* Sets rt_InstanceId of the next instance that is added, and the `selection` (rtslSceneAddSelector)
  * below which it is; 0: none. */
 int rtslMark(RtslScene *scene, int32_t id, uint32_t selection);
-/* Whether rays meet triangles of the meshes that are added next along rt_GeometricNormal; 1 unless it
- * is set. */
+/* Whether rays meet triangles of the meshes that are added next along rt_GeometricNormal; 1 unless
+ * it is set. */
 int rtslSetBackFaces(RtslScene *scene, int areHit);
 
 /* Adds a selector with as many children, in the space of `transform` (as above; null: world space).

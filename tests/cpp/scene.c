@@ -81,7 +81,8 @@ static float seenOfTriangle(const uint32_t indices[3], int backFaces) {
   settings.samplesPerPixel = 1;
   if (!rtslSceneSetRayGeneration(scene, rtslSceneAddObject(scene, "Eye")) ||
       !rtslSetBackFaces(scene, backFaces) ||
-      !rtslSceneAddTriangles(scene, positions, 3, indices, 1, rtslSceneAddObject(scene, "Endless")) ||
+      !rtslSceneAddTriangles(scene, positions, 3, indices, 1,
+                             rtslSceneAddObject(scene, "Endless")) ||
       !rtslRender(scene, &settings, pixels))
     return -1.0f;
   for (i = 0; i < 4 * 4 * 3; ++i)

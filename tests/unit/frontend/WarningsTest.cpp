@@ -28,10 +28,16 @@ TEST(WarningTable, NamesAreUniqueAndWellFormed) {
     if (!row.warning)
       continue;
     const std::string name = row.warning;
-    EXPECT_TRUE(names.insert(name).second) << name << " is used twice";
+    const bool isShared = name == "scene"; // by all warnings of scenes
+    EXPECT_TRUE(names.insert(name).second || isShared) << name << " is used twice";
     EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), std::string::npos) << name;
     EXPECT_NE(name.substr(0, 3), "no-") << name;
   }
+}
+
+TEST(WarningOptions, ConcernAllWarningsOfAName) {
+  EXPECT_EQ(stateOf(Code::sceneWarning, {"no-scene"}), "off");
+  EXPECT_EQ(stateOf(Code::endlessRays, {"no-scene"}), "off");
 }
 
 TEST(WarningOptions, StandByGroupUntilTheyAreNamed) {

@@ -6,20 +6,19 @@
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
 #include "runtime/image/Image.h"
+#include "support/AtomicFile.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <random>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <thread>
 #include <unistd.h>
