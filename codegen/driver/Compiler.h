@@ -31,6 +31,14 @@ enum class TraceMode : std::uint8_t { Recurse, Split };
 /// traverses like a GPU.
 enum class Target : std::uint8_t { Host, HostMegakernel };
 
+/// How the lanes of a warp choose the next step (runtime/device/engines/Schedule.h).
+enum class Schedule : std::uint32_t {
+  Majority = RTSL_SCHEDULE_MAJORITY,
+  Prioritized = RTSL_SCHEDULE_PRIORITIZED,
+  RoundRobin = RTSL_SCHEDULE_ROUND_ROBIN,
+  Naive = RTSL_SCHEDULE_NAIVE,
+};
+
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
@@ -53,6 +61,8 @@ struct CompileOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
+  /// Of PTX for a scene. None: Majority for Paths::Random, otherwise Prioritized.
+  std::optional<Schedule> schedule;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.
   std::uint32_t sampler = 0;
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.

@@ -25,6 +25,12 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
           static_cast<std::uint32_t>(image.stackBytes)};
 }
 
+/// How many registers a thread of the kernel may have; docs/gpu.md has the figures. More are worth
+/// more than more warps where rays wait for others, and lanes stay together.
+static std::uint32_t registersFor(runtime::Paths paths) {
+  return paths == runtime::Paths::Alike ? 128 : 72;
+}
+
 bool compilePackage(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, Diagnostics &diagnostics,
                     const MakeObjects &makeObjects, runtime::Package &package) {
@@ -39,6 +45,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   package.stateCount = compilation.report.stateCount();
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
   package.ptx = toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true));
+  package.registers = registersFor(compilation.program->paths);
   package.host = hostImage(compilation);
   return true;
 }

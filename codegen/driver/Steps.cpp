@@ -146,13 +146,20 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   return forGpu ? gpu : host;
 }
 
+Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program) {
+  return options.schedule.value_or(program.paths == runtime::Paths::Random ? Schedule::Majority
+                                                                           : Schedule::Prioritized);
+}
+
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu) {
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, program);
+  codegen::defineConstant(*code.module, "rtsl_schedule",
+                          std::uint32_t(scheduleFor(options, program)));
   linkDeviceCode(code, megakernelCode(forGpu),
-                 forGpu ? std::vector<std::string>{"rtsl_render"} : hostEntries());
+                 forGpu ? std::vector<std::string>{"rtsl_render", "rtsl_sum"} : hostEntries());
   code.options.isMegakernel = true;
   return code;
 }

@@ -86,6 +86,9 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
 /// The states of a linked program as a self-contained program
 /// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
+/// CompileOptions::schedule, or the one for this program.
+Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program);
+
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 

@@ -57,6 +57,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::warnOfEndlessRays(context);
   if (diagnostics.hasErrors())
     return false;
+  program.paths = linking::findPaths(context);
   linking::makeEntries(context);
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 

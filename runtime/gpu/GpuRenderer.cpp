@@ -16,10 +16,6 @@ using Clock = std::chrono::steady_clock;
 /// Four warps: few enough that the last lanes of a block do not hold many others up.
 constexpr unsigned threadsPerBlock = 128;
 
-/// Registers per thread by default. More lanes that run at once are worth more than
-/// what does not fit into these; docs/gpu.md has the figures.
-constexpr unsigned defaultRegisters = 80;
-
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -51,8 +47,9 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
     : Megakernel(std::move(scene), options), device(device) {
   const Clock::time_point start = Clock::now();
   figures.treeNodes = launch().nodeCount;
-  device.load(code.ptx, code.maxRegisters ? code.maxRegisters : defaultRegisters);
+  device.load(code.ptx, code.maxRegisters);
   kernel = device.kernel("rtsl_render");
+  sumKernel = device.kernel("rtsl_sum");
   figures.device = device.name();
   figures.loadSeconds = secondsSince(start);
   figures.registers = kernel.registers;
@@ -111,7 +108,13 @@ void GpuRenderer::fetchPixels() {
   device.download(picture.pixels.data(), pixelAddress, pixelBytes());
 }
 
-/// Calls visit(values, where the device has them) for the parts of the sums.
+std::uint64_t GpuRenderer::sliceBytes() {
+  constexpr std::uint64_t enough = std::uint64_t(1) << 30;
+  return std::min<std::uint64_t>(device.freeMemory() / 4, enough);
+}
+
+/// Calls visit(values, where the device has them) for the parts of the sums; squares may be
+/// missing.
 template <typename Visit>
 static void forEachPart(PixelSums &sums, RtslPixelSums &onDevice, Visit visit) {
   visit(sums.colors, onDevice.colors);
@@ -120,9 +123,11 @@ static void forEachPart(PixelSums &sums, RtslPixelSums &onDevice, Visit visit) {
   visit(sums.taken, onDevice.taken);
 }
 
-RtslPixelSums GpuRenderer::placeSums() {
-  forEachPart(*sums, sumsOnDevice, [&](auto &values, auto *&address) {
+RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
+  forEachPart(sums, sumsOnDevice, [&](auto &values, auto *&address) {
     const std::size_t bytes = values.size() * sizeof values[0];
+    if (bytes == 0)
+      return;
     if (!address)
       address =
           reinterpret_cast<decltype(values.data())>(allocate(bytes, "the sums of the pixels"));
@@ -141,6 +146,13 @@ void GpuRenderer::fetchSums() {
 double GpuRenderer::runLanes(Address job) {
   void *arguments[] = {&job};
   return device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
+}
+
+double GpuRenderer::addSamples(Address job) {
+  void *arguments[] = {&job};
+  const std::uint64_t wanted = (pixelCount() + threadsPerBlock - 1) / threadsPerBlock;
+  return device.launch(sumKernel, unsigned(std::min<std::uint64_t>(wanted, 1u << 20)),
+                       threadsPerBlock, arguments);
 }
 
 std::uint64_t GpuRenderer::get(Address number) {

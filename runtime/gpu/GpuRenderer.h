@@ -14,7 +14,7 @@ namespace rtsl::runtime {
 struct GpuCode {
   const std::string &ptx;
   std::uint64_t laneBytes;   // the result of the program's rtsl_lane_bytes for the options' depth
-  unsigned maxRegisters = 0; // per thread; 0: a default that is fast for most programs
+  unsigned maxRegisters = 0; // per thread; 0: as many as the code needs
 };
 
 /// What ran on the GPU, to explain its speed.
@@ -48,9 +48,12 @@ private:
   void download(void *to, Address from, std::uint64_t bytes) override;
   Address clearedPixels() override;
   void fetchPixels() override;
-  RtslPixelSums placeSums() override;
+  std::uint64_t sliceBytes() override;
+  double launchSeconds() const override { return 0.25; }
+  RtslPixelSums placeSums(PixelSums &sums) override;
   void fetchSums() override;
   double runLanes(Address job) override;
+  double addSamples(Address job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 
@@ -58,7 +61,7 @@ private:
   std::uint64_t pixelBytes() const { return picture.pixels.size() * sizeof(float); }
 
   CudaDevice &device;
-  CudaDevice::Kernel kernel;
+  CudaDevice::Kernel kernel, sumKernel;
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 5;
+constexpr std::uint32_t formatVersion = 6;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -53,7 +53,7 @@ struct Layouts {
 struct Info {
   Layouts layouts;
   std::uint32_t width, height, samplesPerPixel, maxDepth, seed;
-  std::uint32_t stateCount, frameBytes, hostStackBytes;
+  std::uint32_t stateCount, frameBytes, hostStackBytes, registers;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
 static_assert(sizeof(Info) == 88);
@@ -86,6 +86,7 @@ Info infoOf(const Package &package) {
   info.stateCount = package.stateCount;
   info.frameBytes = package.frameBytes;
   info.hostStackBytes = package.host.stackBytes;
+  info.registers = package.registers;
   info.hostLaneBytes = package.host.laneBytes;
   info.hostRunLane = package.host.runLane;
   return info;
@@ -221,6 +222,7 @@ private:
       refuseDamaged();
     std::memcpy(package.laneBytes.data(), laneBytes.data(), sizeof package.laneBytes);
     package.host.stackBytes = info.hostStackBytes;
+    package.registers = info.registers;
     package.host.laneBytes = info.hostLaneBytes;
     package.host.runLane = info.hostRunLane;
     const std::uint64_t code = content(SectionKind::HostCode).size();

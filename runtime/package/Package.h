@@ -32,6 +32,7 @@ struct Package {
   std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};
 
   std::string ptx;
+  std::uint32_t registers = 0; // GpuCode::maxRegisters
   NativeImage host;
   FlatScene scene; // not relocated
 };

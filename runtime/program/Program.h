@@ -114,6 +114,10 @@ struct MegakernelCode {
   std::uint64_t stackBytes = 0; // of the calling thread
 };
 
+/// How the rays of a program go on where they hit: they do not, they send rays that depend on the
+/// hit alone, or rays that are chosen at random.
+enum class Paths : std::uint8_t { Single, Alike, Random };
+
 struct Program {
   Engine engine = Engine::Classic;
   std::vector<ClassInfo> classes;
@@ -151,6 +155,7 @@ struct Program {
 
   /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
+  Paths paths = Paths::Random;
   /// RTSL_HAS_*: what the scenes that it renders may have.
   std::uint32_t sceneNeeds = RTSL_HAS_ALL;
   /// Keep normals and texture coordinates of meshes even if `needs` does not include them.

@@ -1,5 +1,6 @@
 #include "runtime/render/HostMegakernel.h"
 
+#include "runtime/device/engines/SampleSums.h"
 #include "support/Error.h"
 
 #include <fmt/format.h>
@@ -52,6 +53,14 @@ Megakernel::Address HostMegakernel::clearedPixels() { // of a new picture
 
 double HostMegakernel::runLanes(Address job) {
   threads.run([&](unsigned lane) { code.runLane(reinterpret_cast<const RtslJob *>(job), lane); });
+  return 0;
+}
+
+double HostMegakernel::addSamples(Address job) {
+  const unsigned lanes = threads.count();
+  threads.run([&](unsigned lane) {
+    device::addSamples(*reinterpret_cast<const RtslJob *>(job), lane, lanes);
+  });
   return 0;
 }
 

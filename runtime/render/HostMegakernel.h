@@ -11,6 +11,7 @@
 #include "runtime/render/Megakernel.h"
 
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -29,9 +30,12 @@ private:
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
   Address clearedPixels() override;
-  void fetchPixels() override {} // lanes write directly to the picture
-  RtslPixelSums placeSums() override { return sums->pointers(); } // or to the sums
+  void fetchPixels() override {} // they are those of the picture
+  std::uint64_t sliceBytes() override { return std::uint64_t(64) << 20; }
+  double launchSeconds() const override { return std::numeric_limits<double>::infinity(); }
+  RtslPixelSums placeSums(PixelSums &sums) override { return sums.pointers(); }
   double runLanes(Address job) override;
+  double addSamples(Address job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 

@@ -12,6 +12,9 @@
 
 namespace rtsl::runtime {
 
+/// The numbers of samples have 32 bits, and lanes count a little beyond the last.
+static constexpr std::uint64_t mostInSlice = 0x7fffffff;
+
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status) {
   RtslLaunch launch = scene.launch();
   launch.width = options.width;
@@ -28,19 +31,15 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
                 fmt::format("rays of depth {} overflow the stack that was made for them",
                             options.maxDepth));
   RenderStatistics statistics;
-  // Every pixel that was taken is done, but for those that the stop has cut off.
-  const Window window = windowOf(options);
-  const std::uint64_t pixels = window.pixels();
-  statistics.pixels = std::min(status.nextPixel, pixels) - status.unfinishedPixels;
-  statistics.samples = statistics.pixels * options.samplesPerPixel + status.unfinishedSamples;
   statistics.samplesNotFinite = status.samplesNotFinite;
   statistics.pixelsWithoutSample = status.pixelsWithoutSample;
+  const Window window = windowOf(options);
   for (const std::uint64_t rank : status.firstNotFinite)
     if (rank != 0 && statistics.notFinite.size() < options.mostNotFinite) {
-      const std::uint64_t sample = ~rank, pixel = sample / options.samplesPerPixel;
+      const std::uint64_t pixel = ~rank >> 32;
       statistics.notFinite.push_back({window.x0 + std::uint32_t(pixel % window.width()),
                                       window.y0 + std::uint32_t(pixel / window.width()),
-                                      std::uint32_t(sample % options.samplesPerPixel)});
+                                      std::uint32_t(~rank)});
     }
   addEvents(status, statistics);
   return statistics;
@@ -72,6 +71,20 @@ void Megakernel::prepare() {
   job.width = window.width();
   job.height = window.height();
   clearedPixels(); // allocates them before the rays, whose number adapts to the free memory
+  const std::uint64_t bytesAtOnce = pixelCount() * colorComponents * sizeof(float);
+  if (pixelCount() > mostInSlice)
+    throw Error(
+        ErrorCode::OutOfRange,
+        fmt::format("{} pixels are more than the {} that this target renders: choose a part "
+                    "of the picture",
+                    pixelCount(), mostInSlice));
+  const std::uint64_t mostByMemory =
+      options.wantsPicture ? sliceBytes() / bytesAtOnce : mostInSlice;
+  mostSamples =
+      std::uint32_t(std::clamp<std::uint64_t>(mostByMemory, 1, mostInSlice / pixelCount()));
+  mostSamples = std::min(mostSamples, options.samplesPerPixel);
+  if (options.wantsPicture)
+    job.samples = reinterpret_cast<float *>(allocate(bytesAtOnce * mostSamples, "samples"));
   job.lanes = reinterpret_cast<std::uint8_t *>(
       allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
   jobAddress = allocate(sizeof job, "the launch");
@@ -80,18 +93,74 @@ void Megakernel::prepare() {
 void Megakernel::begin() {
   const RtslStatus nothing{};
   upload(statusAddress, &nothing, sizeof nothing);
-  job.pixels = reinterpret_cast<float *>(clearedPixels());
   job.samplesPerPixel = samplesOfPixel;
-  job.sums = sums ? placedSums : RtslPixelSums{};
-  upload(jobAddress, &job, sizeof job);
+  if (sums) {
+    job.pixels = nullptr;
+    job.sums = placedSums;
+    return;
+  }
+  job.pixels = reinterpret_cast<float *>(clearedPixels());
+  leastTaken = 0;
+  isUneven = false;
+  if (mostSamples < samplesOfPixel && options.wantsPicture)
+    placeOwnSums();
+  else
+    job.sums = {};
+}
+
+/// The sums of a rendering that ends with its picture.
+void Megakernel::placeOwnSums() {
+  ownSums = PixelSums::make(pixelCount(), colorComponents);
+  ownSums.squares.clear();
+  job.sums = placeSums(ownSums);
 }
 
 void Megakernel::run(Watch &watch) {
-  const double all = double(pixelCount());
-  const Watch::Poll poll(
-      watch, [&] { return double(get(statusAddress + offsetof(RtslStatus, nextPixel))) / all; },
-      [&] { set(statusAddress + offsetof(RtslStatus, stop), 1); });
-  kernelSeconds = runLanes(jobAddress);
+  const std::uint64_t all = pixelCount() * (samplesOfPixel - leastTaken);
+  std::uint64_t before = 0;
+  kernelSeconds = 0;
+  const auto share = [&](std::uint64_t samples) { return double(before + samples) / double(all); };
+  while (leastTaken < samplesOfPixel && !watch.isStopped()) {
+    job.firstSample = leastTaken;
+    job.sampleCount = std::min(mostSamples, samplesOfPixel - leastTaken);
+    job.taken = isUneven ? job.sums.taken : nullptr;
+    runSlice(watch, share);
+    const std::uint64_t whole = pixelCount() * job.sampleCount;
+    before += whole;
+    isUneven = isUneven || samplesOfSlice < whole;
+    if (samplesOfSlice < whole)
+      return;
+    leastTaken += job.sampleCount;
+  }
+  isUneven = false;
+}
+
+/// Renders the slice of the job in launches that end soon, so that no driver takes them for endless
+/// and a GPU that shows a screen can do so.
+void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share) {
+  upload(jobAddress, &job, sizeof job);
+  const std::uint64_t none = 0, all = pixelCount() * job.sampleCount;
+  const Address next = statusAddress + offsetof(RtslStatus, nextSample);
+  upload(next, &none, sizeof none);
+  samplesOfSlice = 0;
+  while (samplesOfSlice < all && !watch.isStopped()) {
+    const std::uint32_t goes = 0;
+    upload(statusAddress + offsetof(RtslStatus, stop), &goes, sizeof goes);
+    {
+      const Watch::Poll poll(
+          watch, launchSeconds(), [&] { return share(std::min(get(next), all)); },
+          [&] { set(statusAddress + offsetof(RtslStatus, stop), 1); });
+      kernelSeconds += runLanes(jobAddress);
+    }
+    RtslStatus status;
+    download(&status, statusAddress, sizeof status);
+    const std::uint64_t rendered = std::min(status.nextSample, all);
+    if (status.problem != RTSL_PROBLEM_NONE)
+      return; // finish() reports it
+    samplesOfSlice = rendered;
+  }
+  if (options.wantsPicture)
+    kernelSeconds += addSamples(jobAddress);
 }
 
 RenderStatistics Megakernel::finish() {
@@ -101,6 +170,14 @@ RenderStatistics Megakernel::finish() {
   ofRun.samplesPerPixel = samplesOfPixel;
   RenderStatistics statistics = readStatus(status, ofRun);
   statistics.kernelSeconds = kernelSeconds;
+  if (leastTaken == samplesOfPixel) {
+    statistics.pixels = pixelCount();
+    statistics.samples = pixelCount() * samplesOfPixel;
+  } else { // pixels have samples of the slice in the order of their numbers
+    statistics.samples = pixelCount() * leastTaken + samplesOfSlice;
+    if (leastTaken + job.sampleCount == samplesOfPixel)
+      statistics.pixels = samplesOfSlice / job.sampleCount;
+  }
   if (!sums)
     fetchPixels();
   for (const FlatScene::Output &output : outputs)
@@ -109,7 +186,10 @@ RenderStatistics Megakernel::finish() {
 }
 
 void Megakernel::uploadSums() {
-  placedSums = placeSums();
+  placedSums = placeSums(*sums);
+  const SampleCounts counts = countSamples(*sums);
+  leastTaken = counts.least;
+  isUneven = counts.least < counts.most;
 }
 
 } // namespace rtsl::runtime

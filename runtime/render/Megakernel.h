@@ -9,8 +9,10 @@
 
 #include "runtime/accel/FlatScene.h"
 #include "runtime/render/Backend.h"
+#include "runtime/render/PixelSums.h"
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -18,8 +20,8 @@ namespace rtsl::runtime {
 /// Sets the size, depth and seed of the scene's launch, and its status.
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
 
-/// The statistics of a job without sums, and without the times and isUnfinished. Throws Internal if
-/// the lanes had too little memory.
+/// What rays and samples have met, by the status of a job. Throws Internal if the lanes had too
+/// little memory.
 RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options);
 
 class Megakernel : public Backend {
@@ -49,10 +51,16 @@ private:
   virtual Address clearedPixels() = 0;
   /// Copies them to `picture`.
   virtual void fetchPixels() = 0;
-  /// Copies `sums` to the device, and gives their addresses there.
-  virtual RtslPixelSums placeSums() = 0;
-  /// Runs all lanes of the job and waits for them. Returns RenderStatistics::kernelSeconds.
+  /// The bytes that the samples of a slice may take.
+  virtual std::uint64_t sliceBytes() = 0;
+  /// A launch takes no samples any more after this time.
+  virtual double launchSeconds() const = 0;
+  /// Copies sums to the device, and gives their addresses there.
+  virtual RtslPixelSums placeSums(PixelSums &sums) = 0;
+  /// Run all lanes of the job and wait for them: for its samples, and to add these to the sums.
+  /// Return RenderStatistics::kernelSeconds.
   virtual double runLanes(Address job) = 0;
+  virtual double addSamples(Address job) = 0;
   // Read and write a number in the status while lanes run, from another thread.
   virtual std::uint64_t get(Address number) = 0;
   virtual void set(Address number, std::uint32_t value) = 0;
@@ -62,14 +70,24 @@ private:
   void run(Watch &watch) final;
   RenderStatistics finish() final;
   void uploadSums() final;
+  /// `share` gives what is done of the run, for a number of samples of the slice.
+  void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
+  void placeOwnSums();
 
   FlatScene scene; // empty after prepare()
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0;
   RtslJob job{};
+  std::uint32_t mostSamples = 1; // of a pixel in a slice
+  PixelSums ownSums;             // zeros: what a rendering that needs several slices begins with
   RtslPixelSums placedSums{};
-  double kernelSeconds = 0; // of the last run
+  // Of the sums: samples that each pixel has, and whether some have more.
+  std::uint32_t leastTaken = 0;
+  bool isUneven = false;
+  // Of the last run:
+  double kernelSeconds = 0;
+  std::uint64_t samplesOfSlice = 0; // that were rendered
 };
 
 } // namespace rtsl::runtime

@@ -45,6 +45,10 @@ struct RenderOptions {
   std::uint32_t threads = 0; // 0: all cores
   Traversal traversal = Traversal::Embree;
 
+  /// False, for a launch that writes buffers: the megakernel neither keeps nor adds up samples, and
+  /// the picture is black. Not for renderings in passes.
+  bool wantsPicture = true;
+
   /// Called from time to time by one thread at a time, with the share that is done, in [0, 1].
   std::function<void(double)> progress;
   /// Set it from anywhere to stop: render throws Cancelled,

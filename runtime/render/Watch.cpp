@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 namespace rtsl::runtime {
+
+static constexpr double infinite = std::numeric_limits<double>::infinity();
 
 void Watch::advance(std::uint64_t all) {
   std::lock_guard<std::mutex> lock(mutex);
@@ -14,9 +17,10 @@ void Watch::advance(std::uint64_t all) {
     options.progress(double(done) / double(all));
 }
 
-Watch::Poll::Poll(const Watch &watch, std::function<double()> share, std::function<void()> stop)
-    : watch(watch), share(std::move(share)), stop(std::move(stop)) {
-  if (watch.options.progress || watch.options.cancel)
+Watch::Poll::Poll(const Watch &watch, double seconds, std::function<double()> share,
+                  std::function<void()> stop)
+    : watch(watch), seconds(seconds), share(std::move(share)), stop(std::move(stop)) {
+  if (watch.options.progress || watch.options.cancel || seconds < infinite)
     thread = std::thread([this] { run(); });
 }
 
@@ -33,11 +37,15 @@ Watch::Poll::~Poll() {
 void Watch::Poll::run() {
   constexpr std::chrono::milliseconds pause(10);
   bool hasStopped = false;
+  const auto start = std::chrono::steady_clock::now();
+  const auto isOverTime = [&] {
+    return std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(seconds);
+  };
   try {
     std::unique_lock<std::mutex> lock(mutex);
     while (!isOver) {
       lock.unlock();
-      if (!hasStopped && watch.isStopped()) {
+      if (!hasStopped && (watch.isStopped() || isOverTime())) {
         stop();
         hasStopped = true;
       }

@@ -28,12 +28,13 @@ public:
   void advance(std::uint64_t all);
 
   /// During its lifetime a thread calls `share` every 10 ms and reports its result, the share that
-  /// is done, in [0, 1]; it calls `stop` once, after the caller cancelled. Without a progress
-  /// function and a cancellation flag there is no thread. An Error from `share` or `stop` ends only
-  /// this thread.
+  /// is done, in [0, 1]; it calls `stop` once, after the caller cancelled or after `seconds`.
+  /// Without any of these there is no thread. An Error from `share` or `stop` ends only this
+  /// thread.
   class Poll {
   public:
-    Poll(const Watch &watch, std::function<double()> share, std::function<void()> stop);
+    Poll(const Watch &watch, double seconds, std::function<double()> share,
+         std::function<void()> stop);
     ~Poll();
     Poll(const Poll &) = delete;
     Poll &operator=(const Poll &) = delete;
@@ -42,6 +43,7 @@ public:
     void run();
 
     const Watch &watch;
+    const double seconds;
     const std::function<double()> share;
     const std::function<void()> stop;
     std::mutex mutex;

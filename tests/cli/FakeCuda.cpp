@@ -1,7 +1,8 @@
-// Stands in for libcuda.so.1: a device whose memory is the process's, and whose one kernel paints a
-// pattern after having checked that it was launched as rtsl_render has to be. FAKE_CUDA makes it
+// Stands in for libcuda.so.1: a device whose memory is the process's, and whose kernel rtsl_render
+// paints a pattern after having checked that it was launched as it has to be. FAKE_CUDA makes it
 // fail in one of the ways in which drivers and devices do, or paint half of the picture and go on
-// until it is stopped ("endless").
+// until it is stopped, again and again ("endless").
+#include "runtime/device/engines/SampleSums.h"
 #include "runtime/device/ray/Abi.h"
 
 #include <chrono>
@@ -10,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <string>
 #include <thread>
 
 namespace {
@@ -51,15 +53,77 @@ bool isAllocated(const void *address, std::size_t bytes) {
   return start + bytes <= after->first + after->second;
 }
 
-/// Sample n of a pixel, from 1, is n times the color.
-void takeSamples(const RtslPixelSums &sums, std::uint64_t pixel, std::uint32_t count,
-                 const float *color) {
-  for (; sums.taken[pixel] < count; ++sums.counted[pixel]) {
-    ++sums.taken[pixel];
-    for (std::uint32_t c = 0; c < 3; ++c)
-      sums.colors[3 * pixel + c] += double(sums.taken[pixel]) * double(color[c]);
-  }
+/// Sample n of a pixel, from 1, is n times (x, y, seed).
+void paint(const RtslJob &job, std::uint64_t sample) {
+  const rtsl::device::Pixel pixel =
+      rtsl::device::pixelAt(job, std::uint32_t(sample / job.sampleCount));
+  const std::uint32_t number = job.firstSample + std::uint32_t(sample % job.sampleCount);
+  if (job.taken && number < job.taken[pixel.number(job)])
+    return;
+  const float color[3] = {float(job.left + pixel.x), float(job.top + pixel.y),
+                          float(job.launch->seed)};
+  for (std::uint32_t c = 0; c < 3; ++c)
+    job.samples[3 * sample + c] = float(number + 1) * color[c];
 }
+
+int render(const RtslJob &job, unsigned blocks, unsigned threads) {
+  if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
+    return IllegalAddress;
+  const RtslLaunch &launch = *job.launch;
+  const std::uint64_t pixels = std::uint64_t(job.width) * job.height,
+                      samples = pixels * job.sampleCount;
+  bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
+  isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
+  isFine &= isAllocated(job.samples, samples * launch.colorComponents * sizeof(float));
+  isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
+            job.status->nextSample < samples && job.status->stop == 0;
+  isFine &= job.firstSample + job.sampleCount <= job.samplesPerPixel;
+  isFine &=
+      isAllocated(launch.records, 16) &&
+      (launch.lightCount == 0 || isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef)));
+  isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
+  isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
+  for (std::uint32_t i = 0; i < launch.meshCount; ++i)
+    isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
+              isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
+  isFine &= job.left + job.width <= launch.width && job.top + job.height <= launch.height;
+  if (!isFine)
+    return IllegalAddress;
+  const std::uint64_t first = job.status->nextSample,
+                      end = !is("endless") ? samples
+                            : first == 0   ? samples / 2
+                                           : first; // nothing more
+  for (std::uint64_t i = first; i < end; ++i)
+    paint(job, i);
+  __atomic_store_n(&job.status->nextSample, end, __ATOMIC_RELAXED);
+  endlessStatus = is("endless") ? job.status : nullptr;
+  if (is("overflow"))
+    job.status->problem = RTSL_PROBLEM_STACK;
+  return Success;
+}
+
+/// The kernel that adds the samples to the sums; it must follow the other one.
+int sum(const RtslJob &job) {
+  const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
+  const std::uint32_t components = job.launch->colorComponents;
+  const RtslPixelSums &sums = job.sums;
+  bool isFine = job.status->nextSample > 0;
+  if (job.pixels)
+    isFine &= isAllocated(job.pixels, pixels * components * sizeof(float));
+  if (sums.colors)
+    isFine &= isAllocated(sums.colors, pixels * components * sizeof(double)) &&
+              isAllocated(sums.counted, pixels * sizeof(std::uint32_t)) &&
+              isAllocated(sums.taken, pixels * sizeof(std::uint32_t));
+  if (sums.squares)
+    isFine &= isAllocated(sums.squares, pixels * sizeof(double));
+  if (!isFine)
+    return IllegalAddress;
+  rtsl::device::addSamples(job, 0, 1);
+  return Success;
+}
+
+/// What the driver gives out as kernels.
+const char *const kernels[] = {"rtsl_render", "rtsl_sum"};
 
 } // namespace
 
@@ -196,14 +260,21 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
   }
   const char *ptx = static_cast<const char *>(image);
   *module = &allocations;
-  return std::strstr(ptx, ".entry rtsl_render") ? Success : InvalidValue;
+  for (const char *kernel : kernels)
+    if (!std::strstr(ptx, (std::string(".entry ") + kernel + "(").c_str()))
+      return InvalidValue;
+  return Success;
 }
 int cuModuleUnload(void *) {
   return Success;
 }
 int cuModuleGetFunction(void **function, void *, const char *name) {
-  *function = &allocations;
-  return std::strcmp(name, "rtsl_render") == 0 ? Success : InvalidValue;
+  for (const char *const &kernel : kernels)
+    if (std::strcmp(name, kernel) == 0) {
+      *function = const_cast<void *>(static_cast<const void *>(&kernel));
+      return Success;
+    }
+  return InvalidValue;
 }
 int cuFuncGetAttribute(int *value, int, void *) {
   *value = 40;
@@ -214,56 +285,12 @@ int cuOccupancyMaxActiveBlocksPerMultiprocessor(int *blocks, void *, int, std::s
   return Success;
 }
 
-/// Paints (x, y, seed): the launch must have arrived, and every pointer of it must lead to device
-/// memory.
-int cuLaunchKernel(void *, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
+int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
                    unsigned, unsigned, void *, void **arguments, void **) {
   if (is("fault"))
     return Success; // it shows when the kernel is waited for
   const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
-  if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
-    return IllegalAddress;
-  const RtslLaunch &launch = *job.launch;
-  const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
-  bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
-  isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
-  isFine &= isAllocated(job.pixels, pixels * launch.colorComponents * sizeof(float));
-  isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
-            job.status->nextPixel == 0;
-  isFine &=
-      isAllocated(launch.records, 16) &&
-      (launch.lightCount == 0 || isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef)));
-  isFine &= isAllocated(launch.instances, launch.instanceCount * sizeof(RtslInstance));
-  isFine &= isAllocated(launch.nodes, launch.nodeCount * sizeof(RtslBvhNode));
-  for (std::uint32_t i = 0; i < launch.meshCount; ++i)
-    isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
-              isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
-  isFine &= job.left + job.width <= launch.width && job.top + job.height <= launch.height;
-  const RtslPixelSums &sums = job.sums;
-  if (sums.colors)
-    isFine &= isAllocated(sums.colors, pixels * launch.colorComponents * sizeof(double)) &&
-              isAllocated(sums.squares, pixels * sizeof(double)) &&
-              isAllocated(sums.counted, pixels * sizeof(std::uint32_t)) &&
-              isAllocated(sums.taken, pixels * sizeof(std::uint32_t));
-  if (!isFine)
-    return IllegalAddress;
-  const std::uint64_t painted = is("endless") ? pixels / 2 : pixels;
-  for (std::uint64_t i = 0; i < pixels * launch.colorComponents; ++i)
-    if (job.pixels[i] != 0)
-      return IllegalAddress;
-  for (std::uint64_t i = 0; i < painted; ++i) {
-    const float color[3] = {float(job.left + i % job.width), float(job.top + i / job.width),
-                            float(launch.seed)};
-    for (std::uint32_t c = 0; c < 3 && !sums.colors; ++c)
-      job.pixels[3 * i + c] = color[c];
-    if (sums.colors)
-      takeSamples(sums, i, job.samplesPerPixel, color);
-  }
-  __atomic_store_n(&job.status->nextPixel, painted, __ATOMIC_RELAXED);
-  endlessStatus = is("endless") ? job.status : nullptr;
-  if (is("overflow"))
-    job.status->problem = RTSL_PROBLEM_STACK;
-  return Success;
+  return function == &kernels[0] ? render(job, blocks, threads) : sum(job);
 }
 int cuCtxSynchronize() {
   while (endlessStatus && !__atomic_load_n(&endlessStatus->stop, __ATOMIC_RELAXED))

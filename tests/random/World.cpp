@@ -1,6 +1,7 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
+#include "runtime/device/engines/SampleSums.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/program/PrintLog.h"
@@ -463,17 +464,24 @@ void World::renderByLane(std::vector<float> &pixels) {
   job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
   job.width = launch.width;
   job.height = launch.height;
+  job.samplesPerPixel = job.sampleCount = 1;
+  std::vector<float> samples(pixels.size());
+  job.samples = samples.data();
   job.pixels = pixels.data();
-  job.samplesPerPixel = 1;
   code.megakernel.runLane(&job, 0);
+  device::addSamples(job, 0, 1);
   checkGuard();
   launch.status = nullptr;
 }
 
 void World::renderBySample(std::vector<float> &pixels) {
-  for (std::uint32_t pixel = 0; pixel != launch.width * launch.height; ++pixel) {
-    float *color = &pixels[pixel * code.colorComponents];
-    code.sample(&launch, pixel % launch.width, pixel / launch.width, 0, color);
+  RtslJob job{}; // the order of a lane, in which programs print
+  job.width = launch.width;
+  job.height = launch.height;
+  for (std::uint32_t place = 0; place != launch.width * launch.height; ++place) {
+    const device::Pixel pixel = device::pixelAt(job, place);
+    float *color = &pixels[pixel.number(job) * code.colorComponents];
+    code.sample(&launch, pixel.x, pixel.y, 0, color);
     checkGuard();
     if (!std::all_of(color, color + code.colorComponents,
                      [](float component) { return std::isfinite(component); }))

@@ -174,7 +174,7 @@ int render(const Options &options) {
   if (options.target == Target::Gpu) {
     runtime::CudaDevice device;
     const runtime::GpuCode code = {package.ptx, package.laneBytes[render.maxDepth],
-                                   options.registers};
+                                   options.registers ? options.registers : package.registers};
     runtime::GpuRenderer renderer(device, code, package.scene, render);
     image = renderer.render(&statistics);
     gpu = renderer.gpu();

@@ -131,6 +131,9 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 /// class.
 bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 
+/// How rays go on where they hit. Runs after slots are resolved.
+runtime::Paths findPaths(const LinkContext &context);
+
 /// Defines the dispatch function of every slot.
 void resolveSlots(LinkContext &context);
 

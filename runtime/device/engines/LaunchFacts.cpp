@@ -20,5 +20,8 @@ __attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launc
 __attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
   return 0;
 }
+__attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
+  return RTSL_SCHEDULE_MAJORITY;
+}
 
 } // extern "C"

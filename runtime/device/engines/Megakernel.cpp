@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Megakernel.h"
 
+#include "runtime/device/engines/SampleSums.h"
 #include "runtime/device/traverse/AnyHit.h"
 
 using namespace rtsl;
@@ -32,10 +33,19 @@ void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
 }
 
 #ifdef __NVPTX__
+static uint32_t threadNumber() {
+  return __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
+         __nvvm_read_ptx_sreg_tid_x();
+}
+
 /// The kernel: one thread per lane, in whole warps.
 __attribute__((nvptx_kernel)) void rtsl_render(const RtslJob *job) {
-  device::runLane(*job, __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
-                            __nvvm_read_ptx_sreg_tid_x());
+  device::runLane(*job, threadNumber());
+}
+/// The kernel that adds its samples to the sums afterwards, with any number of threads.
+__attribute__((nvptx_kernel)) void rtsl_sum(const RtslJob *job) {
+  device::addSamples(*job, threadNumber(),
+                     __nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x());
 }
 #endif
 

@@ -209,42 +209,43 @@ typedef struct RtslLaunch {
 
 /// What all lanes of a job write, atomically. The host clears it before.
 typedef struct RtslStatus {
-  uint64_t nextPixel;           // the first of the job that no lane has taken
+  uint64_t nextSample;          // the first of the slice that no lane has taken
   uint64_t badRays;             // not finite, or without a direction: their color is 0
   uint64_t raysTooDeep;         // deeper than the launch allows: they were not sent
   uint64_t samplesNotFinite;    // left out of the means of their pixels
   uint64_t pixelsWithoutSample; // black, because none of their samples was finite
-  uint64_t firstNotFinite
-      [RTSL_FIRST_NOT_FINITE]; // ~(pixel * samplesPerPixel + sample), descending; 0: none
-  uint64_t unfinishedPixels,
-      unfinishedSamples;                // pixels that `stop` has cut off, and their samples
-  uint64_t exceptions[RTSL_EXCEPTIONS]; // samples that ended with each exception
-  uint32_t stop;    // set by anyone: no lane begins another pixel, or, on CPUs, another sample
-  uint32_t problem; // RTSL_PROBLEM_*
+  uint64_t firstNotFinite[RTSL_FIRST_NOT_FINITE]; // ~(sample + pixel * 2^32), descending; 0: none
+  uint64_t exceptions[RTSL_EXCEPTIONS];           // samples that ended with each exception
+  uint32_t stop;                                  // set by anyone: no lane takes samples any more
+  uint32_t problem;                               // RTSL_PROBLEM_*
 } RtslStatus;
 
 #define RTSL_PROBLEM_NONE 0u
 #define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane was started
 
-/// The sums of the samples of each pixel, in a rendering that goes on with them.
+/// The sums of the samples of each pixel, row by row, to which slices are added.
 typedef struct RtslPixelSums {
   double *colors;    // colorComponents per pixel
-  double *squares;   // of the means of the components of each sample
+  double *squares;   // of the means of the components of each sample; null: not wanted
   uint32_t *counted; // finite samples
   uint32_t *taken;   // all samples
 } RtslPixelSums;
 
-/// An image for the megakernel (runtime/device/engines/Megakernel.h) to render: a window of the
-/// launch. Its pixels are numbered row by row from the top.
+/// A slice of a rendering for the megakernel (runtime/device/engines/Megakernel.h): some samples of
+/// each pixel in a window of the launch. They are numbered pixel by pixel, in the order of
+/// runtime/device/engines/Slice.h; there are less than 2^31. Lanes take them in order.
 typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16
   uint32_t left, top, width, height;
-  uint32_t samplesPerPixel; // a pixel is done when it has so many
-  float *pixels;            // colorComponents per pixel; not used with sums
-  RtslPixelSums sums;       // all null: every pixel begins without samples
+  uint32_t samplesPerPixel;          // of all slices
+  uint32_t firstSample, sampleCount; // of each pixel in this slice
+  float *samples;        // colorComponents for each sample of the slice; null: not wanted
+  RtslPixelSums sums;    // of the samples before this slice; all null: there are none
+  const uint32_t *taken; // sums.taken, if some pixels have samples of the slice already; or null
+  float *pixels;         // the means, colorComponents per pixel, row by row; null: not wanted
 } RtslJob;
 
 /// What happens in a sample, apart from its color.
@@ -410,6 +411,12 @@ const RtslInstance *rtsl_instances(const RtslLaunch *launch);
 /// The number of instances of such a scene if each of them is one primitive: the project's own
 /// traversal tests them one after the other. Otherwise 0, and it searches the tree.
 uint32_t rtsl_listed_instances(const RtslLaunch *launch);
+/// RTSL_SCHEDULE_*: how the lanes of a warp choose the next step.
+#define RTSL_SCHEDULE_MAJORITY 0u
+#define RTSL_SCHEDULE_PRIORITIZED 1u
+#define RTSL_SCHEDULE_ROUND_ROBIN 2u
+#define RTSL_SCHEDULE_NAIVE 3u
+uint32_t rtsl_schedule(const RtslLaunch *launch);
 
 //===----------------------------------------------------------------------===//
 // Defined by the runtime, called by compiled programs.
@@ -560,7 +567,7 @@ void rtsl_sample_split(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_
 /// chains of this length. Exact: no shader can need more.
 uint64_t rtsl_lane_bytes(uint32_t maxDepth, uint32_t referenceChain);
 
-/// Renders pixels of the job until none is left, in the lane's own memory. Lanes with different
+/// Renders samples of the job until none is left, in the lane's own memory. Lanes with different
 /// numbers may run at the same time.
 void rtsl_run_lane(const RtslJob *job, uint32_t lane);
 

@@ -21,6 +21,13 @@ inline uint32_t lanesWhere(bool condition) {
 inline int32_t valueOf(int32_t value, int lane) {
   return __nvvm_shfl_sync_idx_i32(all, value, lane, 31);
 }
+/// The smallest value of the given lanes, of which there is at least one.
+inline int32_t smallest(uint32_t lanes, int32_t value) {
+  int32_t least = valueOf(value, __builtin_ctz(lanes));
+  for (uint32_t less; (less = lanesWhere(value < least) & lanes) != 0;)
+    least = valueOf(value, __builtin_ctz(less));
+  return least;
+}
 } // namespace warp
 
 /// The number of lanes that run this code together.
@@ -28,33 +35,10 @@ inline int lanesHere() {
   return __builtin_popcount(__nvvm_activemask());
 }
 
-/// The step that most lanes of the warp have; the first such one on a tie. All lanes call together.
-/// `nothing`, if no lane has any other step.
-inline int32_t vote(int32_t wish, int32_t nothing) {
-  uint32_t voters = warp::lanesWhere(wish != nothing);
-  int32_t winner = nothing;
-  int votes = 0;
-  while (voters) {
-    int32_t candidate = warp::valueOf(wish, __builtin_ctz(voters));
-    uint32_t supporters = warp::lanesWhere(wish == candidate);
-    int count = __builtin_popcount(supporters);
-    if (count > votes) {
-      winner = candidate;
-      votes = count;
-    }
-    voters &= ~supporters;
-  }
-  return winner;
-}
-
 #else
 
 inline int lanesHere() {
   return 1;
-}
-
-inline int32_t vote(int32_t wish, int32_t) {
-  return wish;
 }
 
 #endif

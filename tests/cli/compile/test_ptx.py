@@ -43,6 +43,26 @@ class Ptx(Case):
         _, error = self.run_rtslc("compile", EXAMPLES / "glass" / "Glass.rtsl", "--emit=ptx", "--gpu-arch=sm_42", status=USAGE)
         self.assertIn("sm_75", error)
 
+    def ptx(self, scene, *arguments):
+        return self.run_rtslc("compile", scene, "--emit=ptx", *arguments)[0]
+
+    def test_schedules(self):
+        """Scenes that choose rays at random let their lanes vote, others keep them together."""
+        schedules = ("majority", "prioritized")
+        for name, chosen in (("glass/scene.json", "prioritized"), ("metal/scene.json", "majority"),
+                             ("whitted-programs/scene.json", "prioritized"), ("cornell/scene.json", "majority")):
+            with self.subTest(scene=name):
+                automatic = self.ptx(EXAMPLES / name)
+                same = [one for one in schedules if self.ptx(EXAMPLES / name, f"--schedule={one}") == automatic]
+                self.assertEqual(same, [chosen])
+        _, error = self.run_rtslc("compile", EXAMPLES / "glass" / "scene.json", "--emit=ptx", "--schedule=fair", status=USAGE)
+        self.assertIn("`fair` is none of auto, majority, prioritized, round-robin, naive", error)
+
+    @unittest.skipUnless(PTXAS, "ptxas is not installed")
+    def test_the_assembler_accepts_every_schedule(self):
+        for one in ("round-robin", "naive"):  # examples have the others
+            self.assemble("sm_75", EXAMPLES / "glazes" / "scene.json", f"--schedule={one}")
+
     def test_a_scene_stands_alone(self):
         glass = EXAMPLES / "glass"
         _, error = self.run_rtslc("compile", glass / "scene.json", glass / "Glass.rtsl", "--emit=ptx", status=USAGE)

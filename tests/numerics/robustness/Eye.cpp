@@ -108,11 +108,10 @@ private:
   std::uint64_t records; // where they begin
 };
 
-/// The pixel, as the status says; a sample that was not finite was left out of it.
-Color seen(const RtslStatus &status, const Color &pixel) {
-  const runtime::RenderStatistics statistics = runtime::readStatus(status, onePixel());
-  return statistics.samplesNotFinite ? unlessNotFinite({std::numeric_limits<float>::infinity()})
-                                     : pixel;
+/// What the only sample saw.
+Color seen(const RtslStatus &status, const Color &sample) {
+  runtime::readStatus(status, onePixel()); // throws if the program had too little memory
+  return unlessNotFinite(sample);
 }
 
 class MegakernelEye : public Eye {
@@ -127,9 +126,9 @@ public:
     job.status = &status;
     job.lanes = lane.data()->bytes;
     job.laneBytes = flat->laneBytes();
-    job.pixels = pixel.data();
+    job.samples = pixel.data();
     job.width = job.height = 1;
-    job.samplesPerPixel = 1;
+    job.samplesPerPixel = job.sampleCount = 1;
   }
 
   Color look(std::uint32_t seed) override {
@@ -193,9 +192,9 @@ public:
     job.status = reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status));
     job.laneBytes = flat->laneBytes();
     job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
-    job.pixels = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
+    job.samples = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
     job.width = job.height = 1;
-    job.samplesPerPixel = 1;
+    job.samplesPerPixel = job.sampleCount = 1;
     device.upload(jobAddress, &job, sizeof job);
   }
 

@@ -4,15 +4,16 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/engines/Megakernel.h"
+#include "runtime/device/engines/SampleSums.h"
 
 #include <cmath>
+#include <vector>
 
 namespace rtsl::numerics {
 
 namespace {
 
-/// Adds samples to a pixel as the renderer does, and gives its value.
+/// Adds samples to a pixel as the renderer does, in slices, and gives its value.
 class Pixel {
 public:
   explicit Pixel(std::uint32_t samples) {
@@ -20,23 +21,40 @@ public:
     launch.width = launch.height = 1;
     job.launch = &launch;
     job.status = &status;
-    job.pixels = &value;
+    job.width = job.height = 1;
     job.samplesPerPixel = samples;
+    job.pixels = &value;
+    job.sums = {&sum, &squares, &counted, &taken};
   }
   void add(float sample) {
-    device::addSample(job, lane, &sample);
-    ++lane.sample;
+    slice.push_back(sample);
+    if (slice.size() == samplesOfSlice)
+      addSlice();
   }
   float finish() {
-    device::writePixel(job, lane);
+    if (!slice.empty())
+      addSlice();
     return value;
   }
 
 private:
+  static constexpr std::size_t samplesOfSlice = 4096;
+
+  void addSlice() {
+    job.samples = slice.data();
+    job.firstSample = taken;
+    job.sampleCount = std::uint32_t(slice.size());
+    status.nextSample = slice.size();
+    device::addSamples(job, 0, 1);
+    slice.clear();
+  }
+
   RtslLaunch launch{};
   RtslStatus status{};
   RtslJob job{};
-  device::Lane lane{};
+  double sum = 0, squares = 0;
+  std::uint32_t counted = 0, taken = 0;
+  std::vector<float> slice;
   float value = 0;
 };
 

@@ -2,6 +2,7 @@
 // that a renderer can be used again.
 #include "FakeProgram.h"
 
+#include "runtime/device/engines/Slice.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
 #include "support/Error.h"
@@ -13,36 +14,35 @@
 
 using namespace rtsl::runtime;
 using rtsl::Error;
+namespace device = rtsl::device;
 using rtsl::ErrorCode;
 
 namespace {
 
 std::atomic<unsigned> lanesBegun{0};
 
-/// A lane of a program that paints (x, y, seed), and takes its time for a pixel if it has a depth,
-/// in milliseconds. Samples are numbered from 1 in `seed`, if sums are taken.
+/// A lane of a program that paints (x, y, seed) times the number of the sample, from 1, and takes
+/// its time for a pixel if it has a depth, in milliseconds.
 void paint(const RtslJob *job, std::uint32_t) {
   ++lanesBegun;
   const RtslLaunch &launch = *job->launch;
-  const std::uint64_t pixels = std::uint64_t(job->width) * job->height;
+  const std::uint64_t samples = std::uint64_t(job->width) * job->height * job->sampleCount;
   while (!__atomic_load_n(&job->status->stop, __ATOMIC_RELAXED)) {
-    const std::uint64_t pixel = __atomic_fetch_add(&job->status->nextPixel, 1, __ATOMIC_RELAXED);
-    if (pixel >= pixels)
+    const std::uint64_t sample = __atomic_fetch_add(&job->status->nextSample, 1, __ATOMIC_RELAXED);
+    if (sample >= samples)
       return;
-    if (job->sums.colors && job->sums.taken[pixel] == job->samplesPerPixel)
+    const device::Pixel pixel =
+        device::pixelAt(*job, static_cast<std::uint32_t>(sample / job->sampleCount));
+    const auto number = static_cast<std::uint32_t>(sample % job->sampleCount) + job->firstSample;
+    if (job->taken && number < job->taken[pixel.number(*job)])
       continue;
-    const float color[3] = {float(job->left + pixel % job->width),
-                            float(job->top + pixel / job->width), float(launch.seed)};
-    if (!job->sums.colors)
-      std::copy_n(color, 3, job->pixels + 3 * pixel);
-    else
-      for (; job->sums.taken[pixel] < job->samplesPerPixel; ++job->sums.taken[pixel]) {
-        const double factor = 1 + job->sums.taken[pixel];
-        for (int c = 0; c < 3; ++c)
-          job->sums.colors[3 * pixel + std::size_t(c)] += factor * double(color[c]);
-        ++job->sums.counted[pixel];
-      }
-    std::this_thread::sleep_for(std::chrono::milliseconds(launch.maxDepth));
+    const float factor = float(number + 1);
+    float *color = job->samples + 3 * sample;
+    color[0] = factor * float(job->left + pixel.x);
+    color[1] = factor * float(job->top + pixel.y);
+    color[2] = factor * float(launch.seed);
+    if (number % job->sampleCount == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(launch.maxDepth));
   }
 }
 
@@ -94,9 +94,9 @@ TEST(Backend, GivesThePictureAndWhatWasCountedAgainAndAgain) {
     RenderStatistics statistics;
     const Image image = renderer.render(&statistics);
     ASSERT_EQ(image.pixels.size(), 20u * 10 * 3);
-    EXPECT_EQ(image.at(19, 9)[0], 19.0f);
-    EXPECT_EQ(image.at(19, 9)[1], 9.0f);
-    EXPECT_EQ(image.at(19, 9)[2], 7.0f);
+    EXPECT_EQ(image.at(19, 9)[0], 2 * 19.0f); // the mean of 1, 2 and 3 times the pixel
+    EXPECT_EQ(image.at(19, 9)[1], 2 * 9.0f);
+    EXPECT_EQ(image.at(19, 9)[2], 2 * 7.0f);
     EXPECT_EQ(statistics.pixels, 200u);
     EXPECT_EQ(statistics.samples, 600u);
     EXPECT_FALSE(statistics.isUnfinished);
@@ -155,7 +155,7 @@ TEST(Backend, StopsWhenItIsCancelled) {
   EXPECT_TRUE(statistics.isUnfinished);
   EXPECT_GT(statistics.pixels, 0u);
   EXPECT_LT(statistics.pixels, 1000000u);
-  EXPECT_EQ(part.at(0, 0)[2], 7.0f);
+  EXPECT_EQ(part.at(0, 0)[2], 2 * 7.0f);
   EXPECT_EQ(part.at(999, 999)[2], 0.0f); // black where nothing is
 }
 
@@ -301,7 +301,7 @@ TEST(Crop, IsThePartOfThePicture) {
     EXPECT_EQ(image.top, 2u);
     EXPECT_EQ(image.wholeWidth, 20u);
     EXPECT_EQ(image.wholeHeight, 10u);
-    const float factor = passes ? 2 : 1; // the mean of 1, 2 and 3
+    const float factor = 2; // the mean of 1, 2 and 3
     EXPECT_EQ(image.at(0, 0)[0], 3.0f * factor);
     EXPECT_EQ(image.at(4, 1)[1], 3.0f * factor);
     EXPECT_EQ(statistics.pixels, 10u);

@@ -1,7 +1,7 @@
 #include "FakeProgram.h"
 
 #include "report/measures/ErrorMetrics.h"
-#include "runtime/device/engines/Megakernel.h"
+#include "runtime/device/engines/SampleSums.h"
 #include "runtime/render/Renderer.h"
 
 #include <gtest/gtest.h>

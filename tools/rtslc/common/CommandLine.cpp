@@ -153,6 +153,17 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             "everything, for comparison");
   addChoice(command, "--gpu-arch", options.compile.gpu, gpuArchitectures(),
             "the oldest NVIDIA GPU that the PTX supports; default sm_75");
+  addChoice(
+      command, "--schedule", options.compile.schedule,
+      Choices<std::optional<Schedule>>{{"auto", std::nullopt},
+                                       {"majority", Schedule::Majority},
+                                       {"prioritized", Schedule::Prioritized},
+                                       {"round-robin", Schedule::RoundRobin},
+                                       {"naive", Schedule::Naive}},
+      "how the lanes of a GPU's warp choose the next step: the one that most wait for; states "
+      "before traversal, new samples last; each step in its turn; or that of the first lane. "
+      "auto: majority where shaders choose rays at random, otherwise prioritized. The picture "
+      "is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,

@@ -62,7 +62,8 @@ public:
     runtime::FlatScene flat = runtime::flatten(scene);
     const std::chrono::duration<double> treeTime = std::chrono::steady_clock::now() - start;
     auto renderer = std::make_unique<runtime::GpuRenderer>(
-        device, runtime::GpuCode{package.ptx, laneBytes}, std::move(flat), options);
+        device, runtime::GpuCode{package.ptx, laneBytes, package.registers}, std::move(flat),
+        options);
     figures = renderer->gpu();
     figures->treeSeconds = treeTime.count();
     return renderer;

@@ -198,6 +198,7 @@ private:
     if (description.rayGeneration)
       launch.rayGeneration = description.rayGeneration->className.text;
     launch.render = renderOptions(options, description.render);
+    launch.render.wantsPicture = !options.picture.empty();
     launch.compileSeconds = secondsSince(start);
     Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
     if (!options.quiet)
@@ -239,7 +240,7 @@ private:
 
   void warn(const Launch &launch) const {
     const runtime::RenderStatistics &statistics = launch.statistics;
-    if (statistics.samplesNotFinite)
+    if (statistics.samplesNotFinite && launch.render.wantsPicture)
       messages.diagnostics.report(Code::samplesNotFinite, {}, notFiniteText(statistics));
     if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
       messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, launch.render));

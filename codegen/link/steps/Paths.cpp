@@ -1,0 +1,97 @@
+//===- Paths.cpp - how the rays of a program go on ------------------------===//
+//
+// The lanes of a GPU begin with similar rays. Where shaders choose the next ray at random, rays of
+// neighbouring lanes soon have nothing in common; otherwise they stay similar for long. How the
+// megakernel uses its lanes depends on it (runtime/device/engines/Schedule.h).
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Rays.h"
+#include "codegen/link/steps/Steps.h"
+
+#include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/StringSet.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::func::FuncOp;
+
+/// Whether code runs an operation, itself or in functions that it calls.
+class Runs {
+public:
+  /// `enters`, if given, says which functions count.
+  Runs(const mlir::SymbolTable &symbols, llvm::function_ref<bool(mlir::Operation *)> holds,
+       llvm::function_ref<bool(FuncOp)> enters = nullptr)
+      : symbols(symbols), holds(holds), enters(enters) {}
+
+  bool operator()(mlir::Operation *code) {
+    return ir::anyOperation(code, [&](mlir::Operation *op) {
+      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
+        if (auto callee = symbols.lookup<FuncOp>(call.getCallee()))
+          return inFunction(callee);
+      return holds(op);
+    });
+  }
+
+private:
+  bool inFunction(FuncOp function) {
+    if (enters && !enters(function))
+      return false;
+    // false while it is being computed
+    const auto [known, isNew] = results.try_emplace(function, false);
+    return isNew ? results[function] = (*this)(function.getOperation()) : known->second;
+  }
+
+  const mlir::SymbolTable &symbols;
+  llvm::function_ref<bool(mlir::Operation *)> holds;
+  llvm::function_ref<bool(FuncOp)> enters;
+  llvm::DenseMap<mlir::Operation *, bool> results;
+};
+
+/// The methods of materials that run for the rays of this trace.
+std::string methodFor(mlir::Operation *trace) {
+  auto withPayload = llvm::dyn_cast<ir::TracePayloadOp>(trace);
+  if (!withPayload)
+    return "shade";
+  const auto payload = llvm::cast<ir::PtrType>(withPayload.getPayload().getType()).getPointee();
+  return ("closestHit." + llvm::cast<ir::StructType>(payload).getName()).str();
+}
+
+} // namespace
+
+runtime::Paths findPaths(const LinkContext &context) {
+  mlir::ModuleOp ir = context.ir;
+  Runs traces(context.symbols, ir::isTrace);
+
+  // Rays at whose hits others are sent: not those that only look for a lamp.
+  llvm::StringSet<> methodsThatTrace;
+  for (FuncOp function : ir.getOps<FuncOp>())
+    if (traces(function))
+      methodsThatTrace.insert(function.getSymName().split('.').second);
+  const auto goesOn = [&](mlir::Operation *op) {
+    return ir::isTrace(op) && methodsThatTrace.contains(methodFor(op));
+  };
+  Runs sendsPath(context.symbols, goesOn);
+
+  // A function that draws and traces draws for its own rays, not for those of its caller.
+  const auto isRand = [](mlir::Operation *op) { return llvm::isa<ir::RandOp>(op); };
+  const auto tracesNothing = [&](FuncOp function) { return !traces(function); };
+  Runs draws(context.symbols, isRand, tracesNothing);
+
+  const auto isRandomWalk = [&](mlir::Operation *op) {
+    return llvm::isa<ir::LoopOp>(op) && draws(op) && traces(op);
+  };
+  runtime::Paths paths = runtime::Paths::Single;
+  for (FuncOp function : ir.getOps<FuncOp>()) {
+    const bool generates = readerOf(context.symbols, function).root == "rt_RayGeneration";
+    if (generates ? ir::anyOperation(function, isRandomWalk)
+                  : draws(function) && sendsPath(function))
+      return runtime::Paths::Random;
+    if (!generates && sendsPath(function))
+      paths = runtime::Paths::Alike;
+  }
+  return paths;
+}
+
+} // namespace rtsl::linking

@@ -1,0 +1,128 @@
+//===- SampleSums.h - adds the samples of a slice to the pixels -----------===//
+//
+// Lanes finish samples in any order, and a sum of floats depends on the order. So they store each
+// sample, and afterwards the samples of a pixel are added in theirs.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/engines/Slice.h"
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Color.h"
+#include "runtime/device/ray/Vector.h"
+
+namespace rtsl::device {
+
+/// Adds a sample to the list of the first that are not finite; safe for concurrent calls: each
+/// entry keeps the earlier of two samples and passes the other one on to the next entry.
+inline void noteNotFinite(RtslStatus &status, uint64_t sample) {
+  uint64_t rank = ~sample; // larger for earlier samples, and never 0
+  for (uint64_t &place : status.firstNotFinite) {
+    uint64_t held = __atomic_load_n(&place, __ATOMIC_RELAXED);
+    while (held < rank && !__atomic_compare_exchange_n(&place, &held, rank, false, __ATOMIC_RELAXED,
+                                                       __ATOMIC_RELAXED))
+      ;
+    if (held < rank)
+      rank = held;
+    if (rank == 0)
+      return;
+  }
+}
+
+inline bool isFiniteColor(const float *color, uint32_t components) {
+  bool isFinite = true;
+  forEachComponent(components, [&](uint32_t i) { isFinite &= absolute(color[i]) < infinity; });
+  return isFinite;
+}
+
+/// The sums of a pixel while samples are added.
+struct PixelSum {
+  double color[RTSL_MAX_COLOR];
+  double squares;
+  uint32_t counted, taken;
+};
+
+/// Adds a sample to its pixel. One that is not finite is left out of the pixel's mean, which would
+/// not be finite either.
+inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, const float *color) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t number = sum.taken++;
+  if (!isFiniteColor(color, components)) {
+    countUp(&job.status->samplesNotFinite);
+    noteNotFinite(*job.status, pixel << 32 | number);
+    return;
+  }
+  ++sum.counted;
+  double value = 0;
+  forEachComponent(components, [&](uint32_t i) {
+    sum.color[i] += double(color[i]);
+    value += double(color[i]);
+  });
+  value /= double(components);
+  sum.squares += value * value;
+}
+
+/// The mean of the finite samples, black without any.
+inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  float *mean = job.pixels + pixel * components;
+  forEachComponent(components, [&](uint32_t i) {
+    mean[i] = sum.counted > 1 ? float(sum.color[i] / double(sum.counted))
+              : sum.counted   ? float(sum.color[i])
+                              : 0.0f;
+  });
+  if (sum.counted == 0 && sum.taken == job.samplesPerPixel)
+    countUp(&job.status->pixelsWithoutSample);
+}
+
+/// The sums of the samples before the slice.
+inline PixelSum sumBefore(const RtslJob &job, uint64_t pixel) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  const RtslPixelSums &sums = job.sums;
+  PixelSum sum;
+  const double *colors = sums.colors ? sums.colors + pixel * components : nullptr;
+  forEachComponent(components, [&](uint32_t i) { sum.color[i] = colors ? colors[i] : 0; });
+  sum.squares = sums.squares ? sums.squares[pixel] : 0;
+  sum.counted = sums.colors ? sums.counted[pixel] : 0;
+  sum.taken = sums.colors ? sums.taken[pixel] : job.firstSample;
+  return sum;
+}
+
+inline void storeSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  const RtslPixelSums &sums = job.sums;
+  double *colors = sums.colors + pixel * components;
+  forEachComponent(components, [&](uint32_t i) { colors[i] = sum.color[i]; });
+  if (sums.squares)
+    sums.squares[pixel] = sum.squares;
+  sums.counted[pixel] = sum.counted;
+  sums.taken[pixel] = sum.taken;
+}
+
+/// Adds the first `count` samples that the slice has of the pixel at `place`.
+inline void addSamplesOfPixel(const RtslJob &job, uint32_t place, uint32_t count) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  const uint64_t pixel = pixelAt(job, place).number(job);
+  PixelSum sum = sumBefore(job, pixel);
+  const float *samples = job.samples + uint64_t(place) * job.sampleCount * components;
+  for (uint32_t i = sum.taken - job.firstSample; i < count; ++i) // those before are added already
+    addSample(job, sum, pixel, samples + uint64_t(i) * components);
+  if (job.sums.colors)
+    storeSum(job, sum, pixel);
+  if (job.pixels)
+    writeMean(job, sum, pixel);
+}
+
+/// After all lanes of the job: adds the samples that were taken to the sums, and computes the means
+/// if these are wanted; without sums, of the slice alone. Each of `lanes` lanes adds those of its
+/// share of the pixels.
+inline void addSamples(const RtslJob &job, uint32_t lane, uint32_t lanes) {
+  const uint64_t next = job.status->nextSample, all = samplesOfSlice(job);
+  const auto taken = uint32_t(next < all ? next : all);
+  for (uint64_t place = lane; place * job.sampleCount < taken; place += lanes) {
+    const uint32_t left = taken - uint32_t(place) * job.sampleCount;
+    addSamplesOfPixel(job, uint32_t(place), left < job.sampleCount ? left : job.sampleCount);
+  }
+}
+
+} // namespace rtsl::device

@@ -1,0 +1,96 @@
+//===- Slice.h - the samples of a slice, and who takes them ---------------===//
+//
+// A slice of a rendering has `sampleCount` samples of each pixel. They are numbered pixel by pixel,
+// and the pixels are in tiles of 8 x 4: the lanes of a warp, which take 32 samples with following
+// numbers, begin with rays that are nearly the same, and mostly stay together.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Warp.h"
+
+namespace rtsl::device {
+
+struct Pixel {
+  uint32_t x, y; // in the window of the job
+
+  uint64_t number(const RtslJob &job) const { return uint64_t(y) * job.width + x; }
+};
+
+/// Pixels are numbered in bands of four rows, and in a band column by column.
+inline Pixel pixelAt(const RtslJob &job, uint32_t place) {
+  constexpr uint32_t rows = 4;
+  const uint32_t band = place / (rows * job.width), inBand = place - band * rows * job.width;
+  const uint32_t left = job.height - band * rows; // the last band may have fewer rows
+  if (left >= rows)
+    return {inBand / rows, band * rows + inBand % rows};
+  return {inBand / left, band * rows + inBand % left};
+}
+
+inline uint32_t samplesOfSlice(const RtslJob &job) {
+  return job.width * job.height * job.sampleCount;
+}
+
+/// Whether the slice has stopped: lanes that see it take no samples any more.
+inline bool isToStop(const RtslJob &job) {
+  return __atomic_load_n(&job.status->stop, __ATOMIC_RELAXED);
+}
+
+/// The samples that a warp has taken. The lanes of a warp have the same.
+struct TakenSamples {
+  uint32_t next = 0, end = 0; // those that no lane has begun
+  bool areLast = false;       // the slice has stopped
+
+  static constexpr uint32_t none = 0xffffffffu;
+};
+
+#ifdef __NVPTX__
+
+/// The next sample for each lane of the warp that wants one; all lanes call together. The number is
+/// not below samplesOfSlice(job) if none is left.
+inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool wants) {
+  constexpr uint32_t atOnce = 32;
+  const uint32_t wanting = warp::lanesWhere(wants);
+  const auto count = uint32_t(__builtin_popcount(wanting));
+  const auto before = uint32_t(__builtin_popcount(wanting & __nvvm_read_ptx_sreg_lanemask_lt()));
+  const uint32_t left = taken.end - taken.next;
+  uint32_t sample = taken.next + before;
+  taken.next += count;
+  if (count <= left)
+    return sample;
+  uint32_t first = TakenSamples::none, stops = 0;
+  if (wants && before == 0 && !taken.areLast) { // a GPU does both at the same time
+    first =
+        uint32_t(__atomic_fetch_add(&job.status->nextSample, uint64_t(atOnce), __ATOMIC_RELAXED));
+    stops = isToStop(job);
+  }
+  const int leader = __builtin_ctz(wanting);
+  first = uint32_t(warp::valueOf(int32_t(first), leader));
+  taken.areLast |= warp::lanesWhere(stops) != 0;
+  if (first == TakenSamples::none) {
+    taken.next = taken.end = 0;
+    return before < left ? sample : TakenSamples::none;
+  }
+  taken.next = first + (count - left);
+  taken.end = first + atOnce;
+  return before < left ? sample : first + (before - left);
+}
+
+#else
+
+inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool) {
+  constexpr uint32_t atOnce = 4; // of a cache line of colors
+  if (taken.next == taken.end) {
+    if (isToStop(job))
+      return TakenSamples::none;
+    taken.next =
+        uint32_t(__atomic_fetch_add(&job.status->nextSample, uint64_t(atOnce), __ATOMIC_RELAXED));
+    taken.end = taken.next + atOnce;
+  }
+  return taken.next++;
+}
+
+#endif
+
+} // namespace rtsl::device
