@@ -78,6 +78,7 @@ public:
   RtslState state() {
     RtslState state;
     std::memset(&state, 0x7f, sizeof state);
+    state.launch = &launch;
     state.Epsilon = below(3) ? 0 : 0x1p-10f;
     state.HitDistance = below(3) ? INFINITY : 0.5f + 0.5f * unit();
     state.instance = state.primitive = RTSL_NO_HIT;
@@ -87,6 +88,7 @@ public:
 
 private:
   std::mt19937 random;
+  RtslLaunch launch{}; // its scene needs nothing, and all triangles have back faces
 };
 
 } // namespace
