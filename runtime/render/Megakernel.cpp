@@ -119,6 +119,7 @@ void Megakernel::run(Watch &watch) {
   const std::uint64_t all = pixelCount() * (samplesOfPixel - leastTaken);
   std::uint64_t before = 0;
   kernelSeconds = 0;
+  samplesOfSlice = 0;
   const auto share = [&](std::uint64_t samples) { return double(before + samples) / double(all); };
   while (leastTaken < samplesOfPixel && !watch.isStopped()) {
     job.firstSample = leastTaken;
@@ -131,8 +132,9 @@ void Megakernel::run(Watch &watch) {
     if (samplesOfSlice < whole)
       return;
     leastTaken += job.sampleCount;
+    samplesOfSlice = 0;
   }
-  isUneven = false;
+  isUneven = isUneven && leastTaken < samplesOfPixel;
 }
 
 /// Renders the slice of the job in launches that end soon, so that no driver takes them for endless
@@ -144,8 +146,8 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
   upload(next, &none, sizeof none);
   samplesOfSlice = 0;
   while (samplesOfSlice < all && !watch.isStopped()) {
-    const std::uint32_t goes = 0;
-    upload(statusAddress + offsetof(RtslStatus, stop), &goes, sizeof goes);
+    const std::uint32_t isStopped = 0;
+    upload(statusAddress + offsetof(RtslStatus, stop), &isStopped, sizeof isStopped);
     {
       const Watch::Poll poll(
           watch, launchSeconds(), [&] { return share(std::min(get(next), all)); },
@@ -159,7 +161,7 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
       return; // finish() reports it
     samplesOfSlice = rendered;
   }
-  if (options.wantsPicture)
+  if (options.wantsPicture && samplesOfSlice > 0)
     kernelSeconds += addSamples(jobAddress);
 }
 
