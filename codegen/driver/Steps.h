@@ -84,11 +84,11 @@ void defineFacts(LlvmCode &code, const runtime::Program &program);
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
-/// The states of a linked program as a self-contained program
-/// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 /// CompileOptions::schedule, or the one for this program.
 Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program);
 
+/// The states of a linked program as a self-contained program
+/// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 
