@@ -35,6 +35,16 @@ struct Parsed {
   std::unique_ptr<ast::TranslationUnit> unit;
 };
 
+/// Parsed::messages of a text.
+inline std::string messages(const std::string &text) {
+  return Parsed(text).messages();
+}
+
+/// The same for a statement that stands on line 2 of a function.
+inline std::string inFunction(const std::string &statement) {
+  return messages("void f() {\n" + statement + "\n  last();\n}\n");
+}
+
 /// The text with the sure fixes of its messages applied.
 inline std::string fixed(const std::string &text) {
   const Parsed parsed(text);

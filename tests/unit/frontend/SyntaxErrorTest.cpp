@@ -13,16 +13,9 @@
 namespace rtsl {
 namespace {
 
+using test::inFunction;
+using test::messages;
 using test::Parsed;
-
-std::string messages(const std::string &text) {
-  return Parsed(text).messages();
-}
-
-/// Messages for a statement that stands on line 2 of a function.
-std::string inFunction(const std::string &statement) {
-  return messages("void f() {\n" + statement + "\n  last();\n}\n");
-}
 
 //===----------------------------------------------------------------------===//
 // Semicolons
