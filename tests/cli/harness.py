@@ -50,6 +50,7 @@ class Case(unittest.TestCase):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rtslc-"))
         os.chmod(self.folder, 0o755)
         self.addCleanup(shutil.rmtree, self.folder)
+        self.pictures = 0
 
     def write(self, name, content):
         path = self.folder / name
@@ -70,6 +71,15 @@ class Case(unittest.TestCase):
         if status is not None:
             self.assertEqual(done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}")
         return (done.stdout or b"").decode("utf-8", "replace"), error
+
+    def render_scene(self, scene, *options):
+        """Renders a scene that is given as a document. The file of the picture, a new one each time,
+        and what was said."""
+        self.pictures += 1
+        path = self.write(f"scene{self.pictures}.json", json.dumps(scene, indent=1))
+        picture = self.folder / f"{self.pictures}.exr"
+        _, error = self.run_rtslc("render", path, "-o", picture, *options)
+        return picture, error
 
     def stages(self):
         """What `rtslc compile --emit` takes, in order."""

@@ -102,14 +102,9 @@ class BackFaces(Case):
         self.write("Faces.rtsl", SHADERS)
         for name, text in (("box", BOX), ("inside-out", INSIDE_OUT), ("wave", WAVE)):
             self.write(name + ".obj", text)
-        self.number = 0
 
     def render(self, scene, *options):
-        self.number += 1
-        path = self.write(f"scene{self.number}.json", json.dumps(scene, indent=1))
-        picture = self.folder / f"{self.number}.exr"
-        self.run_rtslc("render", path, "-o", picture, *options)
-        return picture
+        return self.render_scene(scene, *options)[0]
 
     def means(self, picture):
         said, _ = self.run_rtslc("compare", picture, picture, "--json")

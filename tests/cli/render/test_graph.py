@@ -57,22 +57,13 @@ class GraphCase(Case):
     def setUp(self):
         super().setUp()
         shutil.copy(SHADERS, self.folder)
-        self.number = 0
-
-    def render(self, scene, *options):
-        """The file of the picture, and what was said."""
-        self.number += 1
-        path = self.write(f"scene{self.number}.json", json.dumps(scene, indent=1))
-        picture = self.folder / f"{self.number}.exr"
-        _, error = self.run_rtslc("render", path, "-o", picture, *options)
-        return picture, error
 
     def mean_of(self, picture):
         said, _ = self.run_rtslc("compare", picture, picture, "--json")
         return sum(json.loads(said)["means"][0]) / 3
 
     def assert_same_picture(self, first, second):
-        self.assert_same_bits(self.render(first)[0], self.render(second)[0])
+        self.assert_same_bits(self.render_scene(first)[0], self.render_scene(second)[0])
 
     def mistakes(self, scene, *options):
         path = self.write("scene.json", json.dumps(scene, indent=1))
@@ -83,10 +74,10 @@ class EveryPath(GraphCase):
     level = None
 
     def test_gives_the_same_bits(self):
-        expected, _ = self.render(scene())
+        expected, _ = self.render_scene(scene())
         for options in (["--trace=recurse"], ["--traversal=device"], ["--traversal=device", "--trace=recurse"], ["-O0"],
                         ["--target=host-megakernel"], ["--keep=all"], ["--target=host-megakernel", "--keep=graph"]):
-            picture, _ = self.render(scene(), *options)
+            picture, _ = self.render_scene(scene(), *options)
             self.assert_same_bits(picture, expected, options)
 
     def test_gives_the_same_forest(self):
@@ -107,8 +98,8 @@ class EveryPath(GraphCase):
             self.assertEqual({entry["subject"] for entry in graph["entries"] if entry["needed"]}, needed)
 
     def test_in_double_precision_it_is_nearly_the_same(self):
-        expected, _ = self.render(scene())
-        picture, _ = self.render(scene(), "--fp=double")
+        expected, _ = self.render_scene(scene())
+        picture, _ = self.render_scene(scene(), "--fp=double")
         said, _ = self.run_rtslc("compare", picture, expected, "--json", status=None)
         self.assertLess(json.loads(said)["rmse"], 0.02, said)
 
@@ -123,8 +114,8 @@ class Counts(GraphCase):
         text = SHADERS.read_text().replace("(facing + mark)", "facing")
         self.write("Graph.rtsl", text)
         for traversal in ("embree", "device"):
-            first, _ = self.render(scene(together, root="root"), f"--traversal={traversal}")
-            second, _ = self.render(scene(apart, root="root"), f"--traversal={traversal}")
+            first, _ = self.render_scene(scene(together, root="root"), f"--traversal={traversal}")
+            second, _ = self.render_scene(scene(apart, root="root"), f"--traversal={traversal}")
             self.assert_same_bits(first, second)
 
     def test_a_ray_that_leaves_a_primitive_meets_its_neighbours(self):
@@ -155,7 +146,7 @@ class Counts(GraphCase):
         def picture(groups, *options):
             objects = [{"primitive": {"class": "RoughBalls", "balls": group}, "count": len(group), "material": "near"}
                        for group in groups]
-            return self.render({"rtsl": 1, "import": ["Graph.rtsl", "Rough.rtsl"], "camera": {"class": "Look"}, "objects": objects,
+            return self.render_scene({"rtsl": 1, "import": ["Graph.rtsl", "Rough.rtsl"], "camera": {"class": "Look"}, "objects": objects,
                                 "materials": {"near": {"class": "HowNear"}}, "render": {"size": [48, 36], "spp": 4, "depth": 1}},
                                *options)[0]
 
@@ -183,8 +174,8 @@ class Counts(GraphCase):
                               "material": "paint"},
                       "two": {"children": ["all", {"child": "all", "transform": {"rotate": [0, 40, 0], "translate": [0, 0, -9]}}]}},
                      root="two")
-        first, _ = self.render(many)
-        second, _ = self.render(many, "--traversal=device")
+        first, _ = self.render_scene(many)
+        second, _ = self.render_scene(many, "--traversal=device")
         self.assert_same_bits(first, second)
 
     def test_primitives_of_one_object_shine_like_several_objects(self):
@@ -222,7 +213,7 @@ class Under : rt_Camera {
         distances = [math.hypot(*lamp[:3]) for lamp in lamps]
         exact = sum(8 * (lamp[3] / d) ** 2 * lamp[1] / d for lamp, d in zip(lamps, distances))
         for one in (together, apart):
-            self.assertAlmostEqual(self.mean_of(self.render(one)[0]) / exact, 1, delta=0.02)
+            self.assertAlmostEqual(self.mean_of(self.render_scene(one)[0]) / exact, 1, delta=0.02)
 
     def test_mistakes(self):
         def one(**more):
@@ -248,7 +239,7 @@ class Ids(GraphCase):
         of_geometry = {"one": balls(*CLUSTER, id=3), "root": {"children": [{"child": "one", "id": 9}]}}
         other = {"one": balls(*CLUSTER, id=4), "root": {"children": ["one"]}}
         self.assert_same_picture(scene(by_child, root="root"), scene(of_geometry, root="root"))
-        first, second = (self.render(scene(nodes, root="root"))[0] for nodes in (by_child, other))
+        first, second = (self.render_scene(scene(nodes, root="root"))[0] for nodes in (by_child, other))
         self.assertNotEqual(first.read_bytes(), second.read_bytes())
 
     def test_of_an_object(self):
@@ -262,7 +253,7 @@ class Ids(GraphCase):
         for id in (2 ** 31, -2 ** 31 - 1, 2 ** 32, 0.5):
             self.assert_message(self.mistakes(scene({"one": balls(*CLUSTER, id=id)}, root="one")), "E0805", "`id` is a whole number")
         for id in (2 ** 31 - 1, -2 ** 31):
-            self.render(scene({"one": balls(*CLUSTER, id=id)}, root="one"))
+            self.render_scene(scene({"one": balls(*CLUSTER, id=id)}, root="one"))
 
 
 class Selectors(GraphCase):
@@ -292,7 +283,7 @@ class Selectors(GraphCase):
         extra = {"variables": {"shine": 0}, "background": 0, "render": {"size": [16, 16], "spp": 64, "depth": 0}}
         means = []
         for nodes in (dice, plain):
-            picture, _ = self.render(scene(nodes, root="root", **extra))
+            picture, _ = self.render_scene(scene(nodes, root="root", **extra))
             means.append(self.mean_of(picture))
         self.assertAlmostEqual(means[0] / means[1], 2 / 3, delta=0.02)
 
@@ -339,7 +330,7 @@ class Variables(GraphCase):
             error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
             self.assertRegex(error, r"error\[E0815\]: member " + member + " is read, but not set and without a default: set it, or " + places)
             self.assertEqual(error.count("E0815"), 1, error)
-        _, warned = self.render(bare({"grain": "flat"}, glow=0.5, level=0.25))
+        _, warned = self.render_scene(bare({"grain": "flat"}, glow=0.5, level=0.25))
         self.assertNotIn("is not set", warned)
         made = bare({"glow": 1, "grain": {"class": "Made", "constructor": [1]}})
         del made["textures"]
@@ -355,18 +346,18 @@ class Variables(GraphCase):
 
     def test_the_nearest_definition_counts(self):
         red, green, blue = [1, 0, 0], [0, 1, 0], [0, 0, 1]
-        tinted = [self.render(self.tinted({"class": "Paint", "tint": c}))[0] for c in (red, green, blue)]
+        tinted = [self.render_scene(self.tinted({"class": "Paint", "tint": c}))[0] for c in (red, green, blue)]
         plain = {"class": "Paint"}
         above = {**self.tinted(plain), "variables": {"tint": red}}
-        self.assert_same_bits(self.render(above)[0], tinted[0])
+        self.assert_same_bits(self.render_scene(above)[0], tinted[0])
         group = {**self.tinted(plain, root={"children": ["b"], "variables": {"tint": green}}), "variables": {"tint": red}}
-        self.assert_same_bits(self.render(group)[0], tinted[1])
+        self.assert_same_bits(self.render_scene(group)[0], tinted[1])
         geometry = copy.deepcopy(group)
         geometry["nodes"]["b"]["variables"] = {"tint": blue}
-        self.assert_same_bits(self.render(geometry)[0], tinted[2])
+        self.assert_same_bits(self.render_scene(geometry)[0], tinted[2])
         own = copy.deepcopy(geometry)
         own["materials"]["paint"]["tint"] = red
-        picture, said = self.render(own)
+        picture, said = self.render_scene(own)
         self.assert_same_bits(picture, tinted[0])
         self.assertIn("no object takes the variable `tint`", said)
 
@@ -410,7 +401,7 @@ class Variables(GraphCase):
         self.assert_message(self.mistakes(self.tinted({"class": "Paint"}, root={"children": ["b"], "variables": 3})), "E0804",
                             "`variables`")
         untaken = {**self.tinted({"class": "Paint"}), "variables": {"tinte": 3}}
-        self.assertIn("no object takes the variable `tinte`", self.render(untaken)[1])
+        self.assertIn("no object takes the variable `tinte`", self.render_scene(untaken)[1])
 
 
 if __name__ == "__main__":

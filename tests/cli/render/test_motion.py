@@ -74,14 +74,9 @@ class MotionCase(Case):
         self.write("Motion.rtsl", SHADERS)
         self.write("flat.obj", FLAT)
         self.write("bent.obj", BENT)
-        self.number = 0
 
     def render(self, scene, *options):
-        self.number += 1
-        path = self.write(f"scene{self.number}.json", json.dumps(scene, indent=1))
-        picture = self.folder / f"{self.number}.exr"
-        self.run_rtslc("render", path, "-o", picture, *options)
-        return picture
+        return self.render_scene(scene, *options)[0]
 
     def difference(self, first, second):
         said, _ = self.run_rtslc("compare", first, second, "--json", status=None)
