@@ -40,8 +40,23 @@ def saved_bytes(build, scene):
 def count_instructions(program, package, samples, size, folder):
     """What callgrind counts in a whole run with one thread."""
     out = folder / "callgrind.out"
-    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", str(program), str(package), "--target=host",
-               "--threads", "1", "--size", size, "--spp", str(samples), "-q", "-o", str(folder / "x.exr")]
+    command = [
+        "valgrind",
+        "--tool=callgrind",
+        f"--callgrind-out-file={out}",
+        str(program),
+        str(package),
+        "--target=host",
+        "--threads",
+        "1",
+        "--size",
+        size,
+        "--spp",
+        str(samples),
+        "-q",
+        "-o",
+        str(folder / "x.exr"),
+    ]
     done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     found = re.search(r"^summary: (\d+)", out.read_text(), re.MULTILINE) if out.exists() else None
     if done.returncode != 0 or not found:
@@ -56,10 +71,14 @@ def instructions_per_sample(build, scene, way, size, folder):
     program, package = folder / "rtsl-run", folder / f"{way}.rtslpkg"
     if not program.exists():
         subprocess.run(["strip", "-g", "-o", program, build / "bin" / "rtsl-run"], check=True)
-    process.run([str(build / "bin" / "rtslc"), "pack", "-q", str(scene), "-o", str(package), *WAYS[way]])
+    process.run(
+        [str(build / "bin" / "rtslc"), "pack", "-q", str(scene), "-o", str(package), *WAYS[way]]
+    )
     few, many = 1, 9
     width, height = map(int, size.split("x"))
-    counts = [count_instructions(program, package, samples, size, folder) for samples in (few, many)]
+    counts = [
+        count_instructions(program, package, samples, size, folder) for samples in (few, many)
+    ]
     return (counts[1] - counts[0]) / ((many - few) * width * height)
 
 
@@ -70,14 +89,24 @@ def measure(build, size, with_instructions):
         if with_instructions:
             with tempfile.TemporaryDirectory() as folder:
                 result["instructions"] = {
-                    way: instructions_per_sample(build, scene, way, size, Path(folder)) for way in WAYS
+                    way: instructions_per_sample(build, scene, way, size, Path(folder))
+                    for way in WAYS
                 }
         results.append(result)
     # A trace of a class that several examples share counts once, unless it saves something else in
     # one of them.
-    traces = {(trace["function"], trace["location"], trace["live"], trace["saved"]) for result in results for trace in result["traces"]}
+    traces = {
+        (trace["function"], trace["location"], trace["live"], trace["saved"])
+        for result in results
+        for trace in result["traces"]
+    }
     ratios = [saved / live for _, _, live, saved in traces if live]
-    return {"scenes": results, "medianShareSaved": median(ratios), "tracesCounted": len(ratios), "size": size}
+    return {
+        "scenes": results,
+        "medianShareSaved": median(ratios),
+        "tracesCounted": len(ratios),
+        "size": size,
+    }
 
 
 def show(report):
@@ -85,24 +114,42 @@ def show(report):
     for scene in report["scenes"]:
         print(scene["scene"])
         for trace in scene["traces"]:
-            print(f"  {trace['function'] + ', ' + trace['location']:62}{trace['live']:7}{trace['saved']:7}")
-    print(f"median share of {report['tracesCounted']} different traces: {report['medianShareSaved']:.2f} (limit 0.50)")
+            print(
+                f"  {trace['function'] + ', ' + trace['location']:62}{trace['live']:7}{trace['saved']:7}"
+            )
+    print(
+        f"median share of {report['tracesCounted']} different traces: {report['medianShareSaved']:.2f} (limit 0.50)"
+    )
     measured = [scene for scene in report["scenes"] if "instructions" in scene]
     if measured:
-        print(f"\n{'instructions a sample, host megakernel':40}{'all live saved':>15}{'as it is':>10}{'more':>9}")
+        print(
+            f"\n{'instructions a sample, host megakernel':40}{'all live saved':>15}{'as it is':>10}{'more':>9}"
+        )
     for scene in measured:
         counts = scene["instructions"]
-        print(f"{scene['scene']:40}{counts['live']:15.0f}{counts['needed']:10.0f}"
-              f"{100 * (counts['needed'] / counts['live'] - 1):+7.1f} %")
+        print(
+            f"{scene['scene']:40}{counts['live']:15.0f}{counts['needed']:10.0f}"
+            f"{100 * (counts['needed'] / counts['live'] - 1):+7.1f} %"
+        )
     if measured:
-        more = median(scene["instructions"]["needed"] / scene["instructions"]["live"] - 1 for scene in measured)
+        more = median(
+            scene["instructions"]["needed"] / scene["instructions"]["live"] - 1
+            for scene in measured
+        )
         print(f"median over the examples: {100 * more:+.1f} % (limit +5 %)")
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("continuations", parents=[common],
-                                    help="bytes saved at traces, and instructions that this costs (with valgrind)")
-    parser.add_argument("--size", default="32x18", help="of the pictures whose instructions are counted (default: 32x18)")
+    parser = subcommands.add_parser(
+        "continuations",
+        parents=[common],
+        help="bytes saved at traces, and instructions that this costs (with valgrind)",
+    )
+    parser.add_argument(
+        "--size",
+        default="32x18",
+        help="of the pictures whose instructions are counted (default: 32x18)",
+    )
     parser.set_defaults(parts=[part])
 
 

@@ -38,7 +38,9 @@ def read_mesh(path):
         elif word == "f":
             corners = [int(corner.split("/")[0]) for corner in rest]
             corners = [c - 1 if c > 0 else len(vertices) + c for c in corners]
-            triangles += [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+            triangles += [
+                (corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)
+            ]
     return vertices, triangles
 
 
@@ -58,19 +60,31 @@ def write_hall(mesh, grid, path):
     faces = bytearray()
     for copy in range(grid * grid):
         base = copy * len(vertices)
-        faces += b"".join(struct.pack("<B3i", 3, base + a, base + b, base + c) for a, b, c in triangles)
+        faces += b"".join(
+            struct.pack("<B3i", 3, base + a, base + b, base + c) for a, b, c in triangles
+        )
     h, top = side / 2, ROOM_HEIGHT
-    for quad in ([(-h, 0, -h), (h, 0, -h), (h, 0, h), (-h, 0, h)], [(-h, top, -h), (h, top, -h), (h, top, h), (-h, top, h)],
-                 [(-h, 0, -h), (-h, top, -h), (-h, top, h), (-h, 0, h)], [(h, 0, -h), (h, top, -h), (h, top, h), (h, 0, h)],
-                 [(-h, 0, -h), (h, 0, -h), (h, top, -h), (-h, top, -h)], [(-h, 0, h), (h, 0, h), (h, top, h), (-h, top, h)]):
+    for quad in (
+        [(-h, 0, -h), (h, 0, -h), (h, 0, h), (-h, 0, h)],
+        [(-h, top, -h), (h, top, -h), (h, top, h), (-h, top, h)],
+        [(-h, 0, -h), (-h, top, -h), (-h, top, h), (-h, 0, h)],
+        [(h, 0, -h), (h, top, -h), (h, top, h), (h, 0, h)],
+        [(-h, 0, -h), (h, 0, -h), (h, top, -h), (-h, top, -h)],
+        [(-h, 0, h), (h, 0, h), (h, top, h), (-h, top, h)],
+    ):
         base = len(positions) // 3
         for corner in quad:
             positions.extend(corner)
         faces += struct.pack("<B3iB3i", 3, base, base + 1, base + 2, 3, base, base + 2, base + 3)
     count = grid * grid * len(triangles) + 12
     with open(path, "wb") as file:
-        file.write(("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
-                    "element face %d\nproperty list uchar int vertex_indices\nend_header\n" % (len(positions) // 3, count)).encode())
+        file.write(
+            (
+                "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+                "element face %d\nproperty list uchar int vertex_indices\nend_header\n"
+                % (len(positions) // 3, count)
+            ).encode()
+        )
         positions.tofile(file)
         file.write(faces)
     return count
@@ -82,24 +96,33 @@ def write_rays(options, grid, folder):
     scene = {
         "rtsl": 1,
         "import": [str(ROOT / "bench/gpu/halls/Rays.rtsl")],
-        "rayGeneration": {"class": "HallRays", "size": SPACING * grid, "primary": {"size": [pixels]},
-                          "ao": {"size": [7 * pixels]}, "diffuse": {"size": [pixels]}},
+        "rayGeneration": {
+            "class": "HallRays",
+            "size": SPACING * grid,
+            "primary": {"size": [pixels]},
+            "ao": {"size": [7 * pixels]},
+            "diffuse": {"size": [pixels]},
+        },
         "materials": {"meeting": {"class": "Meeting"}},
         "objects": [{"mesh": "hall.ply", "material": "meeting"}],
         "render": {"engine": "programs", "size": [WIDTH, HEIGHT], "depth": 0},
     }
     (folder / "rays.json").write_text(json.dumps(scene))
-    outputs = [argument for name in SETS[:3] for argument in ("--out", f"{name}={folder / name}.npy")]
+    outputs = [
+        argument for name in SETS[:3] for argument in ("--out", f"{name}={folder / name}.npy")
+    ]
     rtslc(options, "run", str(folder / "rays.json"), *outputs, "-q")
     data = (folder / "diffuse.npy").read_bytes()
     start = 10 + struct.unpack("<H", data[8:10])[0]
-    rays = [data[i:i + 32] for i in range(start, len(data), 32)]
+    rays = [data[i : i + 32] for i in range(start, len(data), 32)]
     random.Random(1).shuffle(rays)
     (folder / "shuffled.npy").write_bytes(data[:start] + b"".join(rays))
 
 
 def rtslc(options, command, *arguments):
-    return process.run([str(options.build / "bin" / "rtslc"), command, *arguments, f"--target={options.target}"]).output
+    return process.run(
+        [str(options.build / "bin" / "rtslc"), command, *arguments, f"--target={options.target}"]
+    ).output
 
 
 def measure_hall(options, name, mesh, grid):
@@ -110,47 +133,97 @@ def measure_hall(options, name, mesh, grid):
         figures = {"mesh": name, "grid": grid, "triangles": triangles, "raysPerSecond": {}}
         for rays in SETS:
             kind = ["--any"] if rays == "ao" else []
-            launch = json.loads(rtslc(options, "trace", str(folder / "hall.ply"), "--rays", str(folder / f"{rays}.npy"), *kind,
-                                      "--out", str(folder / "hits.npy"), f"--repeat={REPEATS}", "--json", "-q"))["launches"][0]
+            launch = json.loads(
+                rtslc(
+                    options,
+                    "trace",
+                    str(folder / "hall.ply"),
+                    "--rays",
+                    str(folder / f"{rays}.npy"),
+                    *kind,
+                    "--out",
+                    str(folder / "hits.npy"),
+                    f"--repeat={REPEATS}",
+                    "--json",
+                    "-q",
+                )
+            )["launches"][0]
             times = launch["repeats"]
             figures["raysPerSecond"][rays] = launch["size"][0] / times[len(times) // 2]
             if rays == "ao":
                 hits = (folder / "hits.npy").read_bytes()
                 figures["aoHits"] = hits.count(b"\1", 128) / launch["size"][0]
             if "gpu" in launch:
-                figures.update(device=launch["gpu"]["device"], treeSeconds=launch["gpu"]["treeSeconds"],
-                               bytesPerTriangle=(80 * launch["gpu"]["treeNodes"] + 48 * triangles) / triangles)
+                figures.update(
+                    device=launch["gpu"]["device"],
+                    treeSeconds=launch["gpu"]["treeSeconds"],
+                    bytesPerTriangle=(80 * launch["gpu"]["treeNodes"] + 48 * triangles) / triangles,
+                )
         return figures
 
 
 def measure_picture(options, scene, samples):
     with tempfile.TemporaryDirectory() as temporary:
-        figures = json.loads(rtslc(options, "render", str(scene), "-o", str(Path(temporary) / "picture.exr"), "--size=1024x1024",
-                                   f"--spp={samples}", "--json", "-q", "-Wno-depth-limit"))
+        figures = json.loads(
+            rtslc(
+                options,
+                "render",
+                str(scene),
+                "-o",
+                str(Path(temporary) / "picture.exr"),
+                "--size=1024x1024",
+                f"--spp={samples}",
+                "--json",
+                "-q",
+                "-Wno-depth-limit",
+            )
+        )
     gpu = figures.get("gpu", {})
     seconds = gpu.get("kernelSeconds") or figures["seconds"]["render"]
-    return {"samplesPerSecond": figures["samples"] / seconds, "registers": gpu.get("registers"), "localBytes": gpu.get("localBytes")}
+    return {
+        "samplesPerSecond": figures["samples"] / seconds,
+        "registers": gpu.get("registers"),
+        "localBytes": gpu.get("localBytes"),
+    }
 
 
 def measure(options):
     halls = []
     for mesh, grid in options.hall:
         halls.append(measure_hall(options, Path(mesh).stem, read_mesh(Path(mesh)), grid))
-    pictures = {name: measure_picture(options, scene, samples) for name, (scene, samples) in PICTURES.items()}
+    pictures = {
+        name: measure_picture(options, scene, samples)
+        for name, (scene, samples) in PICTURES.items()
+    }
     return "gpu", {"target": options.target, "halls": halls, "pictures": pictures}, show
 
 
 def markdown(report):
-    lines = ["| hall | triangles | " + " | ".join(SETS) + " | bytes a triangle | tree, ms |", "|---|" + "---|" * 7]
+    lines = [
+        "| hall | triangles | " + " | ".join(SETS) + " | bytes a triangle | tree, ms |",
+        "|---|" + "---|" * 7,
+    ]
     for hall in report["halls"]:
         rates = " | ".join(f"{hall['raysPerSecond'][rays] * 1e-6:.0f}" for rays in SETS)
-        lines.append(f"| {hall['mesh']} {hall['grid']} | {hall['triangles']:,} | {rates} | {hall.get('bytesPerTriangle', 0):.1f} | "
-                     f"{hall.get('treeSeconds', 0) * 1e3:.0f} |")
-    lines += ["", "| 1024x1024 | million samples/s | registers | local bytes |", "|---|---|---|---|"]
+        lines.append(
+            f"| {hall['mesh']} {hall['grid']} | {hall['triangles']:,} | {rates} | {hall.get('bytesPerTriangle', 0):.1f} | "
+            f"{hall.get('treeSeconds', 0) * 1e3:.0f} |"
+        )
+    lines += [
+        "",
+        "| 1024x1024 | million samples/s | registers | local bytes |",
+        "|---|---|---|---|",
+    ]
     for name, picture in report["pictures"].items():
-        lines.append(f"| {name} | {picture['samplesPerSecond'] * 1e-6:.1f} | {picture['registers']} | {picture['localBytes']} |")
+        lines.append(
+            f"| {name} | {picture['samplesPerSecond'] * 1e-6:.1f} | {picture['registers']} | {picture['localBytes']} |"
+        )
     devices = {hall["device"] for hall in report["halls"] if "device" in hall}
-    return f"Target {report['target']}{', ' + ', '.join(devices) if devices else ''}; halls in million rays/s.\n\n" + "\n".join(lines) + "\n"
+    return (
+        f"Target {report['target']}{', ' + ', '.join(devices) if devices else ''}; halls in million rays/s.\n\n"
+        + "\n".join(lines)
+        + "\n"
+    )
 
 
 def show(report):
@@ -175,9 +248,23 @@ def hall(text):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("gpu", parents=[common], help="rays through halls, and pictures, on a GPU")
-    parser.add_argument("hall", nargs="*", type=hall, metavar="MESH:N",
-                        help="a hall of N x N copies of a mesh, an OBJ file; nefertiti.obj:6 has 3.6 million triangles")
-    parser.add_argument("--target", default="gpu", choices=["gpu", "host-megakernel"], help="what runs the programs (default: gpu)")
-    parser.add_argument("--out", type=Path, metavar="FOLDER", help="write gpu.json and gpu.md there, too")
+    parser = subcommands.add_parser(
+        "gpu", parents=[common], help="rays through halls, and pictures, on a GPU"
+    )
+    parser.add_argument(
+        "hall",
+        nargs="*",
+        type=hall,
+        metavar="MESH:N",
+        help="a hall of N x N copies of a mesh, an OBJ file; nefertiti.obj:6 has 3.6 million triangles",
+    )
+    parser.add_argument(
+        "--target",
+        default="gpu",
+        choices=["gpu", "host-megakernel"],
+        help="what runs the programs (default: gpu)",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", help="write gpu.json and gpu.md there, too"
+    )
     parser.set_defaults(parts=[part])

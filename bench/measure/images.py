@@ -32,32 +32,57 @@ def write_image(folder):
     """Random texels, as PNG and as they lie in memory."""
     chance = random.Random(1)
     texels = chance.randbytes(4 * SIZE * SIZE)
-    rows = [texels[4 * SIZE * y:4 * SIZE * (y + 1)] for y in range(SIZE)]
+    rows = [texels[4 * SIZE * y : 4 * SIZE * (y + 1)] for y in range(SIZE)]
 
     def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        return (
+            struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+        )
 
     (folder / "image.png").write_bytes(
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 6, 0, 0, 0)) +
-        chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows))) + chunk(b"IEND", b""))
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 6, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(b"".join(b"\0" + row for row in rows)))
+        + chunk(b"IEND", b"")
+    )
     (folder / "image.raw").write_bytes(b"".join(reversed(rows)))
     (folder / "lookups.rtsl").write_text(SHADER)
-    scene = {"rtsl": 1, "import": ["lookups.rtsl"],
-             "rayGeneration": {"class": "Lookups", "image": {"file": "image.png", "filter": "bilinear"}},
-             "render": {"engine": "programs", "size": [WIDTH, HEIGHT], "spp": SAMPLES}}
+    scene = {
+        "rtsl": 1,
+        "import": ["lookups.rtsl"],
+        "rayGeneration": {"class": "Lookups", "image": {"file": "image.png", "filter": "bilinear"}},
+        "render": {"engine": "programs", "size": [WIDTH, HEIGHT], "spp": SAMPLES},
+    }
     (folder / "scene.json").write_text(json.dumps(scene))
 
 
 def programs(folder):
     """Name and command of each program by hand that can be built here."""
     flags = ["-std=c++17", "-O3", "-march=x86-64-v3", "-I", str(ROOT)]
-    wanted = [(f"plain loop, {compiler}", compiler, "Plain", [], "image.raw") for compiler in ("g++", "clang++-22")]
-    wanted.append(("OpenImageIO's texture system", "g++", "OpenImageIO",
-                   ["-isystem", "/usr/include/Imath", "-lOpenImageIO", "-lOpenImageIO_Util"], "image.png"))
+    wanted = [
+        (f"plain loop, {compiler}", compiler, "Plain", [], "image.raw")
+        for compiler in ("g++", "clang++-22")
+    ]
+    wanted.append(
+        (
+            "OpenImageIO's texture system",
+            "g++",
+            "OpenImageIO",
+            ["-isystem", "/usr/include/Imath", "-lOpenImageIO", "-lOpenImageIO_Util"],
+            "image.png",
+        )
+    )
     for name, compiler, source, more, image in wanted:
         program = folder / name.replace(" ", "-").replace(",", "").replace("'", "")
         if shutil.which(compiler):
-            command = [compiler, *flags, str(ROOT / "bench" / "images" / f"{source}.cpp"), "-o", str(program), *more]
+            command = [
+                compiler,
+                *flags,
+                str(ROOT / "bench" / "images" / f"{source}.cpp"),
+                "-o",
+                str(program),
+                *more,
+            ]
             if subprocess.run(command, capture_output=True).returncode == 0:
                 yield name, [str(program), str(folder / image)]
 
@@ -70,26 +95,51 @@ def measure(build, rounds):
         by_hand = list(programs(folder))
         for _ in range(rounds):
             for arithmetic in ("strict", "fast"):
-                run = json.loads(process.run([str(build / "bin" / "rtslc"), "render", str(folder / "scene.json"), "--json", "--threads", "1",
-                                              f"--fp={arithmetic}", "-o", str(folder / "picture.exr")]).output)
+                run = json.loads(
+                    process.run(
+                        [
+                            str(build / "bin" / "rtslc"),
+                            "render",
+                            str(folder / "scene.json"),
+                            "--json",
+                            "--threads",
+                            "1",
+                            f"--fp={arithmetic}",
+                            "-o",
+                            str(folder / "picture.exr"),
+                        ]
+                    ).output
+                )
                 results.setdefault(f"rtslc, {arithmetic}", []).append(
-                    run["seconds"]["render"] * 1e9 / (WIDTH * HEIGHT * SAMPLES * LOOKUPS))
+                    run["seconds"]["render"] * 1e9 / (WIDTH * HEIGHT * SAMPLES * LOOKUPS)
+                )
             for program, command in by_hand:
-                results.setdefault(program, []).append(json.loads(process.run(command).output)["nanoseconds"])
-    return {"rounds": rounds, "results": {program: summarise(times).as_json() for program, times in results.items()}}
+                results.setdefault(program, []).append(
+                    json.loads(process.run(command).output)["nanoseconds"]
+                )
+    return {
+        "rounds": rounds,
+        "results": {program: summarise(times).as_json() for program, times in results.items()},
+    }
 
 
 def show(report):
-    print(f"a bilinear lookup in an image of {SIZE} x {SIZE} texels, 8 bits in sRGB; nanoseconds on one core, medians of "
-          f"{report['rounds']} rounds")
+    print(
+        f"a bilinear lookup in an image of {SIZE} x {SIZE} texels, 8 bits in sRGB; nanoseconds on one core, medians of "
+        f"{report['rounds']} rounds"
+    )
     ours = report["results"]["rtslc, strict"]["median"]
     for program, times in report["results"].items():
         low, high = times["interval"]
-        print(f"  {program:32}{times['median']:8.1f}  {f'{low:.1f} to {high:.1f}':16}{times['median'] / ours:6.2f} of the time of strict")
+        print(
+            f"  {program:32}{times['median']:8.1f}  {f'{low:.1f} to {high:.1f}':16}{times['median'] / ours:6.2f} of the time of strict"
+        )
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("images", parents=[common], help="lookups in images beside others")
+    parser = subcommands.add_parser(
+        "images", parents=[common], help="lookups in images beside others"
+    )
     parser.add_argument("--rounds", type=int, default=7, help="rounds of each program (default: 7)")
     parser.set_defaults(parts=[part])
 

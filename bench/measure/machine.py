@@ -22,4 +22,7 @@ def announce(machine):
     """Says it to people; a busy machine gets a warning, for its times mean little."""
     print(f"{machine['processor']}, {machine['cores']} cores")
     if machine["load"] > 0.3:
-        print(f"the machine is busy (load {machine['load']:.2f}): do not trust these times", file=sys.stderr)
+        print(
+            f"the machine is busy (load {machine['load']:.2f}): do not trust these times",
+            file=sys.stderr,
+        )

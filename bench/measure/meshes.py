@@ -29,7 +29,8 @@ def write_torus(path, center, axes, large, small):
     for i in range(AROUND):
         for j in range(ACROSS):
             corners = [
-                (i + di) % AROUND * ACROSS + (j + dj) % ACROSS + 1 for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))
+                (i + di) % AROUND * ACROSS + (j + dj) % ACROSS + 1
+                for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))
             ]
             for triangle in (corners[:3], [corners[0], corners[2], corners[3]]):
                 lines.append("f " + " ".join(f"{corner}//{corner}" for corner in triangle))
@@ -53,11 +54,20 @@ def write_scene(folder):
         write_torus(files[-1], center, (x, y, z), large, large * dice.uniform(0.2, 0.5))
     scene = {
         "rtsl": 1,
-        "import": [str(SHADERS / name) for name in ("PinholeCamera.rtsl", "Lambert.rtsl", "Solid.rtsl", "BallLight.rtsl")],
+        "import": [
+            str(SHADERS / name)
+            for name in ("PinholeCamera.rtsl", "Lambert.rtsl", "Solid.rtsl", "BallLight.rtsl")
+        ],
         "camera": {
             "class": "PinholeCamera",
-            "constructor": {"eye": [0, 2.2, 7.5], "up": [0, 1, 0], "gaze": [0, -0.19, -1],
-                            "uv0": [-1.6, -0.9], "uv1": [1.6, 0.9], "d": 2.7},
+            "constructor": {
+                "eye": [0, 2.2, 7.5],
+                "up": [0, 1, 0],
+                "gaze": [0, -0.19, -1],
+                "uv0": [-1.6, -0.9],
+                "uv1": [1.6, 0.9],
+                "d": 2.7,
+            },
         },
         "textures": {"terracotta": {"class": "Solid", "value": [0.8, 0.35, 0.2]}},
         "materials": {"clay": {"class": "Lambert", "albedo": "terracotta"}},
@@ -107,7 +117,11 @@ def measure(build, pairs, spp, size):
             arguments = [str(binaries / "rtslc"), "render", str(scene), "--json", "-q", *more]
             return Program(name, arguments + options, folder / f"{name}.exr")
 
-        byhand = Program("bench-meshes", [str(binaries / "bench-meshes"), *map(str, files)] + options, folder / "byhand.exr")
+        byhand = Program(
+            "bench-meshes",
+            [str(binaries / "bench-meshes"), *map(str, files)] + options,
+            folder / "byhand.exr",
+        )
         ours = [rtslc("strict"), rtslc("fast", "--fp=fast")]
         programs = [byhand, *ours]
         for program in programs:  # once, to warm the caches
@@ -121,14 +135,19 @@ def measure(build, pairs, spp, size):
             "size": size,
             "spp": spp,
             "samples": [
-                {"program": program.name, "seconds": summarise(program.seconds).as_json(),
-                 "scene": summarise(program.scene).as_json()}
+                {
+                    "program": program.name,
+                    "seconds": summarise(program.seconds).as_json(),
+                    "scene": summarise(program.scene).as_json(),
+                }
                 for program in programs
             ],
             "ratios": [
                 {
                     "program": program.name,
-                    "speed": summarise([b / a for a, b in zip(program.seconds, byhand.seconds)]).as_json(),
+                    "speed": summarise(
+                        [b / a for a, b in zip(program.seconds, byhand.seconds)]
+                    ).as_json(),
                     "pictures": compare(build, program, byhand),
                 }
                 for program in ours
@@ -137,26 +156,47 @@ def measure(build, pairs, spp, size):
 
 
 def show(report):
-    print(f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} samples a pixel on one thread")
+    print(
+        f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} samples a pixel on one thread"
+    )
     for program in report["samples"]:
-        print(f"  {program['program']:14} {program['seconds']['median']:7.3f} s, reading {program['scene']['median']:.3f} s")
+        print(
+            f"  {program['program']:14} {program['seconds']['median']:7.3f} s, reading {program['scene']['median']:.3f} s"
+        )
     print("rtslc's speed over that of the program by hand, round by round")
     for ratio in report["ratios"]:
         speed, pictures = ratio["speed"], ratio["pictures"]
         low, high = speed["interval"]
-        print(f"  {ratio['program']:14} {speed['median']:.3f}   {low:.3f} to {high:.3f} ({speed['confidence']:.1%});"
-              f" the pictures {'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
-              f" (means within {pictures['largestMeanDifference']:.1e}, root mean square {pictures['rmse']:.1e})")
+        print(
+            f"  {ratio['program']:14} {speed['median']:.3f}   {low:.3f} to {high:.3f} ({speed['confidence']:.1%});"
+            f" the pictures {'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
+            f" (means within {pictures['largestMeanDifference']:.1e}, root mean square {pictures['rmse']:.1e})"
+        )
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("meshes", parents=[common], help="many meshes beside the hand-written program")
-    parser.add_argument("--pairs", type=int, default=8, help="rounds in which every program runs (default: 8)")
-    parser.add_argument("--spp", type=int, default=9, help="samples a pixel, of which the first is not counted (default: 9)")
-    parser.add_argument("--size", metavar="WxH", default="640x360", help="of the picture (default: 640x360)")
+    parser = subcommands.add_parser(
+        "meshes", parents=[common], help="many meshes beside the hand-written program"
+    )
+    parser.add_argument(
+        "--pairs", type=int, default=8, help="rounds in which every program runs (default: 8)"
+    )
+    parser.add_argument(
+        "--spp",
+        type=int,
+        default=9,
+        help="samples a pixel, of which the first is not counted (default: 9)",
+    )
+    parser.add_argument(
+        "--size", metavar="WxH", default="640x360", help="of the picture (default: 640x360)"
+    )
     parser.set_defaults(parts=[part])
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return ("meshes", measure(options.build, max(1, options.pairs), max(2, options.spp), options.size), show)
+    return (
+        "meshes",
+        measure(options.build, max(1, options.pairs), max(2, options.spp), options.size),
+        show,
+    )

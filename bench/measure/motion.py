@@ -26,17 +26,32 @@ class Paint : rt_Material {
 TRANSFORMS = {
     "transforms at rest": None,
     "translations": ({}, {"translate": [0.1, 0.05, 0]}),
-    "translations and rotations": ({"rotate": [0, 0, 0]}, {"rotate": [0, 20, 0], "translate": [0.1, 0.05, 0]}),
-    "matrices": ({"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
-                 {"matrix": [1, 0.1, 0, 0, -0.1, 1, 0, 0, 0, 0, 1, 0, 0.1, 0.05, 0, 1]}),
+    "translations and rotations": (
+        {"rotate": [0, 0, 0]},
+        {"rotate": [0, 20, 0], "translate": [0.1, 0.05, 0]},
+    ),
+    "matrices": (
+        {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
+        {"matrix": [1, 0.1, 0, 0, -0.1, 1, 0, 0, 0, 0, 1, 0, 0.1, 0.05, 0, 1]},
+    ),
 }
-MESHES = {"a mesh in world space": "torus.obj", "a mesh with two keys": {"keys": ["torus.obj", "moved.obj"]}}
+MESHES = {
+    "a mesh in world space": "torus.obj",
+    "a mesh with two keys": {"keys": ["torus.obj", "moved.obj"]},
+}
 
 
 def scene_of(nodes, root, objects=()):
-    return {"rtsl": 1, "import": ["motion.rtsl"], "camera": {"class": "Look"}, "materials": {"paint": {"class": "Paint"}},
-            "background": 0.5, "objects": list(objects), **({"nodes": nodes, "root": root} if nodes else {}),
-            "render": {"engine": "classic", "depth": 1, "seed": 1}}
+    return {
+        "rtsl": 1,
+        "import": ["motion.rtsl"],
+        "camera": {"class": "Look"},
+        "materials": {"paint": {"class": "Paint"}},
+        "background": 0.5,
+        "objects": list(objects),
+        **({"nodes": nodes, "root": root} if nodes else {}),
+        "render": {"engine": "classic", "depth": 1, "seed": 1},
+    }
 
 
 def write_scenes(folder):
@@ -50,10 +65,18 @@ def write_scenes(folder):
         dice = random.Random(7)
         children = []
         for _ in range(INSTANCES):
-            place = [{"scale": dice.uniform(0.5, 1.2)}, {"rotate": [dice.uniform(0, 360) for _ in range(3)]},
-                     {"translate": [dice.uniform(-6, 6), dice.uniform(-6, 6), dice.uniform(-6, 2)]}]
-            children.append({"child": "torus", "transform": [{"keys": list(keys)}, *place] if keys else place})
-        scenes[name] = scene_of({"torus": {"mesh": "small.obj", "material": "paint"}, "all": {"children": children}}, "all")
+            place = [
+                {"scale": dice.uniform(0.5, 1.2)},
+                {"rotate": [dice.uniform(0, 360) for _ in range(3)]},
+                {"translate": [dice.uniform(-6, 6), dice.uniform(-6, 6), dice.uniform(-6, 2)]},
+            ]
+            children.append(
+                {"child": "torus", "transform": [{"keys": list(keys)}, *place] if keys else place}
+            )
+        scenes[name] = scene_of(
+            {"torus": {"mesh": "small.obj", "material": "paint"}, "all": {"children": children}},
+            "all",
+        )
     for name, mesh in MESHES.items():
         scenes[name] = scene_of(None, None, [{"mesh": mesh, "material": "paint"}])
     files = {}
@@ -71,32 +94,68 @@ def measure(build, rounds, spp, size):
         files = write_scenes(folder)
         for _ in range(rounds):
             for scene, file in files.items():
-                run = json.loads(process.run([str(build / "bin" / "rtslc"), "render", str(file), "--json", "-q", "--threads", "1",
-                                              "--size", size, "--spp", str(spp), "-o", str(folder / "picture.exr")]).output)
-                results.setdefault(scene, []).append(width * height * spp / run["seconds"]["render"] * 1e-6)
-    return {"rounds": rounds, "size": size, "spp": spp, "instances": INSTANCES,
-            "results": {scene: summarise(rates).as_json() for scene, rates in results.items()}}
+                run = json.loads(
+                    process.run(
+                        [
+                            str(build / "bin" / "rtslc"),
+                            "render",
+                            str(file),
+                            "--json",
+                            "-q",
+                            "--threads",
+                            "1",
+                            "--size",
+                            size,
+                            "--spp",
+                            str(spp),
+                            "-o",
+                            str(folder / "picture.exr"),
+                        ]
+                    ).output
+                )
+                results.setdefault(scene, []).append(
+                    width * height * spp / run["seconds"]["render"] * 1e-6
+                )
+    return {
+        "rounds": rounds,
+        "size": size,
+        "spp": spp,
+        "instances": INSTANCES,
+        "results": {scene: summarise(rates).as_json() for scene, rates in results.items()},
+    }
 
 
 def show(report):
-    print(f"millions of camera rays per second on one core: {report['instances']} instances of a mesh of 686 triangles, and one such "
-          f"mesh; medians of {report['rounds']} rounds")
+    print(
+        f"millions of camera rays per second on one core: {report['instances']} instances of a mesh of 686 triangles, and one such "
+        f"mesh; medians of {report['rounds']} rounds"
+    )
     for names in (TRANSFORMS, MESHES):
         rest = report["results"][next(iter(names))]["median"]
         for scene in names:
             rates = report["results"][scene]
             low, high = rates["interval"]
-            print(f"  {scene:30}{rates['median']:8.2f}  {f'{low:.2f} to {high:.2f}':16}{rates['median'] / rest:6.2f} of that at rest")
+            print(
+                f"  {scene:30}{rates['median']:8.2f}  {f'{low:.2f} to {high:.2f}':16}{rates['median'] / rest:6.2f} of that at rest"
+            )
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("motion", parents=[common], help="rays per second through what moves and what rests")
+    parser = subcommands.add_parser(
+        "motion", parents=[common], help="rays per second through what moves and what rests"
+    )
     parser.add_argument("--rounds", type=int, default=7, help="rounds of each scene (default: 7)")
     parser.add_argument("--spp", type=int, default=16, help="samples a pixel (default: 16)")
-    parser.add_argument("--size", metavar="WxH", default="320x320", help="of the picture (default: 320x320)")
+    parser.add_argument(
+        "--size", metavar="WxH", default="320x320", help="of the picture (default: 320x320)"
+    )
     parser.set_defaults(parts=[part])
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return "motion", measure(options.build, max(1, options.rounds), max(1, options.spp), options.size), show
+    return (
+        "motion",
+        measure(options.build, max(1, options.rounds), max(1, options.spp), options.size),
+        show,
+    )

@@ -31,7 +31,11 @@ def run(arguments, keep_output=True):
         try:
             child = os.posix_spawn(arguments[0], arguments, os.environ, file_actions=actions)
         except OSError as error:
-            hint = "; `make bench` builds what is needed" if isinstance(error, FileNotFoundError) else ""
+            hint = (
+                "; `make bench` builds what is needed"
+                if isinstance(error, FileNotFoundError)
+                else ""
+            )
             raise Failed(f"{arguments[0]}: {error.strerror}{hint}") from error
         _, status, usage = os.wait4(child, 0)
         wall = (time.perf_counter_ns() - start) * 1e-9

@@ -10,7 +10,11 @@ from .statistics import summarise
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENE = ROOT / "examples" / "glass" / "scene.json"
 MESH = ROOT / "examples" / "glass" / "knot.obj"
-VARIANTS = {"v3": "bench-handwritten", "native": "bench-handwritten-native", "fast": "bench-handwritten-fast"}
+VARIANTS = {
+    "v3": "bench-handwritten",
+    "native": "bench-handwritten-native",
+    "fast": "bench-handwritten-fast",
+}
 
 # Both pictures come from the same random numbers, but not from the same roundings: where a ray
 # passes an edge, a sample may fall on its other side. Pictures that are further apart than this do
@@ -59,7 +63,16 @@ def compare(build, ours, theirs):
     """How far the last pictures of both are apart, and whether they show the same."""
     largest_of_all = ["--threshold", "1e30"]  # the verdict is ours
     difference = json.loads(
-        process.run([str(build / "bin" / "rtslc"), "compare", str(ours.picture), str(theirs.picture), "--json"] + largest_of_all).output
+        process.run(
+            [
+                str(build / "bin" / "rtslc"),
+                "compare",
+                str(ours.picture),
+                str(theirs.picture),
+                "--json",
+            ]
+            + largest_of_all
+        ).output
     )
     means = [abs(a - b) / max(abs(b), 1e-6) for a, b in zip(*difference["means"])]
     difference["largestMeanDifference"] = max(means)
@@ -74,11 +87,17 @@ def measure(build, pairs, variants, render_options, rtslc_options):
     with tempfile.TemporaryDirectory() as folder:
         ours = Program(
             "rtslc",
-            [str(binaries / "rtslc"), "render", str(SCENE), "--json", "-q"] + render_options + rtslc_options,
+            [str(binaries / "rtslc"), "render", str(SCENE), "--json", "-q"]
+            + render_options
+            + rtslc_options,
             Path(folder) / "rtslc.exr",
         )
         others = [
-            Program(VARIANTS[name], [str(binaries / VARIANTS[name]), str(MESH)] + render_options, Path(folder) / f"{name}.exr")
+            Program(
+                VARIANTS[name],
+                [str(binaries / VARIANTS[name]), str(MESH)] + render_options,
+                Path(folder) / f"{name}.exr",
+            )
             for name in variants
         ]
         programs = [ours] + others
@@ -99,8 +118,12 @@ def measure(build, pairs, variants, render_options, rtslc_options):
             "ratios": [
                 {
                     "against": other.name,
-                    "samplesPerSecond": summarise([a / b for a, b in zip(ours.rates, other.rates)]).as_json(),
-                    "wholeProcess": summarise([b.wall / a.wall for a, b in zip(ours.runs, other.runs)]).as_json(),
+                    "samplesPerSecond": summarise(
+                        [a / b for a, b in zip(ours.rates, other.rates)]
+                    ).as_json(),
+                    "wholeProcess": summarise(
+                        [b.wall / a.wall for a, b in zip(ours.runs, other.runs)]
+                    ).as_json(),
                     "pictures": compare(build, ours, other),
                 }
                 for other in others
@@ -145,15 +168,34 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("render", parents=[common], help="rtslc render beside the hand-written program")
-    parser.add_argument("--pairs", type=int, default=10, help="rounds in which every program runs once (default: 10)")
-    parser.add_argument("--against", nargs="+", choices=VARIANTS, default=list(VARIANTS),
-                        help="builds of the hand-written program (default: all)")
-    parser.add_argument("--spp", help="samples a pixel, for all programs (default: 16, as in the scene)")
+    parser = subcommands.add_parser(
+        "render", parents=[common], help="rtslc render beside the hand-written program"
+    )
+    parser.add_argument(
+        "--pairs",
+        type=int,
+        default=10,
+        help="rounds in which every program runs once (default: 10)",
+    )
+    parser.add_argument(
+        "--against",
+        nargs="+",
+        choices=VARIANTS,
+        default=list(VARIANTS),
+        help="builds of the hand-written program (default: all)",
+    )
+    parser.add_argument(
+        "--spp", help="samples a pixel, for all programs (default: 16, as in the scene)"
+    )
     parser.add_argument("--size", metavar="WxH", help="for all programs (default: 960x540)")
     parser.add_argument("--threads", help="for all programs (default: all cores)")
-    parser.add_argument("--rtslc-option", action="append", default=[], metavar="OPTION",
-                        help="for rtslc alone, such as --rtslc-option=--traversal=device; may be repeated")
+    parser.add_argument(
+        "--rtslc-option",
+        action="append",
+        default=[],
+        metavar="OPTION",
+        help="for rtslc alone, such as --rtslc-option=--traversal=device; may be repeated",
+    )
     parser.set_defaults(parts=[part])
 
 
@@ -165,7 +207,12 @@ def part(options):
             render_options += [f"--{name}", getattr(options, name)]
     return (
         "render",
-        measure(options.build, max(1, getattr(options, "pairs", 10)), getattr(options, "against", list(VARIANTS)),
-                render_options, getattr(options, "rtslc_option", [])),
+        measure(
+            options.build,
+            max(1, getattr(options, "pairs", 10)),
+            getattr(options, "against", list(VARIANTS)),
+            render_options,
+            getattr(options, "rtslc_option", []),
+        ),
         show,
     )

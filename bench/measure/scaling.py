@@ -36,8 +36,10 @@ SERIES = {
 # What is done with them: arguments for a file of classes, or for a scene.
 JOBS = {
     "check": lambda rtslc, source, scene, out: source and [rtslc, "check", source],
-    "cpp": lambda rtslc, source, scene, out: source and [rtslc, "compile", source, "--emit=cpp", "-o", out / "x.cpp"],
-    "ptx": lambda rtslc, source, scene, out: source and [rtslc, "compile", source, "--emit=ptx", "-o", out / "x.ptx"],
+    "cpp": lambda rtslc, source, scene, out: source
+    and [rtslc, "compile", source, "--emit=cpp", "-o", out / "x.cpp"],
+    "ptx": lambda rtslc, source, scene, out: source
+    and [rtslc, "compile", source, "--emit=ptx", "-o", out / "x.ptx"],
     "render": lambda rtslc, source, scene, out: [rtslc, "render", scene, "-q", "-o", out / "x.exr"],
 }
 
@@ -54,11 +56,19 @@ def fit(points, constant):
     standard error: the slope of a line through the logarithms, by least squares. Points count by
     how well the growth is known, which is badly where it is a small part of a time. None where the
     largest program takes hardly more than the smallest possible one."""
+
     def spread(time):
         return hypot(SPREAD * time, RESOLUTION)
 
-    grown = [(log(size), log(time - constant), ((time - constant) / hypot(spread(time), spread(constant))) ** 2)
-             for size, time in points if time > 1.1 * constant]
+    grown = [
+        (
+            log(size),
+            log(time - constant),
+            ((time - constant) / hypot(spread(time), spread(constant))) ** 2,
+        )
+        for size, time in points
+        if time > 1.1 * constant
+    ]
     if len(grown) < 2 or points[-1][1] < 1.5 * constant:
         return None
     total = sum(weight for _, _, weight in grown)
@@ -80,8 +90,13 @@ def measure_one(rtslc, make, sizes, job, runs):
             times.append((size, *processor_time(arguments, runs)))
     constant = times[0][1]
     points = [(size, processor) for size, processor, _ in times[1:]]
-    return {"constant": constant, "sizes": list(sizes), "processor": [time for _, time in points],
-            "wall": [wall for _, _, wall in times[1:]], "growth": fit(points, constant)}
+    return {
+        "constant": constant,
+        "sizes": list(sizes),
+        "processor": [time for _, time in points],
+        "wall": [wall for _, _, wall in times[1:]],
+        "growth": fit(points, constant),
+    }
 
 
 def measure(build, names, jobs, runs):
@@ -91,11 +106,19 @@ def measure(build, names, jobs, runs):
         make, sizes = SERIES[name]
         measured = {job: measure_one(rtslc, make, sizes, job, runs) for job in jobs}
         series[name] = {job: one for job, one in measured.items() if one}
-    return {"limit": LIMIT, "spread": SPREAD, "resolution": RESOLUTION, "runs": runs, "series": series}
+    return {
+        "limit": LIMIT,
+        "spread": SPREAD,
+        "resolution": RESOLUTION,
+        "runs": runs,
+        "series": series,
+    }
 
 
 def show(report):
-    print("processor time in seconds, beside that of a program of size 1, and the exponent of the size with which it grows")
+    print(
+        "processor time in seconds, beside that of a program of size 1, and the exponent of the size with which it grows"
+    )
     print(f"{'':24}{'':8}{'sizes':>20}{'of size 1':>11}{'seconds':>26}{'exponent':>14}")
     for name, jobs in report["series"].items():
         for job, one in jobs.items():
@@ -103,21 +126,48 @@ def show(report):
             times = " ".join(f"{time:.2f}" for time in one["processor"])
             growth = one["growth"]
             exponent = f"{growth['exponent']:.2f} +- {growth['error']:.2f}" if growth else ""
-            mark = " above the limit" if growth and growth["exponent"] - growth["error"] > report["limit"] else ""
-            print(f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}{times:>26}{exponent:>14}{mark}")
-    print(f"the limit of exponents is {report['limit']}; none is given where time hardly grows; +-: one standard error, if times "
-          f"vary by {report['spread']:.0%} and {report['resolution'] * 1000:.0f} ms")
+            mark = (
+                " above the limit"
+                if growth and growth["exponent"] - growth["error"] > report["limit"]
+                else ""
+            )
+            print(
+                f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}{times:>26}{exponent:>14}{mark}"
+            )
+    print(
+        f"the limit of exponents is {report['limit']}; none is given where time hardly grows; +-: one standard error, if times "
+        f"vary by {report['spread']:.0%} and {report['resolution'] * 1000:.0f} ms"
+    )
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("scaling", parents=[common], help="how the compiler's time grows with the program")
-    parser.add_argument("--runs", type=int, default=2, help="runs of each command, of which the fastest counts (default: 2)")
-    parser.add_argument("--series", action="append", choices=list(SERIES), help="only this; may be repeated")
-    parser.add_argument("--job", action="append", choices=list(JOBS), help="only this; may be repeated")
+    parser = subcommands.add_parser(
+        "scaling", parents=[common], help="how the compiler's time grows with the program"
+    )
+    parser.add_argument(
+        "--runs",
+        type=int,
+        default=2,
+        help="runs of each command, of which the fastest counts (default: 2)",
+    )
+    parser.add_argument(
+        "--series", action="append", choices=list(SERIES), help="only this; may be repeated"
+    )
+    parser.add_argument(
+        "--job", action="append", choices=list(JOBS), help="only this; may be repeated"
+    )
     parser.set_defaults(parts=[part])
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return "scaling", measure(options.build, options.series or list(SERIES), options.job or list(JOBS),
-                              max(1, options.runs)), show
+    return (
+        "scaling",
+        measure(
+            options.build,
+            options.series or list(SERIES),
+            options.job or list(JOBS),
+            max(1, options.runs),
+        ),
+        show,
+    )

@@ -24,7 +24,19 @@ PAIRINGS = (
 
 
 def compile_file(compiler, source, target, flags):
-    command = [compiler, *FLAGS, *flags, "-I", str(ROOT), "-I", str(ROOT / "include"), "-c", str(source), "-o", str(target)]
+    command = [
+        compiler,
+        *FLAGS,
+        *flags,
+        "-I",
+        str(ROOT),
+        "-I",
+        str(ROOT / "include"),
+        "-c",
+        str(source),
+        "-o",
+        str(target),
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         raise process.Failed(f"{compiler} refuses {source}:\n{done.stderr}")
@@ -34,17 +46,39 @@ def compile_file(compiler, source, target, flags):
 def build_programs(compiler, printed, folder, library):
     """A program a pairing; `printed` has the files of each arithmetic. What both sides call is the
     same object file."""
-    shared = [compile_file(compiler, BY_HAND / f"{name}.cpp", folder / f"{name}.o", ()) for name in ("Main", "Surroundings")]
+    shared = [
+        compile_file(compiler, BY_HAND / f"{name}.cpp", folder / f"{name}.o", ())
+        for name in ("Main", "Surroundings")
+    ]
     objects = {}
     for arithmetic, sources in printed.items():
-        objects[arithmetic] = [compile_file(compiler, source, source.with_suffix(".o"), ()) for source in sources]
+        objects[arithmetic] = [
+            compile_file(compiler, source, source.with_suffix(".o"), ()) for source in sources
+        ]
     programs = []
     for number, (arithmetic, flags, _) in enumerate(PAIRINGS):
-        by_hand = [compile_file(compiler, BY_HAND / f"{shader}.cpp", folder / f"{shader}.{number}.o", flags)
-                   for shader in SHADERS]
+        by_hand = [
+            compile_file(
+                compiler, BY_HAND / f"{shader}.cpp", folder / f"{shader}.{number}.o", flags
+            )
+            for shader in SHADERS
+        ]
         programs.append(folder / f"shaders{number}")
-        subprocess.run([compiler, *shared, *objects[arithmetic], *by_hand, "-o", str(programs[-1]), "-L", str(library), "-lrtsl",
-                        f"-Wl,-rpath,{library}"], check=True)
+        subprocess.run(
+            [
+                compiler,
+                *shared,
+                *objects[arithmetic],
+                *by_hand,
+                "-o",
+                str(programs[-1]),
+                "-L",
+                str(library),
+                "-lrtsl",
+                f"-Wl,-rpath,{library}",
+            ],
+            check=True,
+        )
     return programs
 
 
@@ -57,13 +91,25 @@ def measure(build, rounds):
             (folder / arithmetic).mkdir()
             for shader in SHADERS:
                 sources.append(folder / arithmetic / f"{shader}.cpp")
-                process.run([str(build / "bin" / "rtslc"), "compile", str(ROOT / "docs" / "cpp-output" / f"{shader}.rtsl"),
-                             "--emit=cpp", "--trace=recurse", f"--fp={arithmetic}", "-o", str(sources[-1])])
+                process.run(
+                    [
+                        str(build / "bin" / "rtslc"),
+                        "compile",
+                        str(ROOT / "docs" / "cpp-output" / f"{shader}.rtsl"),
+                        "--emit=cpp",
+                        "--trace=recurse",
+                        f"--fp={arithmetic}",
+                        "-o",
+                        str(sources[-1]),
+                    ]
+                )
         for compiler in COMPILERS:
             if not shutil.which(compiler):
                 results.append({"compiler": compiler, "failed": "not installed"})
                 continue
-            for (_, _, pairing), program in zip(PAIRINGS, build_programs(compiler, printed, folder, build / "lib")):
+            for (_, _, pairing), program in zip(
+                PAIRINGS, build_programs(compiler, printed, folder, build / "lib")
+            ):
                 for line in process.run([str(program), str(rounds)]).output.splitlines():
                     run = json.loads(line)
                     ratios = [hand / ours for hand, ours in zip(run["byHand"], run["generated"])]
@@ -82,23 +128,33 @@ def measure(build, rounds):
 
 
 def show(report):
-    print(f"printed C++ beside C++ by hand, {report['flags']}; nanoseconds of processor time a call, medians of "
-          f"{report['rounds']} rounds")
+    print(
+        f"printed C++ beside C++ by hand, {report['flags']}; nanoseconds of processor time a call, medians of "
+        f"{report['rounds']} rounds"
+    )
     title = None
     for result in report["results"]:
         if "failed" in result:
             print(f"{result['compiler']}: {result['failed']}")
             continue
         if title != (title := f"{result['compiler']}: {result['pairing']}"):
-            print(f"\n{title:48}{'by hand':>9}{'printed':>9}{'speed':>8}  {'interval':14}{'answers differ by':>18}")
+            print(
+                f"\n{title:48}{'by hand':>9}{'printed':>9}{'speed':>8}  {'interval':14}{'answers differ by':>18}"
+            )
         low, high = result["ratio"]["interval"]
-        print(f"  {result['shader']:46}{result['byHand']['median']:9.1f}{result['generated']['median']:9.1f}"
-              f"{result['ratio']['median']:8.2f}  {f'{low:.2f} to {high:.2f}':14}{result['difference']:18.1e}")
+        print(
+            f"  {result['shader']:46}{result['byHand']['median']:9.1f}{result['generated']['median']:9.1f}"
+            f"{result['ratio']['median']:8.2f}  {f'{low:.2f} to {high:.2f}':14}{result['difference']:18.1e}"
+        )
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("shaders", parents=[common], help="printed C++ beside C++ by hand")
-    parser.add_argument("--rounds", type=int, default=20, help="rounds of each shader (default: 20)")
+    parser = subcommands.add_parser(
+        "shaders", parents=[common], help="printed C++ beside C++ by hand"
+    )
+    parser.add_argument(
+        "--rounds", type=int, default=20, help="rounds of each shader (default: 20)"
+    )
     parser.set_defaults(parts=[part])
 
 

@@ -14,15 +14,33 @@ MATERIAL = Path(__file__).resolve().parent.parent / "inputs" / "RoughMetal.rtsl"
 def long_material():
     """A material of 500 lines with ten traces: coats one upon the other, each of which weakens and
     tints what comes through the one below."""
-    lines = ["class Coats : rt_Material;", "", "public float strength = 0.5;", "", "void shade() {",
-             "  color sum = color(0.0);", "  vec3 n = normalize(rt_ShadingNormal);", "  vec3 d = rt_RayDirection;",
-             "  float w = strength;"]
+    lines = [
+        "class Coats : rt_Material;",
+        "",
+        "public float strength = 0.5;",
+        "",
+        "void shade() {",
+        "  color sum = color(0.0);",
+        "  vec3 n = normalize(rt_ShadingNormal);",
+        "  vec3 d = rt_RayDirection;",
+        "  float w = strength;",
+    ]
     for coat in range(10):
-        lines += [f"  float a{coat} = dot(d, n) * {coat + 1}.5 + w;", f"  vec3 t{coat} = d + n * a{coat};"]
+        lines += [
+            f"  float a{coat} = dot(d, n) * {coat + 1}.5 + w;",
+            f"  vec3 t{coat} = d + n * a{coat};",
+        ]
         for step in range(43):
-            lines.append(f"  t{coat} = t{coat} * 0.75 + vec3(a{coat}, w, {step}.25) * sin(a{coat} + {step}.0);"
-                         if step % 4 == 0 else f"  a{coat} = a{coat} * w + {step}.125;")
-        lines += [f"  sum += w * trace(rt_HitPoint, t{coat});", f"  w *= 0.5 + 0.25 * a{coat};", f"  d = reflect(t{coat}, n);"]
+            lines.append(
+                f"  t{coat} = t{coat} * 0.75 + vec3(a{coat}, w, {step}.25) * sin(a{coat} + {step}.0);"
+                if step % 4 == 0
+                else f"  a{coat} = a{coat} * w + {step}.125;"
+            )
+        lines += [
+            f"  sum += w * trace(rt_HitPoint, t{coat});",
+            f"  w *= 0.5 + 0.25 * a{coat};",
+            f"  d = reflect(t{coat}, n);",
+        ]
     lines += [""] * (498 - len(lines)) + ["  rt_SampleColor = sum;", "}"]
     return "\n".join(lines) + "\n"
 
@@ -34,10 +52,18 @@ def other_compilers(folder):
     found = []
     if nvcc:
         source = MATERIAL.with_suffix(".cu")
-        found.append(("nvcc --ptx", [nvcc, "--ptx", str(source), "-o", str(folder / "nvcc.ptx")], None))
+        found.append(
+            ("nvcc --ptx", [nvcc, "--ptx", str(source), "-o", str(folder / "nvcc.ptx")], None)
+        )
     if glslang:
         source = MATERIAL.with_suffix(".rchit")
-        found.append(("glslangValidator", [glslang, "--target-env", "vulkan1.2", str(source), "-o", str(folder / "out.spv")], None))
+        found.append(
+            (
+                "glslangValidator",
+                [glslang, "--target-env", "vulkan1.2", str(source), "-o", str(folder / "out.spv")],
+                None,
+            )
+        )
     return found
 
 
@@ -50,11 +76,31 @@ def commands(build, folder):
         ("true", ["/bin/true"], None),  # what any process costs here
         ("rtslc --help", [rtslc, "--help"], 0.010),
         ("rtslc check", [rtslc, "check", str(MATERIAL)], 0.015),
-        ("rtslc compile --emit=cpp", [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"], 0.025),
-        ("rtslc compile --emit=llvm", [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"], None),
-        ("rtslc compile --emit=ptx", [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"], 0.040),
-        ("--emit=ssa, 500 lines", [rtslc, "compile", str(long_file), "--emit=ssa", "-o", "-"], None),
-        ("--emit=split, 500 lines", [rtslc, "compile", str(long_file), "--emit=split", "-o", "-"], None),
+        (
+            "rtslc compile --emit=cpp",
+            [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"],
+            0.025,
+        ),
+        (
+            "rtslc compile --emit=llvm",
+            [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"],
+            None,
+        ),
+        (
+            "rtslc compile --emit=ptx",
+            [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"],
+            0.040,
+        ),
+        (
+            "--emit=ssa, 500 lines",
+            [rtslc, "compile", str(long_file), "--emit=ssa", "-o", "-"],
+            None,
+        ),
+        (
+            "--emit=split, 500 lines",
+            [rtslc, "compile", str(long_file), "--emit=split", "-o", "-"],
+            None,
+        ),
     ] + other_compilers(folder)
 
 
@@ -112,7 +158,9 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser("startup", parents=[common], help="whole processes of small jobs")
+    parser = subcommands.add_parser(
+        "startup", parents=[common], help="whole processes of small jobs"
+    )
     parser.add_argument("--runs", type=int, default=50, help="runs of each command (default: 50)")
     parser.set_defaults(parts=[part])
 

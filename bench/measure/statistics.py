@@ -40,4 +40,11 @@ def summarise(values, confidence=0.95):
     k = 1
     while k + 1 <= (n + 1) // 2 and coverage(k + 1) >= confidence:
         k += 1
-    return Summary(n, median(ordered), ordered[0], ordered[-1], (ordered[k - 1], ordered[n - k]), max(coverage(k), 0.0))
+    return Summary(
+        n,
+        median(ordered),
+        ordered[0],
+        ordered[-1],
+        (ordered[k - 1], ordered[n - k]),
+        max(coverage(k), 0.0),
+    )

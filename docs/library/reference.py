@@ -21,14 +21,20 @@ def prose(comment):
 
 def class_section(path):
     text = path.read_text()
-    head = re.search(r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import .*\n)*class )", text, re.M)
+    head = re.search(
+        r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import .*\n)*class )",
+        text,
+        re.M,
+    )
     base = re.search(r"^class \w+(?: : (\w+))?", text, re.M).group(1)
     constructor = re.search(r"void constructor\(([^)]*)\)", text)
     yield f"### {path.stem}\n"
     if (ROOT / f"docs/library/{path.stem}.png").exists():
         yield f"![{path.stem}](library/{path.stem}.png)\n"
     yield prose(head.group(1)) + "\n"
-    yield (f"A class of `{base}`." if base else "A [helper class](language.md#8-classes).") + (f" Constructor: `{constructor.group(1)}`." if constructor else "") + "\n"
+    yield (f"A class of `{base}`." if base else "A [helper class](language.md#8-classes).") + (
+        f" Constructor: `{constructor.group(1)}`." if constructor else ""
+    ) + "\n"
     rows = MEMBER.findall(text)
     if rows:
         yield "| parameter | type | default | |\n|---|---|---|---|"
@@ -41,7 +47,9 @@ def class_section(path):
 def reference():
     library = ROOT / "library/std"
     # std.images has the built-in types sampler2D and sampler3D, which docs/language.md describes.
-    for folder in sorted(path for path in library.iterdir() if path.is_dir() and path.name != "images"):
+    for folder in sorted(
+        path for path in library.iterdir() if path.is_dir() and path.name != "images"
+    ):
         yield f"## std.{folder.name}\n"
         for path in sorted(folder.glob("*.rtsl")):
             yield from class_section(path)
@@ -57,7 +65,7 @@ def reference():
 
 def main():
     text = DOCUMENT.read_text()
-    before, after = text[:text.index(BEGIN)] + BEGIN, text[text.index(END):]
+    before, after = text[: text.index(BEGIN)] + BEGIN, text[text.index(END) :]
     renewed = before + "\n".join(reference()) + "\n" + after
     if "--check" in sys.argv:
         if renewed != text:

@@ -7,7 +7,14 @@ import struct
 import zlib
 
 SIZE, SUB = 64, 3
-COLORS = [(244, 239, 226), (24, 62, 122), (70, 130, 180), (214, 158, 46), (196, 92, 52), (46, 112, 92)]
+COLORS = [
+    (244, 239, 226),
+    (24, 62, 122),
+    (70, 130, 180),
+    (214, 158, 46),
+    (196, 92, 52),
+    (46, 112, 92),
+]
 
 
 def rings(x, y, k):
@@ -51,7 +58,7 @@ def tile(number):
                     u = 2 * (x + (i + 0.5) / SUB) / SIZE - 1
                     v = 2 * (y + (j + 0.5) / SUB) / SIZE - 1
                     sums = [s + c for s, c in zip(sums, palette[motif(u, v, k)])]
-            row += bytes(s // SUB ** 2 for s in sums)
+            row += bytes(s // SUB**2 for s in sums)
         rows.append(row)
     return b"".join(rows)
 
@@ -64,5 +71,8 @@ folder = pathlib.Path(__file__).resolve().parent / "tiles"
 folder.mkdir(exist_ok=True)
 for number in range(100):
     (folder / f"{number:02}.png").write_bytes(
-        b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 2, 0, 0, 0)) +
-        chunk(b"IDAT", zlib.compress(tile(number), 9)) + chunk(b"IEND", b""))
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", SIZE, SIZE, 8, 2, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(tile(number), 9))
+        + chunk(b"IEND", b"")
+    )

@@ -12,7 +12,10 @@ def write(name, vertices, coordinates, faces):
     with open(name, "w") as file:
         file.writelines(f"v {x:.4g} {y:.4g} {z:.4g}\n" for x, y, z in vertices)
         file.writelines(f"vt {u:g} {v:g}\n" for u, v in coordinates)
-        file.writelines("f " + " ".join(str(i) if not coordinates else f"{i}/{t}" for i, t in face) + "\n" for face in faces)
+        file.writelines(
+            "f " + " ".join(str(i) if not coordinates else f"{i}/{t}" for i, t in face) + "\n"
+            for face in faces
+        )
 
 
 def branch(vertices, faces, start, end, thick, thin, sides):
@@ -21,10 +24,18 @@ def branch(vertices, faces, start, end, thick, thin, sides):
     length = math.hypot(*along)
     along = [x / length for x in along]
     other = (1, 0, 0) if abs(along[0]) < 0.7 else (0, 0, 1)
-    u = [along[1] * other[2] - along[2] * other[1], along[2] * other[0] - along[0] * other[2], along[0] * other[1] - along[1] * other[0]]
+    u = [
+        along[1] * other[2] - along[2] * other[1],
+        along[2] * other[0] - along[0] * other[2],
+        along[0] * other[1] - along[1] * other[0],
+    ]
     size = math.hypot(*u)
     u = [x / size for x in u]
-    v = [along[1] * u[2] - along[2] * u[1], along[2] * u[0] - along[0] * u[2], along[0] * u[1] - along[1] * u[0]]
+    v = [
+        along[1] * u[2] - along[2] * u[1],
+        along[2] * u[0] - along[0] * u[2],
+        along[0] * u[1] - along[1] * u[0],
+    ]
     first = len(vertices) + 1
     for center, radius in ((start, thick), (end, thin)):
         for i in range(sides):
@@ -32,7 +43,9 @@ def branch(vertices, faces, start, end, thick, thin, sides):
             vertices.append([p + radius * (c * a + s * b) for p, a, b in zip(center, u, v)])
     for i in range(sides):
         j = (i + 1) % sides
-        faces.append([(first + i, 0), (first + j, 0), (first + sides + j, 0), (first + sides + i, 0)])
+        faces.append(
+            [(first + i, 0), (first + j, 0), (first + sides + j, 0), (first + sides + i, 0)]
+        )
 
 
 def tree():
@@ -58,7 +71,11 @@ def leaves(tips):
         for _ in range(5):
             center = [x + shuffle.gauss(0, 0.28) for x in tip]
             a, b = shuffle.uniform(0, 2 * math.pi), shuffle.uniform(-0.9, 0.9)
-            u = [0.34 * math.cos(a) * math.cos(b), 0.34 * math.sin(b), 0.34 * math.sin(a) * math.cos(b)]
+            u = [
+                0.34 * math.cos(a) * math.cos(b),
+                0.34 * math.sin(b),
+                0.34 * math.sin(a) * math.cos(b),
+            ]
             c = a + math.pi / 2
             v = [0.34 * math.cos(c), shuffle.uniform(-0.15, 0.15), 0.34 * math.sin(c)]
             first = len(vertices) + 1
@@ -83,10 +100,26 @@ def group(child, count, size, wobble, **changes):
     children = []
     for i in range(count):
         x, z = (i % across - (across - 1) / 2) * size, (i // across - (across - 1) / 2) * size
-        children.append({"child": child, "transform": {
-            "scale": round(shuffle.uniform(0.75, 1.25), 3) if child == "tree" else 1,
-            "rotate": [0, round(shuffle.uniform(0, 360)) if child == "tree" else 90 * shuffle.randrange(4), 0],
-            "translate": [round(x + shuffle.uniform(-wobble, wobble), 2), 0, round(z + shuffle.uniform(-wobble, wobble), 2)]}})
+        children.append(
+            {
+                "child": child,
+                "transform": {
+                    "scale": round(shuffle.uniform(0.75, 1.25), 3) if child == "tree" else 1,
+                    "rotate": [
+                        0,
+                        round(shuffle.uniform(0, 360))
+                        if child == "tree"
+                        else 90 * shuffle.randrange(4),
+                        0,
+                    ],
+                    "translate": [
+                        round(x + shuffle.uniform(-wobble, wobble), 2),
+                        0,
+                        round(z + shuffle.uniform(-wobble, wobble), 2),
+                    ],
+                },
+            }
+        )
     return {"children": children, **changes}
 
 
@@ -97,17 +130,29 @@ write("leaves.obj", vertices, [(0, 0), (1, 0), (1, 1), (0, 1)], cards)
 vertices, faces = far()
 write("far.obj", vertices, [], faces)
 
-autumn = [[0.3, 0.5, 0.12], [0.36, 0.5, 0.1], [0.55, 0.45, 0.08], [0.7, 0.35, 0.07], [0.25, 0.42, 0.14]]
+autumn = [
+    [0.3, 0.5, 0.12],
+    [0.36, 0.5, 0.1],
+    [0.55, 0.45, 0.08],
+    [0.7, 0.35, 0.07],
+    [0.25, 0.42, 0.14],
+]
 nodes = {
     "trunk": {"mesh": "tree.obj", "material": {"class": "Sunlit", "tint": [0.28, 0.2, 0.14]}},
     "leaves": {"mesh": "leaves.obj", "material": {"class": "Leaves"}},
     "far": {"mesh": "far.obj", "material": {"class": "Sunlit"}},
-    "tree": {"selector": {"class": "Detail"}, "children": [{"children": ["trunk", "leaves"]}, "far"]},
+    "tree": {
+        "selector": {"class": "Detail"},
+        "children": [{"children": ["trunk", "leaves"]}, "far"],
+    },
     "grove": group("tree", 9, 6, 1.8),
     "copse": group("grove", 16, 18, 0),
     "wood": group("copse", 16, 72, 0),
     "forest": group("wood", 16, 288, 0),
-    "meadow": {"primitive": {"class": "Meadow"}, "material": {"class": "Clearing", "tint": [0.2, 0.3, 0.08]}},
+    "meadow": {
+        "primitive": {"class": "Meadow"},
+        "material": {"class": "Clearing", "tint": [0.2, 0.3, 0.08]},
+    },
 }
 for i, one in enumerate(nodes["copse"]["children"]):
     one["variables"] = {"tint": autumn[i % 5]}
@@ -118,7 +163,15 @@ with open("forest.json", "w") as file:
     rows = {
         "rtsl": 1,
         "import": ["Forest.rtsl"],
-        "rayGeneration": {"class": "Walker", "constructor": {"eye": [148, 19, 330], "target": [60, -8, 180], "width": 1.3, "height": 0.73125}},
+        "rayGeneration": {
+            "class": "Walker",
+            "constructor": {
+                "eye": [148, 19, 330],
+                "target": [60, -8, 180],
+                "width": 1.3,
+                "height": 0.73125,
+            },
+        },
     }
     for key, value in rows.items():
         file.write(f"  {json.dumps(key)}: {json.dumps(value)},\n")
@@ -129,7 +182,7 @@ with open("forest.json", "w") as file:
             texts.append(f"    {json.dumps(name)}: {json.dumps(node)}")
         else:
             children = ",\n".join("      " + json.dumps(child) for child in node["children"])
-            texts.append(f"    {json.dumps(name)}: {{\"children\": [\n{children}]}}")
+            texts.append(f'    {json.dumps(name)}: {{"children": [\n{children}]}}')
     file.write(",\n".join(texts))
     file.write('},\n  "root": "world",\n  "background": {"class": "Morning"},\n')
     file.write('  "render": {"engine": "programs", "size": [960, 540], "spp": 64, "depth": 1}\n}\n')

@@ -20,8 +20,14 @@ for row in range(BLOCKS):
             for low, high in ((0.0, deep - 0.06), (deep + 0.06, 1.0)):
                 middle = ((column - 3) ** 2 + (row - 3) ** 2) ** 0.5
                 height = random.uniform(7, 18) + max(0.0, 3 - middle) * random.uniform(2, 16)
-                box = [x + cuts[i] * BLOCK + (1.0 if i else 0.0), 0.0, z + low * BLOCK,
-                       x + cuts[i + 1] * BLOCK - (0.0 if i else 1.0), height, z + high * BLOCK]
+                box = [
+                    x + cuts[i] * BLOCK + (1.0 if i else 0.0),
+                    0.0,
+                    z + low * BLOCK,
+                    x + cuts[i + 1] * BLOCK - (0.0 if i else 1.0),
+                    height,
+                    z + high * BLOCK,
+                ]
                 houses.append([round(value, 2) for value in box])
                 roofs.append(houses[-1])
 
@@ -38,9 +44,12 @@ with open("masts.csv", "w") as file:
         file.write(f"{x:.2f},{height:.2f},{z:.2f}\n")
 
 objects = ",\n    ".join(
-    json.dumps({"primitive": {"class": "Box", "low": box[:3], "high": box[3:]}, "material": "wall"}) for box in houses)
+    json.dumps({"primitive": {"class": "Box", "low": box[:3], "high": box[3:]}, "material": "wall"})
+    for box in houses
+)
 with open("city.json", "w") as file:
-    file.write(f"""{{
+    file.write(
+        f"""{{
   "rtsl": 1,
   "import": ["std.primitives.Box", "LineOfSight.rtsl"],
   "rayGeneration": {{"class": "LineOfSight", "masts": {{"buffer": "masts.csv", "columns": ["x", "height", "z"]}},
@@ -52,4 +61,5 @@ with open("city.json", "w") as file:
   ],
   "render": {{"engine": "programs", "size": [868, 868], "spp": 1, "depth": 0}}
 }}
-""")
+"""
+    )

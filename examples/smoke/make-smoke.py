@@ -31,19 +31,21 @@ def noise(x, y, z, seed):
 
 
 def octaves(x, y, z, seed):
-    return sum(0.5 ** n * noise(x * 2 ** n, y * 2 ** n, z * 2 ** n, seed + n) for n in range(4))
+    return sum(0.5**n * noise(x * 2**n, y * 2**n, z * 2**n, seed + n) for n in range(4))
 
 
 def density(x, y, z):
     """x and z in [-1, 1], y, upward, in [0, 1]."""
-    sway = 0.75 * y ** 1.1
+    sway = 0.75 * y**1.1
     x -= sway * noise(2.1 * y, 0.3, 0.5, 11)
     z -= sway * noise(2.1 * y, 7.3, 0.5, 12)
     warp = 0.3 + 0.5 * y
     wx = x + warp * 0.35 * noise(2.5 * x, 5 * y, 2.5 * z, 21)
     wz = z + warp * 0.35 * noise(2.5 * x, 5 * y, 2.5 * z, 22)
-    radius = 0.09 + 0.45 * y ** 0.9
-    inside = 1 - math.hypot(wx, wz) / radius + (0.5 + 0.9 * y) * octaves(4 * wx, 7 * y, 4 * wz, 31) - 0.1
+    radius = 0.09 + 0.45 * y**0.9
+    inside = (
+        1 - math.hypot(wx, wz) / radius + (0.5 + 0.9 * y) * octaves(4 * wx, 7 * y, 4 * wz, 31) - 0.1
+    )
     value = max(0.0, min(1.0, 2.2 * inside)) * (1 - 0.5 * y)
     edge = min(1 - abs(x), 1 - abs(z), 6 * (1 - y))  # nothing at the sides of the box
     return value * max(0.0, min(1.0, 3 * edge))
@@ -54,7 +56,9 @@ def main():
     for k in range(DEPTH):
         for j in range(HEIGHT):
             for i in range(WIDTH):
-                value = density(2 * (i + 0.5) / WIDTH - 1, (j + 0.5) / HEIGHT, 2 * (k + 0.5) / DEPTH - 1)
+                value = density(
+                    2 * (i + 0.5) / WIDTH - 1, (j + 0.5) / HEIGHT, 2 * (k + 0.5) / DEPTH - 1
+                )
                 values.append(round(255 * value))
     (pathlib.Path(__file__).parent / "smoke.raw").write_bytes(values)
 

@@ -20,7 +20,10 @@ COLORS = [[0.75, 0.16, 0.1], [0.85, 0.6, 0.1], [0.15, 0.45, 0.2], [0.12, 0.3, 0.
 
 def turn(axis, turns):
     """Whole turns while time runs from 0 to 1, so that the animation can be repeated."""
-    keys = [{"rotate": {"axis": axis, "angle": 0}}, {"rotate": {"axis": axis, "angle": 360 * turns}}]
+    keys = [
+        {"rotate": {"axis": axis, "angle": 0}},
+        {"rotate": {"axis": axis, "angle": 360 * turns}},
+    ]
     return {"keys": keys}
 
 
@@ -38,32 +41,74 @@ def vane():
 
 def scene():
     nodes = {
-        "floor": {"primitive": {"class": "Parallelogram", "constructor": [[-30, 0, 20], [60, 0, 0], [0, 0, -60]]}, "material": "floor"},
-        "post": {"primitive": {"class": "Cylinder", "constructor": [[0, 0, 0], [0, 3, 0], 0.09]}, "material": "wood"},
-        "axle": {"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.16}, "material": "brass"},
-        "lamp": {"primitive": {"class": "Sphere", "center": [-7, 11, 9], "radius": 1.6}, "material": "lamp"},
+        "floor": {
+            "primitive": {
+                "class": "Parallelogram",
+                "constructor": [[-30, 0, 20], [60, 0, 0], [0, 0, -60]],
+            },
+            "material": "floor",
+        },
+        "post": {
+            "primitive": {"class": "Cylinder", "constructor": [[0, 0, 0], [0, 3, 0], 0.09]},
+            "material": "wood",
+        },
+        "axle": {
+            "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.16},
+            "material": "brass",
+        },
+        "lamp": {
+            "primitive": {"class": "Sphere", "center": [-7, 11, 9], "radius": 1.6},
+            "material": "lamp",
+        },
     }
     for number in range(4):
         nodes[f"vane {number}"] = {"mesh": "vane.obj", "material": f"paint {number}"}
     nodes["pinwheel"] = {
-        "children": [{"child": f"vane {number}", "transform": {"rotate": [0, 0, 90 * number]}} for number in range(4)] + ["axle"],
+        "children": [
+            {"child": f"vane {number}", "transform": {"rotate": [0, 0, 90 * number]}}
+            for number in range(4)
+        ]
+        + ["axle"],
         "transform": turn([0, 0, 1], -4),
     }
     nodes["spoke"] = {
         "children": [
-            {"primitive": {"class": "Cylinder", "constructor": [[0, 0, 0], [2, 0, 0], 0.05]}, "material": "wood"},
+            {
+                "primitive": {"class": "Cylinder", "constructor": [[0, 0, 0], [2, 0, 0], 0.05]},
+                "material": "wood",
+            },
             # Each pinwheel keeps upright: its axis turns back as the wheel turns.
-            {"child": "pinwheel", "transform": [{"scale": 0.75}, turn([0, 0, 1], -1), {"translate": [2, 0, 0.15]}]},
+            {
+                "child": "pinwheel",
+                "transform": [{"scale": 0.75}, turn([0, 0, 1], -1), {"translate": [2, 0, 0.15]}],
+            },
         ]
     }
     nodes["wheel"] = {
-        "children": [{"child": "spoke", "transform": {"rotate": [0, 0, 72 * number]}} for number in range(5)]
-                    + [{"child": "axle", "transform": {"scale": 1.6}}],
+        "children": [
+            {"child": "spoke", "transform": {"rotate": [0, 0, 72 * number]}} for number in range(5)
+        ]
+        + [{"child": "axle", "transform": {"scale": 1.6}}],
         "transform": turn([0, 0, 1], 1),
     }
     nodes["whirligig"] = {
-        "children": ["post", {"child": "wheel", "transform": [{"translate": [0, 0, 0.3]}, {"keys": [
-            {"rotate": [0, -18, 0]}, {"rotate": [0, 18, 0]}, {"rotate": [0, -18, 0]}]}, {"translate": [0, 3, 0]}]}],
+        "children": [
+            "post",
+            {
+                "child": "wheel",
+                "transform": [
+                    {"translate": [0, 0, 0.3]},
+                    {
+                        "keys": [
+                            {"rotate": [0, -18, 0]},
+                            {"rotate": [0, 18, 0]},
+                            {"rotate": [0, -18, 0]},
+                        ]
+                    },
+                    {"translate": [0, 3, 0]},
+                ],
+            },
+        ],
     }
     nodes["world"] = {"children": ["floor", "whirligig", "lamp"]}
     materials = {
@@ -77,13 +122,28 @@ def scene():
     return {
         "rtsl": 1,
         "import": ["std.cameras", "std.primitives", "std.materials", "std.backgrounds"],
-        "camera": {"class": "PerspectiveCamera", "constructor": {"eye": [0.6, 2.6, 10.5], "target": [0, 2.75, 0], "up": [0, 1, 0]}, "fieldOfView": 38},
-        "background": {"class": "GradientSky", "zenith": [0.25, 0.45, 0.8], "horizon": [0.85, 0.9, 0.95], "ground": [0.3, 0.32, 0.25]},
+        "camera": {
+            "class": "PerspectiveCamera",
+            "constructor": {"eye": [0.6, 2.6, 10.5], "target": [0, 2.75, 0], "up": [0, 1, 0]},
+            "fieldOfView": 38,
+        },
+        "background": {
+            "class": "GradientSky",
+            "zenith": [0.25, 0.45, 0.8],
+            "horizon": [0.85, 0.9, 0.95],
+            "ground": [0.3, 0.32, 0.25],
+        },
         "materials": materials,
         "nodes": nodes,
         "root": "world",
         # A frame of 24: the shutter is open for a quarter of its time.
-        "render": {"engine": "path", "size": [480, 360], "spp": 128, "depth": 5, "shutter": [0.125, 0.135]},
+        "render": {
+            "engine": "path",
+            "size": [480, 360],
+            "spp": 128,
+            "depth": 5,
+            "shutter": [0.125, 0.135],
+        },
     }
 
 
@@ -91,8 +151,8 @@ def chunks(png):
     """The chunks of a PNG file: (type, data)."""
     at = 8
     while at < len(png):
-        length, = struct.unpack(">I", png[at:at + 4])
-        yield png[at + 4:at + 8], png[at + 8:at + 8 + length]
+        (length,) = struct.unpack(">I", png[at : at + 4])
+        yield png[at + 4 : at + 8], png[at + 8 : at + 8 + length]
         at += 12 + length
 
 
@@ -104,9 +164,17 @@ def animated(frames, milliseconds):
     """An animated PNG of PNG files of one size (APNG 1.0)."""
     first = dict(chunks(frames[0]))
     width, height = struct.unpack(">II", first[b"IHDR"][:8])
-    out, number = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", first[b"IHDR"]) + chunk(b"acTL", struct.pack(">II", len(frames), 0)), 0
+    out, number = (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", first[b"IHDR"])
+        + chunk(b"acTL", struct.pack(">II", len(frames), 0)),
+        0,
+    )
     for index, frame in enumerate(frames):
-        out += chunk(b"fcTL", struct.pack(">IIIIIHHBB", number, width, height, 0, 0, milliseconds, 1000, 0, 0))
+        out += chunk(
+            b"fcTL",
+            struct.pack(">IIIIIHHBB", number, width, height, 0, 0, milliseconds, 1000, 0, 0),
+        )
         number += 1
         for kind, data in chunks(frame):
             if kind != b"IDAT":
@@ -132,8 +200,22 @@ def main():
         for frame in range(count):
             picture = pathlib.Path(folder, f"{frame:04}.png")
             shutter = [frame / count, (frame + 0.25) / count]
-            subprocess.run([sys.argv[1], "render", HERE / "whirligig.json", "-o", picture, "--size", "240x180", "--spp", "64",
-                            "--set", f"render.shutter={shutter}"], check=True)
+            subprocess.run(
+                [
+                    sys.argv[1],
+                    "render",
+                    HERE / "whirligig.json",
+                    "-o",
+                    picture,
+                    "--size",
+                    "240x180",
+                    "--spp",
+                    "64",
+                    "--set",
+                    f"render.shutter={shutter}",
+                ],
+                check=True,
+            )
             frames.append(picture.read_bytes())
     (HERE / "animation.png").write_bytes(animated(frames, 2000 // count))
 

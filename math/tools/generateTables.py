@@ -130,7 +130,11 @@ def logarithmTable():
     for cell in range(128):
         width = Fraction(1, 256) if cell < 80 else Fraction(1, 128)
         start = Fraction(11, 16) + cell * width if cell < 80 else 1 + (cell - 80) * width
-        inverse = Fraction(1) if cell in (79, 80) else toMultiple(1 / (start + width / 2), Fraction(1, 4096))
+        inverse = (
+            Fraction(1)
+            if cell in (79, 80)
+            else toMultiple(1 / (start + width / 2), Fraction(1, 4096))
+        )
         decimalInverse = Decimal(inverse.numerator) / Decimal(inverse.denominator)
         rows.append(row([inverse] + split(-decimalInverse.ln(), 2, Fraction(1, 2**42))))
     write(
@@ -153,7 +157,10 @@ inline constexpr LogarithmEntry logarithmTable[128] = {{
 
 
 def arcTangentTable():
-    rows = [row(split(arctan(Fraction(i, 16).numerator / Decimal(Fraction(i, 16).denominator)), 2)) for i in range(17)]
+    rows = [
+        row(split(arctan(Fraction(i, 16).numerator / Decimal(Fraction(i, 16).denominator)), 2))
+        for i in range(17)
+    ]
     write(
         "ArcTangentTable.h",
         f"""
@@ -175,7 +182,10 @@ def constants():
     quarter = PI / 2
     pieces = split(quarter, 3, Fraction(1, 2**33))
     bits = int(Fraction(2 / PI) * 2**256)
-    words = [f"0x{word:016x}" for word in [0] + [(bits >> (192 - 64 * i)) & (2**64 - 1) for i in range(4)]]
+    words = [
+        f"0x{word:016x}"
+        for word in [0] + [(bits >> (192 - 64 * i)) & (2**64 - 1) for i in range(4)]
+    ]
 
     def pair(name, value, text):
         high, low = split(value, 2)
@@ -184,7 +194,7 @@ def constants():
     ln2 = split(LN2, 3, Fraction(1, 2**42))
     write(
         "Constants.h",
-        "#include \"math/DoubleDouble.h\"\n\nnamespace rtsl::device::detail {\n\n"
+        '#include "math/DoubleDouble.h"\n\nnamespace rtsl::device::detail {\n\n'
         + pair("pi", PI, "pi.")
         + pair("halfPi", quarter, "pi/2.")
         + pair("ln2", LN2, "ln(2).")

@@ -10,10 +10,10 @@ def header(data):
     """The attributes by name, and where they end."""
     found, at = {}, 8
     while data[at]:
-        name, at = data[at:data.index(0, at)].decode(), data.index(0, at) + 1
+        name, at = data[at : data.index(0, at)].decode(), data.index(0, at) + 1
         at = data.index(0, at) + 1
         size = struct.unpack_from("<i", data, at)[0]
-        found[name] = data[at + 4:at + 4 + size]
+        found[name] = data[at + 4 : at + 4 + size]
         at += 4 + size
     return found, at + 1
 
@@ -55,9 +55,9 @@ def channels(data):
         first, size = struct.unpack_from("<ii", data, offset)
         assert first == top + LINES * block, first
         lines = min(LINES, height - LINES * block)
-        packed, length = data[offset + 8:offset + 8 + size], lines * width * len(names) * 4
+        packed, length = data[offset + 8 : offset + 8 + size], lines * width * len(names) * 4
         flat = packed if size == length else unpacked(packed)
         numbers = struct.unpack(f"<{length // 4}I", flat)
         for part in range(lines * len(names)):
-            words[names[part % len(names)]] += numbers[part * width:(part + 1) * width]
+            words[names[part % len(names)]] += numbers[part * width : (part + 1) * width]
     return words

@@ -60,16 +60,37 @@ class Case(unittest.TestCase):
             path.write_text(content)
         return path
 
-    def run_rtslc(self, *arguments, status=FINE, stdin=None, stdout=subprocess.PIPE, unprivileged=False, prepare=None):
+    def run_rtslc(
+        self,
+        *arguments,
+        status=FINE,
+        stdin=None,
+        stdout=subprocess.PIPE,
+        unprivileged=False,
+        prepare=None,
+    ):
         """Gives (standard output, standard error); fails unless the exit status is the expected one
         (None: any)."""
-        if self.level and arguments[0] == "render" and not any(str(argument).startswith("-O") for argument in arguments):
+        if (
+            self.level
+            and arguments[0] == "render"
+            and not any(str(argument).startswith("-O") for argument in arguments)
+        ):
             arguments += (self.level,)
-        done = subprocess.run([RTSLC, *map(str, arguments)], cwd=self.folder, input=stdin, stdout=stdout,
-                              stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=obey_permissions if unprivileged else prepare)
+        done = subprocess.run(
+            [RTSLC, *map(str, arguments)],
+            cwd=self.folder,
+            input=stdin,
+            stdout=stdout,
+            stderr=subprocess.PIPE,
+            timeout=SECONDS,
+            preexec_fn=obey_permissions if unprivileged else prepare,
+        )
         error = done.stderr.decode("utf-8", "replace")
         if status is not None:
-            self.assertEqual(done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}")
+            self.assertEqual(
+                done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}"
+            )
         return (done.stdout or b"").decode("utf-8", "replace"), error
 
     def render_scene(self, scene, *options):
@@ -88,8 +109,14 @@ class Case(unittest.TestCase):
 
     def diagnose(self, *arguments, stdin=None, unprivileged=False, prepare=None):
         """The messages of a run that ends with errors, as data."""
-        _, error = self.run_rtslc(*arguments, "--diagnostics=json", status=DIAGNOSED, stdin=stdin,
-                                  unprivileged=unprivileged, prepare=prepare)
+        _, error = self.run_rtslc(
+            *arguments,
+            "--diagnostics=json",
+            status=DIAGNOSED,
+            stdin=stdin,
+            unprivileged=unprivileged,
+            prepare=prepare,
+        )
         return json.loads(error)["diagnostics"]
 
     def assert_message(self, diagnostics, code, containing="", line=None, column=None, file=None):
@@ -106,19 +133,33 @@ class Case(unittest.TestCase):
 
     def assert_same_bits(self, first, second, message=None):
         """Two files that rtslc wrote: a picture of the same bits is the same file."""
-        self.assertEqual((self.folder / first).read_bytes(), (self.folder / second).read_bytes(), message)
+        self.assertEqual(
+            (self.folder / first).read_bytes(), (self.folder / second).read_bytes(), message
+        )
 
     def write_exr(self, name, width, height, value):
         """A picture of one value everywhere: R, G and B of 32 bits, not compressed."""
-        def attribute(name, kind, data):
-            return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
 
-        channels = b"".join(c + b"\0" + struct.pack("<iBxxxii", 2, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
+        def attribute(name, kind, data):
+            return (
+                name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
+            )
+
+        channels = (
+            b"".join(c + b"\0" + struct.pack("<iBxxxii", 2, 0, 1, 1) for c in (b"B", b"G", b"R"))
+            + b"\0"
+        )
         window = struct.pack("<4i", 0, 0, width - 1, height - 1)
         header = struct.pack("<ii", 20000630, 2)
-        header += attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\0")
-        header += attribute("dataWindow", "box2i", window) + attribute("displayWindow", "box2i", window)
-        header += attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+        header += attribute("channels", "chlist", channels) + attribute(
+            "compression", "compression", b"\0"
+        )
+        header += attribute("dataWindow", "box2i", window) + attribute(
+            "displayWindow", "box2i", window
+        )
+        header += attribute("lineOrder", "lineOrder", b"\0") + attribute(
+            "pixelAspectRatio", "float", struct.pack("<f", 1)
+        )
         header += attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0))
         header += attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
         line = struct.pack("<f", value) * (3 * width)

@@ -22,7 +22,12 @@ class Oracle:
             while max(self.sizes[-1]) > 1:
                 before = self.sizes[-1]
                 after = tuple(max(n // 2, 1) for n in before)
-                self.levels.append({at: round_level(self.mean(self.levels[-1], before, after, at)) for at in self.all(after)})
+                self.levels.append(
+                    {
+                        at: round_level(self.mean(self.levels[-1], before, after, at))
+                        for at in self.all(after)
+                    }
+                )
                 self.sizes.append(after)
 
     @staticmethod
@@ -34,7 +39,13 @@ class Oracle:
         axes = []
         for n, m, i in zip(before, after, at):
             begin, end = i * n / m, (i + 1) * n / m
-            axes.append([(j, min(end, j + 1) - max(begin, j)) for j in range(n) if min(end, j + 1) > max(begin, j)])
+            axes.append(
+                [
+                    (j, min(end, j + 1) - max(begin, j))
+                    for j in range(n)
+                    if min(end, j + 1) > max(begin, j)
+                ]
+            )
         total = [0.0] * 4
         weights = 0.0
         for x, a in axes[0]:
@@ -74,7 +85,9 @@ class Oracle:
 
     def sample(self, p, lod=0.0):
         if self.filter == "nearest":
-            return self.texel(0, [math.floor(c * n) for c, n in zip(p, self.sizes[0])] + [0] * (3 - len(p)))
+            return self.texel(
+                0, [math.floor(c * n) for c, n in zip(p, self.sizes[0])] + [0] * (3 - len(p))
+            )
         lod = min(max(lod, 0.0), len(self.levels) - 1)
         finer = int(lod)
         value = self.linear(p, finer)
@@ -89,7 +102,13 @@ class Oracle:
         longer, shorter = max(sides), min(sides)
         if self.filter == "trilinear":
             return self.sample(p, math.log2(longer) if longer else 0.0)
-        count = min(math.ceil(longer / shorter), self.anisotropy) if longer > shorter > 0 else self.anisotropy if longer > 0 else 1
+        count = (
+            min(math.ceil(longer / shorter), self.anisotropy)
+            if longer > shorter > 0
+            else self.anisotropy
+            if longer > 0
+            else 1
+        )
         along = dx if sides[0] >= sides[1] else dy
         total = [0.0] * 4
         for i in range(count):
@@ -99,5 +118,7 @@ class Oracle:
 
     def load(self, at, level=0):
         level = min(level, len(self.levels) - 1)
-        inside = [min(max(i, 0), n - 1) for i, n in zip(list(at) + [0] * (3 - len(at)), self.sizes[level])]
+        inside = [
+            min(max(i, 0), n - 1) for i, n in zip(list(at) + [0] * (3 - len(at)), self.sizes[level])
+        ]
         return self.levels[level][tuple(inside)]

@@ -19,8 +19,14 @@ from programs import built_with
 
 # Compiler, options, and which programs: each n-th. Each program meets each compiler, and code with
 # and without optimisation; of the other pairs it is some.
-SAMPLES = [("g++", "-O2", 1), ("clang++-22", "-O0", 1), ("g++", "-O0", 8), ("clang++-22", "-O2", 8),
-           ("g++", "-O3 -march=native", 8), ("clang++-22", "-O3 -march=native", 8)]
+SAMPLES = [
+    ("g++", "-O2", 1),
+    ("clang++-22", "-O0", 1),
+    ("g++", "-O0", 8),
+    ("clang++-22", "-O2", 8),
+    ("g++", "-O3 -march=native", 8),
+    ("clang++-22", "-O3 -march=native", 8),
+]
 ALL = [(compiler, flags, 1) for compiler, flags, _ in SAMPLES]
 
 HARNESS = """
@@ -92,14 +98,17 @@ def read(record):
         words = line.split(" ")
         if words[0] == "source":
             size = int(words[1])
-            source = record.encode()[len(record[:at].encode()):][:size].decode()
+            source = record.encode()[len(record[:at].encode()) :][:size].decode()
             at += len(source) + 1
             calls = programs.setdefault(source, [])
             call = {}
         else:
             call[words[0], words[1]] = words[2:]
-            isLast = words[0] == "after" and ("before", "int" if words[1] == "float" else words[1]) not in call \
+            isLast = (
+                words[0] == "after"
+                and ("before", "int" if words[1] == "float" else words[1]) not in call
                 or (words[0], words[1]) == ("after", "uint")
+            )
             if isLast:
                 calls.append(call)
                 call = {}
@@ -108,7 +117,9 @@ def read(record):
 
 def table(call, when):
     rows = [call.get((when, kind), ["0"] * 16) for kind in ("float", "int", "uint")]
-    return "{" + ", ".join("{" + ", ".join(f"0x{word}u" for word in row) + "}" for row in rows) + "}"
+    return (
+        "{" + ", ".join("{" + ", ".join(f"0x{word}u" for word in row) + "}" for row in rows) + "}"
+    )
 
 
 def write_program(path, programs, folder):
@@ -117,12 +128,21 @@ def write_program(path, programs, folder):
     for name, calls in programs:
         texts.append((folder / f"{name}.cpp").read_text().replace("#include <rtsl/shader.h>\n", ""))
         for call in calls:
-            checks.append(f'  failures += check("{name}", {name}::run, calls[{len(tables)}][0], calls[{len(tables)}][1]);')
+            checks.append(
+                f'  failures += check("{name}", {name}::run, calls[{len(tables)}][0], calls[{len(tables)}][1]);'
+            )
             tables.append("{" + table(call, "before") + ", " + table(call, "after") + "}")
-    path.write_text("#include <rtsl/shader.h>\n" + "\n".join(texts) + HARNESS
-                    + f"static const Words calls[{len(tables)}][2] = {{\n" + ",\n".join(tables) + "};\n"
-                    + "int main() {\n  int failures = 0;\n" + "\n".join(checks)
-                    + '\n  std::printf("%d failures\\n", failures);\n  return failures != 0;\n}\n')
+    path.write_text(
+        "#include <rtsl/shader.h>\n"
+        + "\n".join(texts)
+        + HARNESS
+        + f"static const Words calls[{len(tables)}][2] = {{\n"
+        + ",\n".join(tables)
+        + "};\n"
+        + "int main() {\n  int failures = 0;\n"
+        + "\n".join(checks)
+        + '\n  std::printf("%d failures\\n", failures);\n  return failures != 0;\n}\n'
+    )
     return len(tables)
 
 
@@ -132,15 +152,22 @@ def main():
     folder = pathlib.Path(tempfile.mkdtemp(prefix="rtsl-cpp-"))
     try:
         record = folder / "record"
-        subprocess.run([lower, "--gtest_brief=1", "--gtest_filter=-Examples.*"], env=dict(os.environ, RTSL_RECORD=str(record)),
-                       check=True, stdout=subprocess.DEVNULL)
+        subprocess.run(
+            [lower, "--gtest_brief=1", "--gtest_filter=-Examples.*"],
+            env=dict(os.environ, RTSL_RECORD=str(record)),
+            check=True,
+            stdout=subprocess.DEVNULL,
+        )
         recorded = read(record.read_text())
         if len(recorded) < 100:
             sys.exit(f"only {len(recorded)} programs were recorded")
         programs, sources = [], {}
         for i, (text, calls) in enumerate(recorded):
-            done = subprocess.run([rtslc, "compile", "-", "--emit=cpp", "-o", str(folder / f"t{i}.cpp")],
-                                  input=text.encode(), capture_output=True)
+            done = subprocess.run(
+                [rtslc, "compile", "-", "--emit=cpp", "-o", str(folder / f"t{i}.cpp")],
+                input=text.encode(),
+                capture_output=True,
+            )
             if done.returncode:
                 sys.exit(f"rtslc failed on\n{text}\n{done.stderr.decode()}")
             programs.append((f"t{i}", calls))
@@ -152,13 +179,28 @@ def main():
             chosen = programs[::part]
             whole, program = folder / "all.cpp", folder / "all"
             count = write_program(whole, chosen, folder)
-            built = subprocess.run([compiler, str(whole), "-o", str(program), *flags.split(), *built_with(source, library)],
-                                   capture_output=True, text=True)
+            built = subprocess.run(
+                [
+                    compiler,
+                    str(whole),
+                    "-o",
+                    str(program),
+                    *flags.split(),
+                    *built_with(source, library),
+                ],
+                capture_output=True,
+                text=True,
+            )
             if built.returncode:
-                shutil.copy(whole, "/tmp/conformance-failed.cpp") if os.environ.get("KEEP") else None
+                shutil.copy(whole, "/tmp/conformance-failed.cpp") if os.environ.get(
+                    "KEEP"
+                ) else None
                 sys.exit(f"{compiler} {flags} refuses the C++:\n{built.stderr[:6000]}")
             ran = subprocess.run([str(program)], capture_output=True, text=True)
-            print(f"{compiler} {flags}: {len(chosen)} programs, {count} calls, {ran.stdout.strip()[-2000:]}", flush=True)
+            print(
+                f"{compiler} {flags}: {len(chosen)} programs, {count} calls, {ran.stdout.strip()[-2000:]}",
+                flush=True,
+            )
             if ran.returncode:
                 for line in ran.stdout.splitlines()[:3]:
                     name = line.split(":")[0]

@@ -36,9 +36,33 @@ with tempfile.TemporaryDirectory(prefix="rtsl-fast-") as name:
         # Each in one program with the other, whose functions come first: without optimisation all
         # are called by name.
         for mode, other, flags in (("strict", "fast", "-O0"), ("fast", "strict", "-O2")):
-            run(rtslc, "compile", *shaders, "--emit=cpp", f"--fp={mode}", "-o", folder / "shaders.cpp")
-            run(rtslc, "compile", *shaders, "--emit=cpp", f"--fp={other}", "-o", folder / "other.cpp")
-            run(compiler, folder / "other.cpp", folder / "shaders.cpp", "-o", folder / "shaders.so", flags, *FLAGS)
+            run(
+                rtslc,
+                "compile",
+                *shaders,
+                "--emit=cpp",
+                f"--fp={mode}",
+                "-o",
+                folder / "shaders.cpp",
+            )
+            run(
+                rtslc,
+                "compile",
+                *shaders,
+                "--emit=cpp",
+                f"--fp={other}",
+                "-o",
+                folder / "other.cpp",
+            )
+            run(
+                compiler,
+                folder / "other.cpp",
+                folder / "shaders.cpp",
+                "-o",
+                folder / "shaders.so",
+                flags,
+                *FLAGS,
+            )
             pictures[mode] = folder / f"{mode}.exr"
             run(render, folder / "shaders.so", folder / "scene.json", pictures[mode])
         same_picture(rtslc, pictures["strict"], folder / "jit.exr")

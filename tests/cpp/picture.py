@@ -16,6 +16,8 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
         run(program, f"{glass}/knot.obj", ours, "96", "4")
         same_picture(rtslc, ours, theirs)
         # Without its mesh there is a message and no picture.
-        done = subprocess.run([program, "nowhere.obj", f"{folder}/none.png"], capture_output=True, text=True)
+        done = subprocess.run(
+            [program, "nowhere.obj", f"{folder}/none.png"], capture_output=True, text=True
+        )
         assert done.returncode == 1 and "nowhere.obj" in done.stderr, done
         assert not pathlib.Path(folder, "none.png").exists()

@@ -8,18 +8,41 @@ import unittest
 from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
 
 RTSL_RUN = os.environ["RTSL_RUN"]
-COMMANDS = ("new", "check", "compile", "explain", "render", "run", "trace", "report", "pack", "compare")
+COMMANDS = (
+    "new",
+    "check",
+    "compile",
+    "explain",
+    "render",
+    "run",
+    "trace",
+    "report",
+    "pack",
+    "compare",
+)
 # What must be given beside the option that is tried.
-REQUIRED = {"new": ["material", "X"], "render": ["x.json", "-o", "x.png"], "run": ["x.json"], "trace": ["x.obj", "--rays", "x.npy"], "report": ["x.json", "--out", "x"],
-            "pack": ["x.json", "-o", "x"],
-            "compare": ["x.png", "x.png"]}
+REQUIRED = {
+    "new": ["material", "X"],
+    "render": ["x.json", "-o", "x.png"],
+    "run": ["x.json"],
+    "trace": ["x.obj", "--rays", "x.npy"],
+    "report": ["x.json", "--out", "x"],
+    "pack": ["x.json", "-o", "x"],
+    "compare": ["x.png", "x.png"],
+}
 
 
 class Arguments(Case):
     def usage(self, program, *arguments):
         """Standard error of a run that ends with the status of wrong arguments."""
-        done = subprocess.run([program, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, timeout=SECONDS)
+        done = subprocess.run(
+            [program, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            timeout=SECONDS,
+        )
         error = done.stderr.decode("utf-8")  # and nothing but text
         self.assertEqual(done.returncode, USAGE, (arguments, error))
         self.assertTrue(all(c.isprintable() or c == "\n" for c in error), error)
@@ -30,9 +53,13 @@ class Arguments(Case):
         description)."""
         for command in (*COMMANDS, None):
             program, first = (RTSLC, [command]) if command else (RTSL_RUN, [])
-            text = subprocess.run([program, *first, "--help"], stdout=subprocess.PIPE, text=True, check=True).stdout
+            text = subprocess.run(
+                [program, *first, "--help"], stdout=subprocess.PIPE, text=True, check=True
+            ).stdout
             text = re.sub(r"\n {20,}", " ", text)
-            for names, values, description in re.findall(r"^  (-\S+) (\S+)(?: \.\.\.)?(?: +(.*))?$", text, re.M):
+            for names, values, description in re.findall(
+                r"^  (-\S+) (\S+)(?: \.\.\.)?(?: +(.*))?$", text, re.M
+            ):
                 yield program, first, names.split(",")[-1], values, description
 
     def test_every_option_of_few_words_lists_them(self):
@@ -42,14 +69,32 @@ class Arguments(Case):
             if len(words) < 2 or option == "--color":
                 continue
             with self.subTest(command=first, option=option):
-                extra = REQUIRED.get(first[0] if first else None, ["x.rtslpkg", "-o", "x.png"] if not first else ["x.rtsl"])
+                extra = REQUIRED.get(
+                    first[0] if first else None,
+                    ["x.rtslpkg", "-o", "x.png"] if not first else ["x.rtsl"],
+                )
                 error = self.usage(program, *first, *extra, f"{option}=nonsense")
                 self.assertIn("`nonsense`", error)
                 for word in words:
                     self.assertRegex(error, rf"\b{re.escape(word)}\b")
                 tried.add(option)
-        self.assertLessEqual({"--emit", "--metric", "--fp", "--trace", "--save", "--gpu-arch", "--diagnostics", "--ansi", "--format",
-                              "--traversal", "--target", "--keep"}, tried)
+        self.assertLessEqual(
+            {
+                "--emit",
+                "--metric",
+                "--fp",
+                "--trace",
+                "--save",
+                "--gpu-arch",
+                "--diagnostics",
+                "--ansi",
+                "--format",
+                "--traversal",
+                "--target",
+                "--keep",
+            },
+            tried,
+        )
 
     def test_every_number_with_a_range_says_it(self):
         tried = set()
@@ -57,15 +102,30 @@ class Arguments(Case):
             found = re.search(r"\((\d+) to (\d+)\)", description or "")
             if not found:
                 continue
-            extra = REQUIRED.get(first[0] if first else None, ["x.rtslpkg", "-o", "x.png"] if not first else ["x.rtsl"])
+            extra = REQUIRED.get(
+                first[0] if first else None,
+                ["x.rtslpkg", "-o", "x.png"] if not first else ["x.rtsl"],
+            )
             low, high = map(int, found.groups())
             for wrong in (str(low - 1), str(high + 1), "1e400", "nan", "", "3x", "0x3", "+1"):
                 with self.subTest(command=first, option=option, value=wrong):
                     error = self.usage(program, *first, *extra, option, wrong)
                     self.assertIn(f"`{wrong}` is not a whole number from {low} to {high}", error)
             tried.add(option)
-        self.assertLessEqual({"--spp", "--depth", "--seed", "--threads", "--runs", "--pairs", "-O", "--error-limit", "--registers"},
-                             tried)
+        self.assertLessEqual(
+            {
+                "--spp",
+                "--depth",
+                "--seed",
+                "--threads",
+                "--runs",
+                "--pairs",
+                "-O",
+                "--error-limit",
+                "--registers",
+            },
+            tried,
+        )
 
     def test_thresholds(self):
         for wrong in ("-1", "nan", "-inf", "many", "", "1x"):
@@ -75,16 +135,27 @@ class Arguments(Case):
     def test_numbers_that_are_too_large_for_a_scene(self):
         scene = self.glass_scene()
         for value, place in (("1e400", "1e400"), ("[1, 1e999]", "1e999"), ("-1e400", "-1e400")):
-            (message,) = self.diagnose("render", "scene.json", "-o", "a.png", "--set", f"render.spp={value}")
+            (message,) = self.diagnose(
+                "render", "scene.json", "-o", "a.png", "--set", f"render.spp={value}"
+            )
             self.assertEqual(message["code"], "E0809")
-            self.assertEqual(message["message"], f"`{place}` is too large: numbers reach to 1.8e+308")
+            self.assertEqual(
+                message["message"], f"`{place}` is too large: numbers reach to 1.8e+308"
+            )
         scene.write_text(scene.read_text().replace('"depth": 8', '"depth": 8e999'))
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.png"), "E0805", "`8e999` is too large")
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "a.png"), "E0805", "`8e999` is too large"
+        )
 
     def test_help_is_a_command(self):
-        for words, same in ((["help"], ["--help"]), *((["help", command], [command, "--help"]) for command in COMMANDS)):
+        for words, same in (
+            (["help"], ["--help"]),
+            *((["help", command], [command, "--help"]) for command in COMMANDS),
+        ):
             self.assertEqual(self.run_rtslc(*words), self.run_rtslc(*same))
-        self.assertIn("unknown command `rendr`; did you mean `render`?", self.usage(RTSLC, "help", "rendr"))
+        self.assertIn(
+            "unknown command `rendr`; did you mean `render`?", self.usage(RTSLC, "help", "rendr")
+        )
         out, _ = self.run_rtslc("--help")
         for command in (*COMMANDS, "help"):
             self.assertRegex(out, rf"\n  {command} +\S")
@@ -97,14 +168,20 @@ class Arguments(Case):
     def test_files_in_place_of_commands(self):
         self.glass_scene()
         self.write("grey.rtsl", "float f() { return 1.0; }")
-        self.assertIn("did you mean `rtslc render scene.json -o picture.png`?", self.usage(RTSLC, "scene.json"))
+        self.assertIn(
+            "did you mean `rtslc render scene.json -o picture.png`?",
+            self.usage(RTSLC, "scene.json"),
+        )
         self.assertIn("did you mean `rtslc check grey.rtsl`?", self.usage(RTSLC, "grey.rtsl"))
 
     def test_shaders_in_place_of_a_scene(self):
         self.write("grey.rtsl", "float f() { return 1.0; }")
         (message,) = self.diagnose("pack", "grey.rtsl", "-o", "a.png")
         self.assertEqual(message["code"], "E0865")
-        self.assertEqual(message["message"], "`grey.rtsl` holds shaders, and `rtslc pack` takes a scene, which imports them")
+        self.assertEqual(
+            message["message"],
+            "`grey.rtsl` holds shaders, and `rtslc pack` takes a scene, which imports them",
+        )
         self.assertIn('"import": ["grey.rtsl"]', message["notes"][0])
         _, error = self.run_rtslc("report", "grey.rtsl", "--out", "out", status=DIAGNOSED)
         self.assertIn("E0865", error)
@@ -112,10 +189,16 @@ class Arguments(Case):
     def test_scenes_are_checked(self):
         scene = self.glass_scene()
         self.assertEqual(self.run_rtslc("check", "scene.json"), ("", ""))
-        self.assertEqual(self.run_rtslc("check", "scene.json", *sorted(self.folder.glob("*.rtsl"))), ("", ""))
+        self.assertEqual(
+            self.run_rtslc("check", "scene.json", *sorted(self.folder.glob("*.rtsl"))), ("", "")
+        )
         good = scene.read_text()
-        for old, new, code in (('"rtsl": 1', '"rtsl": "one"', "E0804"), ('"radius"', '"radios"', None),
-                               ('"Glass"', '"Glas"', "E0810"), (".obj", ".objekt", "E0900")):
+        for old, new, code in (
+            ('"rtsl": 1', '"rtsl": "one"', "E0804"),
+            ('"radius"', '"radios"', None),
+            ('"Glass"', '"Glas"', "E0810"),
+            (".obj", ".objekt", "E0900"),
+        ):
             scene.write_text(good.replace(old, new, 1))
             messages = self.diagnose("check", "scene.json")
             self.assertTrue(messages, new)

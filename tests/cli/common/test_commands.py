@@ -38,15 +38,23 @@ class Commands(Case):
 
     def test_compile_shows_every_stage(self):
         self.write("grey.rtsl", MATERIAL)
-        marks = {"ast": "Grey", "typed-ast": "Grey", "ir": "func.func", "ssa": "func.func", "llvm": "define",
-                 "ptx": "Grey_shade"}
+        marks = {
+            "ast": "Grey",
+            "typed-ast": "Grey",
+            "ir": "func.func",
+            "ssa": "func.func",
+            "llvm": "define",
+            "ptx": "Grey_shade",
+        }
         for stage, mark in marks.items():
             with self.subTest(stage=stage):
                 out, _ = self.run_rtslc("compile", "grey.rtsl", f"--emit={stage}")
                 self.assertIn(mark, out)
                 self.run_rtslc("compile", "grey.rtsl", f"--emit={stage}", "-o", "out")
                 self.assertEqual((self.folder / "out").read_text(), out)
-                piped, _ = self.run_rtslc("compile", "-", f"--emit={stage}", "-o", "-", stdin=MATERIAL.encode())
+                piped, _ = self.run_rtslc(
+                    "compile", "-", f"--emit={stage}", "-o", "-", stdin=MATERIAL.encode()
+                )
                 self.assertEqual(piped.replace("<stdin>", "grey.rtsl"), out)
 
     def test_output_is_the_same_on_every_run(self):
@@ -58,7 +66,9 @@ class Commands(Case):
 
     def test_render_is_silent_when_piped_and_reports_as_json(self):
         self.glass_scene()
-        out, error = self.run_rtslc("render", "scene.json", "-o", "a.png", "--size", "32x18", "--spp", "2", "--json")
+        out, error = self.run_rtslc(
+            "render", "scene.json", "-o", "a.png", "--size", "32x18", "--spp", "2", "--json"
+        )
         figures = json.loads(out)
         self.assertEqual(figures["samples"], 32 * 18 * 2)
         self.assertNotIn("\r", error)
@@ -67,8 +77,18 @@ class Commands(Case):
     def test_a_mesh_from_anywhere(self):
         path = self.write("triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.glass_scene()
-        self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "32x18", "--spp", "1", "--set",
-                       f"objects.3.mesh={path}")
+        self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "--size",
+            "32x18",
+            "--spp",
+            "1",
+            "--set",
+            f"objects.3.mesh={path}",
+        )
 
     def test_explain_says_what_each_trace_saves(self):
         glass = EXAMPLES / "glass" / "Glass.rtsl"
@@ -82,39 +102,63 @@ class Commands(Case):
     def test_warnings_are_turned_on_and_off(self):
         self.write("odd.rtsl", MATERIAL.replace("  rt_", "  float x = 1.0;\n  rt_"))
         _, error = self.run_rtslc("check", "odd.rtsl")
-        self.assertIn("odd.rtsl:4:9: warning[W2200]: `x` is never used [-Wunused-variable]\n", error)
+        self.assertIn(
+            "odd.rtsl:4:9: warning[W2200]: `x` is never used [-Wunused-variable]\n", error
+        )
         self.assertEqual(self.run_rtslc("check", "odd.rtsl", "-Wno-unused-variable"), ("", ""))
         self.assertEqual(self.run_rtslc("check", "odd.rtsl", "-Wno-all", "-Wperf"), ("", ""))
-        for arguments in (["-Werror"], ["-Werror=unused-variable"], ["-Wno-all", "-Werror=unused-variable"]):
+        for arguments in (
+            ["-Werror"],
+            ["-Werror=unused-variable"],
+            ["-Wno-all", "-Werror=unused-variable"],
+        ):
             _, error = self.run_rtslc("check", "odd.rtsl", *arguments, status=1)
             self.assertIn("error[W2200]: `x` is never used [-Werror=unused-variable]\n", error)
         self.run_rtslc("check", "odd.rtsl", "-Werror", "-Wno-error=unused-variable")
         self.run_rtslc("compile", "odd.rtsl", "--emit=ir", "-Werror", status=1)
         self.run_rtslc("explain", "--states", "odd.rtsl", "-Werror", status=1)
         _, error = self.run_rtslc("check", "odd.rtsl", "-Wunused-varable", status=2)
-        self.assertIn("there is no warning `unused-varable`; did you mean `unused-variable`?", error)
+        self.assertIn(
+            "there is no warning `unused-varable`; did you mean `unused-variable`?", error
+        )
 
     def test_warnings_of_a_scene(self):
         self.glass_scene()
-        render = ("render", "scene.json", "-o", "picture.png", "--size", "8x8", "--spp", "1", "--set",
-                  "objects.1.primitive.radius=0")
+        render = (
+            "render",
+            "scene.json",
+            "-o",
+            "picture.png",
+            "--size",
+            "8x8",
+            "--spp",
+            "1",
+            "--set",
+            "objects.1.primitive.radius=0",
+        )
         _, error = self.run_rtslc(*render)
         self.assertIn("[-Wscene]", error)
         self.run_rtslc(*render, "-Werror=scene", status=1)
 
     def test_much_live_state_is_warned_of(self):
-        text = ("class Wide : rt_Material;\n\nvoid shade() {\n  float w[32];\n"
-                "  for (int i = 0; i < 32; ++i)\n    w[i] = rand();\n  vec3 p = rt_HitPoint * rand();\n"
-                "  vec4 q = vec4(rand(), rand(), rand(), rand());\n  vec4 r = q.wzyx * rand();\n"
-                "  color c = trace(p, rt_RayDirection);\n  float s = p.x + p.y + p.z;\n"
-                "  for (int i = 0; i < 32; ++i)\n    s += w[i];\n"
-                "  rt_SampleColor = c * (s + dot(q, r) * q.x * r.y);\n}\n")
+        text = (
+            "class Wide : rt_Material;\n\nvoid shade() {\n  float w[32];\n"
+            "  for (int i = 0; i < 32; ++i)\n    w[i] = rand();\n  vec3 p = rt_HitPoint * rand();\n"
+            "  vec4 q = vec4(rand(), rand(), rand(), rand());\n  vec4 r = q.wzyx * rand();\n"
+            "  color c = trace(p, rt_RayDirection);\n  float s = p.x + p.y + p.z;\n"
+            "  for (int i = 0; i < 32; ++i)\n    s += w[i];\n"
+            "  rt_SampleColor = c * (s + dot(q, r) * q.x * r.y);\n}\n"
+        )
         self.write("wide.rtsl", text)
         _, error = self.run_rtslc("check", "wide.rtsl", "-Wlive-state", "--diagnostics=json")
         (message,) = json.loads(error)["diagnostics"]
-        self.assertEqual((message["code"], message["warning"], message["range"]["begin"]["line"]),
-                         ("W2901", "live-state", 10))
-        self.assertRegex(message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` takes the most: 128 bytes$")
+        self.assertEqual(
+            (message["code"], message["warning"], message["range"]["begin"]["line"]),
+            ("W2901", "live-state", 10),
+        )
+        self.assertRegex(
+            message["message"], "^1[0-9][0-9] bytes .*more than 128; `w` takes the most: 128 bytes$"
+        )
         self.write("narrow.rtsl", text.replace("32", "12"))
         self.assertEqual(self.run_rtslc("check", "narrow.rtsl", "-Wlive-state"), ("", ""))
         _, error = self.run_rtslc("check", "narrow.rtsl", "-Wlive-state=64")
@@ -125,18 +169,26 @@ class Commands(Case):
 
     def test_live_state_without_a_name_is_named_by_its_line(self):
         quotients = "rand() / (" * 34
-        self.write("sums.rtsl", "class Sums : rt_Material;\n\nvoid shade() {\n"
-                   f"  float s = {quotients}luminance(trace(rt_HitPoint, rt_RayDirection)){')' * 34};\n"
-                   "  rt_SampleColor = color(s);\n}\n")
+        self.write(
+            "sums.rtsl",
+            "class Sums : rt_Material;\n\nvoid shade() {\n"
+            f"  float s = {quotients}luminance(trace(rt_HitPoint, rt_RayDirection)){')' * 34};\n"
+            "  rt_SampleColor = color(s);\n}\n",
+        )
         _, error = self.run_rtslc("check", "sums.rtsl", "-Wlive-state")
-        self.assertRegex(error, "bytes are live across this `trace`, more than 128; the value computed in line 4 takes the most: 4 bytes")
+        self.assertRegex(
+            error,
+            "bytes are live across this `trace`, more than 128; the value computed in line 4 takes the most: 4 bytes",
+        )
         self.assertRegex(error, r"also saved: the value computed in line 4 \(4\), ")
         self.assertNotIn("rand.2", error)
 
     def test_documented_warnings_are_those_of_the_compiler(self):
         out, _ = self.run_rtslc("check", "-Whelp")
-        listed = [(name, code, "perf" if rest else "on") for name, code, rest in
-                  re.findall(r"^(\S+) +(W\d+)  (?:on|(with -Wperf))$", out, re.M)]
+        listed = [
+            (name, code, "perf" if rest else "on")
+            for name, code, rest in re.findall(r"^(\S+) +(W\d+)  (?:on|(with -Wperf))$", out, re.M)
+        ]
         page = (EXAMPLES.parent / "docs" / "warnings.md").read_text()
         documented = re.findall(r"^\| `([a-z-]+)` \| (W\d+) \| (on|perf) \|", page, re.M)
         self.assertEqual(len(listed), out.count("\n"))
@@ -145,7 +197,18 @@ class Commands(Case):
     def test_compare(self):
         self.glass_scene()
         for seed in "12":
-            self.run_rtslc("render", "scene.json", "-o", f"{seed}.exr", "--size", "32x18", "--spp", "1", "--seed", seed)
+            self.run_rtslc(
+                "render",
+                "scene.json",
+                "-o",
+                f"{seed}.exr",
+                "--size",
+                "32x18",
+                "--spp",
+                "1",
+                "--seed",
+                seed,
+            )
         self.run_rtslc("compare", "1.exr", "1.exr")
         self.run_rtslc("compare", "1.exr", "2.exr", status=1)
         self.run_rtslc("compare", "1.exr", "2.exr", "--threshold", "10")

@@ -45,12 +45,29 @@ class Documents(Case):
     def test_limits_of_the_language(self):
         rows = table("docs/language.md", "`limit.all`")
         local = row(rows, "a local variable or parameter")
-        self.assertIn(f"{constant('sema/typed/TypeProperties.h', 'maxLocalBytes') >> 20} MiB (error)", local)
-        self.assertIn(f"{constant('sema/typed/TypeProperties.h', 'largeLocalBytes') >> 10} KiB (warning)", local)
-        self.assertEqual(str(constant("sema/typed/TypeProperties.h", "maxTypeNesting")), row(rows, "structs and arrays"))
-        self.assertEqual(str(constant("sema/check/Program.h", "maxInheritanceDepth")), row(rows, "bases of a class"))
-        self.assertEqual(str(constant("frontend/syntax/TokenCheck.h", "maxBracketDepth")), row(rows, "brackets of any kind"))
-        self.assertEqual(str(constant("frontend/syntax/TokenCheck.h", "maxNesting")), row(rows, "expressions and statements"))
+        self.assertIn(
+            f"{constant('sema/typed/TypeProperties.h', 'maxLocalBytes') >> 20} MiB (error)", local
+        )
+        self.assertIn(
+            f"{constant('sema/typed/TypeProperties.h', 'largeLocalBytes') >> 10} KiB (warning)",
+            local,
+        )
+        self.assertEqual(
+            str(constant("sema/typed/TypeProperties.h", "maxTypeNesting")),
+            row(rows, "structs and arrays"),
+        )
+        self.assertEqual(
+            str(constant("sema/check/Program.h", "maxInheritanceDepth")),
+            row(rows, "bases of a class"),
+        )
+        self.assertEqual(
+            str(constant("frontend/syntax/TokenCheck.h", "maxBracketDepth")),
+            row(rows, "brackets of any kind"),
+        )
+        self.assertEqual(
+            str(constant("frontend/syntax/TokenCheck.h", "maxNesting")),
+            row(rows, "expressions and statements"),
+        )
         words = constant("runtime/device/ray/Abi.h", "RTSL_MAX_ATTRIBUTE_WORDS")
         self.assertEqual(f"{words} words", row(rows, "attributes of a hit"))
 
@@ -60,9 +77,15 @@ class Documents(Case):
         self.assertIn(str(limit("maxMacroWords")), row(rows, "macros of one file"))
         self.assertEqual(str(limit("maxConditionWords")), row(rows, "make in one condition"))
         self.assertEqual(str(limit("maxConditionOperators")), row(rows, "parentheses and signs"))
-        self.assertEqual(f"{limit('maxMacroDepth')}, {limit('maxArgumentDepth')} deep", row(rows, "macros in the bodies"))
-        self.assertEqual(f"{limit('maxIncludeDepth')} deep, {limit('maxIncludes')} for one file, "
-                         f"{limit('maxIncludedBytes') >> 20} MB for one file", row(rows, "files in files"))
+        self.assertEqual(
+            f"{limit('maxMacroDepth')}, {limit('maxArgumentDepth')} deep",
+            row(rows, "macros in the bodies"),
+        )
+        self.assertEqual(
+            f"{limit('maxIncludeDepth')} deep, {limit('maxIncludes')} for one file, "
+            f"{limit('maxIncludedBytes') >> 20} MB for one file",
+            row(rows, "files in files"),
+        )
 
     def accepts(self, body):
         self.write("deep.rtsl", "class Deep : rt_Material { void shade() {\n" + body + "\n} };\n")
@@ -80,10 +103,16 @@ class Documents(Case):
 
     def test_packages(self):
         page = read("docs/packages.md")
-        self.assertIn(f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} |", page)
+        self.assertIn(
+            f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} |",
+            page,
+        )
         depth = constant("runtime/render/RenderOptions.h", "maxRayDepth")
-        self.assertIn(f"| {depth + 1} numbers of 4 bytes: what `rtsl_lane_bytes` says for each depth limit "
-                      f"from 0 to {depth} |", page)
+        self.assertIn(
+            f"| {depth + 1} numbers of 4 bytes: what `rtsl_lane_bytes` says for each depth limit "
+            f"from 0 to {depth} |",
+            page,
+        )
 
     def test_ranges_are_those_of_the_schema(self):
         render = json.loads(read("docs/scene-schema.json"))["properties"]["render"]["properties"]
@@ -94,13 +123,21 @@ class Documents(Case):
             self.assertRegex(text, rf"--{option} N [^()]*\({low} to {high}\)")
             self.run_rtslc("render", scene, "-o", "x.exr", f"--{option}", high + 1, status=USAGE)
             self.run_rtslc("check", scene, "--set", f"render.{option}={high}", status=FINE)
-            _, error = self.run_rtslc("check", scene, "--set", f"render.{option}={high + 1}", status=None)
+            _, error = self.run_rtslc(
+                "check", scene, "--set", f"render.{option}={high + 1}", status=None
+            )
             self.assertIn(str(high), error)
 
     def test_exit_statuses(self):
         self.assertIn("2 wrong arguments", read("README.md"))
         scene = EXAMPLES / "glass" / "scene.json"
-        for wrong in (["--set", "foo"], ["--depth", "-1"], ["--depth", "1000"], ["--depth", "x"], ["--spp", "0"]):
+        for wrong in (
+            ["--set", "foo"],
+            ["--depth", "-1"],
+            ["--depth", "1000"],
+            ["--depth", "x"],
+            ["--spp", "0"],
+        ):
             self.run_rtslc("render", scene, "-o", "x.exr", *wrong, status=USAGE)
         self.run_rtslc("render", scene, "-o", "a.jpg", status=USAGE)
         self.assertEqual(list(self.folder.iterdir()), [])
@@ -119,12 +156,18 @@ class Documents(Case):
     def test_files_that_documents_name_exist(self):
         missing = []
         for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
-            if page.name == "extending.md": # names files that are to be made; tests/extending checks the others
+            if (
+                page.name == "extending.md"
+            ):  # names files that are to be made; tests/extending checks the others
                 continue
             text = page.read_text(encoding="utf-8")
             named = [ROOT / name for name in re.findall(rf"`((?:{FOLDERS})/[\w./-]+)`", text)]
-            named += [page.parent / name for name in re.findall(r"\]\(([\w./-]+)(?:#[\w-]*)?\)", text)]
-            missing += [f"{page.name}: {path.relative_to(ROOT)}" for path in named if not path.exists()]
+            named += [
+                page.parent / name for name in re.findall(r"\]\(([\w./-]+)(?:#[\w-]*)?\)", text)
+            ]
+            missing += [
+                f"{page.name}: {path.relative_to(ROOT)}" for path in named if not path.exists()
+            ]
         self.assertEqual(missing, [])
 
     def test_the_scene_of_the_page_is_one(self):

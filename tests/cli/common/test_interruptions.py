@@ -16,8 +16,8 @@ from harness import RTSLC, SECONDS, Case
 RTSL_RUN = os.environ["RTSL_RUN"]
 SIZE = ("--size", "64x64", "--threads", "2", "--format=exr")
 FOREVER = ("--spp", "100000000")
-ENDLESS = (*SIZE, *FOREVER)              # more samples than any test waits for
-LONG = (*SIZE, "--spp", "20000")         # pixels that are finished one after the other
+ENDLESS = (*SIZE, *FOREVER)  # more samples than any test waits for
+LONG = (*SIZE, "--spp", "20000")  # pixels that are finished one after the other
 
 
 class Interruptions(Case):
@@ -41,8 +41,14 @@ class Interruptions(Case):
         """Standard output and error of a rendering that is stopped some time after it began."""
         # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would
         # be.
-        running = subprocess.Popen([program, *arguments], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                   text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        running = subprocess.Popen(
+            [program, *arguments],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         self.wait_for_handler(running, by)
         time.sleep(after)
         self.assertIsNone(running.poll(), "it was still to run")
@@ -63,15 +69,22 @@ class Interruptions(Case):
         for way in ([], ["--trace=split"], ["--target=host-megakernel"]):
             for by in (signal.SIGINT, signal.SIGTERM):
                 with self.subTest(way=way, by=by):
-                    _, error = self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *ENDLESS, *way, by=by)
-                    self.assertRegex(error, rf"W2867\]: stopped by {by.name} after 0\.0 % of the samples: 0 of 4096 pixels are done")
+                    _, error = self.interrupt(
+                        RTSLC, "render", "scene.json", "-o", "a.exr", *ENDLESS, *way, by=by
+                    )
+                    self.assertRegex(
+                        error,
+                        rf"W2867\]: stopped by {by.name} after 0\.0 % of the samples: 0 of 4096 pixels are done",
+                    )
                     self.assert_partly_black("a.exr")
                     (self.folder / "a.exr").unlink()
 
     def test_json_says_it(self):
         for way in ([], ["--target=host-megakernel"]):
             with self.subTest(way=way):
-                out, _ = self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", "--json", *LONG, *way, after=2)
+                out, _ = self.interrupt(
+                    RTSLC, "render", "scene.json", "-o", "a.exr", "--json", *LONG, *way, after=2
+                )
                 figures = json.loads(out)
                 self.assertEqual(figures["stoppedBy"], "SIGINT")
                 self.assertLess(figures["pixels"], 64 * 64)
@@ -96,7 +109,9 @@ class Interruptions(Case):
     def test_packages(self):
         self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", "-q")
         for by in (signal.SIGINT, signal.SIGTERM):
-            _, error = self.interrupt(RTSL_RUN, "glass.rtslpkg", "--target=host", "-o", "a.exr", *ENDLESS, by=by)
+            _, error = self.interrupt(
+                RTSL_RUN, "glass.rtslpkg", "--target=host", "-o", "a.exr", *ENDLESS, by=by
+            )
             self.assertIn(f"stopped by {by.name} after 0.0 % of the samples", error)
             self.assert_partly_black("a.exr")
             (self.folder / "a.exr").unlink()
@@ -106,10 +121,22 @@ class Interruptions(Case):
         self.run_rtslc("pack", "scene.json", "-o", "glass.rtslpkg", "-q")
         fake = {"LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"], "FAKE_CUDA": "endless"}
         with unittest.mock.patch.dict(os.environ, fake):
-            for command in ((RTSLC, "render", "scene.json", "-Wno-depth-limit"), (RTSL_RUN, "glass.rtslpkg")):
+            for command in (
+                (RTSLC, "render", "scene.json", "-Wno-depth-limit"),
+                (RTSL_RUN, "glass.rtslpkg"),
+            ):
                 for by in (signal.SIGINT, signal.SIGTERM):
                     with self.subTest(command=command[0], by=by):
-                        out, error = self.interrupt(*command, "--target=gpu", "-o", "a.exr", "--json", "--size", "64x64", by=by)
+                        out, error = self.interrupt(
+                            *command,
+                            "--target=gpu",
+                            "-o",
+                            "a.exr",
+                            "--json",
+                            "--size",
+                            "64x64",
+                            by=by,
+                        )
                         figures = json.loads(out)
                         self.assertEqual((figures["pixels"], figures["stoppedBy"]), (2048, by.name))
                         self.assertIn("2048 of 4096 pixels are done", error)
@@ -117,8 +144,18 @@ class Interruptions(Case):
                         (self.folder / "a.exr").unlink()
 
     def test_no_message_without_interruption(self):
-        out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "8x8", "--spp", "1", "--json",
-                                    "-Wno-depth-limit")
+        out, error = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "--size",
+            "8x8",
+            "--spp",
+            "1",
+            "--json",
+            "-Wno-depth-limit",
+        )
         self.assertNotIn("stoppedBy", json.loads(out))
         self.assertEqual((json.loads(out)["pixels"], error), (64, ""))
 

@@ -21,24 +21,41 @@ class Library(Case):
         return sorted(each["name"] for each in json.loads(reflection)["classes"])
 
     def scene(self, **changes):
-        scene = {"rtsl": 1, "import": ["std.primitives", "std.cameras", "Grey.rtsl"],
-                 "camera": {"class": "PerspectiveCamera", "constructor": [[0, 0, 0], [0, 0, -1], [0, 1, 0]]},
-                 "objects": [SPHERE], "render": {"size": [8, 6], "spp": 1}}
+        scene = {
+            "rtsl": 1,
+            "import": ["std.primitives", "std.cameras", "Grey.rtsl"],
+            "camera": {
+                "class": "PerspectiveCamera",
+                "constructor": [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+            },
+            "objects": [SPHERE],
+            "render": {"size": [8, 6], "spp": 1},
+        }
         scene.update(changes)
         self.write("Grey.rtsl", GREY)
         self.write("scene.json", json.dumps(scene))
 
     def test_only_what_is_mentioned_is_read(self):
         self.assertEqual(self.classes("import std.cameras;\n" + GREY), ["Grey"])
-        self.assertEqual(self.classes("import std;\nclass Ball : Sphere { };\n"), ["Ball", "Sphere"])
-        self.assertEqual(self.classes("import std.cameras.PinholeCamera;\n" + GREY), ["Grey", "PinholeCamera"])
+        self.assertEqual(
+            self.classes("import std;\nclass Ball : Sphere { };\n"), ["Ball", "Sphere"]
+        )
+        self.assertEqual(
+            self.classes("import std.cameras.PinholeCamera;\n" + GREY), ["Grey", "PinholeCamera"]
+        )
 
     def test_files_imported_after_the_module_count_too(self):
         self.write("ball.rtsl", "class Ball : Sphere { };\n")
-        self.assertEqual(self.classes('import std.primitives;\nimport "ball.rtsl";\n' + GREY), ["Ball", "Grey", "Sphere"])
+        self.assertEqual(
+            self.classes('import std.primitives;\nimport "ball.rtsl";\n' + GREY),
+            ["Ball", "Grey", "Sphere"],
+        )
 
     def test_a_name_of_the_library_is_free_unless_imported(self):
-        self.assertEqual(self.classes("import std.cameras;\nclass Sphere { int i() { return 1; } };\n"), ["Sphere"])
+        self.assertEqual(
+            self.classes("import std.cameras;\nclass Sphere { int i() { return 1; } };\n"),
+            ["Sphere"],
+        )
         self.write("main.rtsl", "import std.primitives;\nclass Sphere { int i() { return 1; } };\n")
         messages = self.diagnose("check", "main.rtsl")
         self.assertEqual([each["code"] for each in messages], ["E0207"], messages)
@@ -60,17 +77,42 @@ class Library(Case):
             """
         pictures = []
         for text in (own, own + names):
-            self.scene(materials={"noisy": {"class": "Lambert", "albedo": {"class": "Noise", "kind": 1, "low": [0.2, 0.1, 0.9]}}},
-                       objects=[SPHERE, {**SPHERE, "primitive": {"class": "Sphere", "center": [0.5, 0, -2.5]}, "material": "noisy"}],
-                       background=[1, 1, 1], render={"engine": "path", "size": [16, 12], "spp": 4},
-                       **{"import": ["std.primitives", "std.cameras", "std.materials", "std.textures", "Grey.rtsl"]})
+            self.scene(
+                materials={
+                    "noisy": {
+                        "class": "Lambert",
+                        "albedo": {"class": "Noise", "kind": 1, "low": [0.2, 0.1, 0.9]},
+                    }
+                },
+                objects=[
+                    SPHERE,
+                    {
+                        **SPHERE,
+                        "primitive": {"class": "Sphere", "center": [0.5, 0, -2.5]},
+                        "material": "noisy",
+                    },
+                ],
+                background=[1, 1, 1],
+                render={"engine": "path", "size": [16, 12], "spp": 4},
+                **{
+                    "import": [
+                        "std.primitives",
+                        "std.cameras",
+                        "std.materials",
+                        "std.textures",
+                        "Grey.rtsl",
+                    ]
+                },
+            )
             self.write("Grey.rtsl", text)
             pictures.append(f"{len(pictures)}.exr")
             self.run_rtslc("render", "scene.json", "-o", pictures[-1])
         self.assert_same_bits(*pictures)
 
     def test_macros_do_not_apply(self):
-        self.assertEqual(self.classes("import std.primitives.Sphere;\n", "-Dcenter=2", "-Dradius=3"), ["Sphere"])
+        self.assertEqual(
+            self.classes("import std.primitives.Sphere;\n", "-Dcenter=2", "-Dradius=3"), ["Sphere"]
+        )
 
     def test_scenes(self):
         self.scene()
@@ -88,7 +130,9 @@ class Library(Case):
         """A ball with the center of object space, somewhere far away: points, vectors and normals
         of its hits."""
         self.scene()
-        self.write("Spaces.rtsl", """import std.spaces;
+        self.write(
+            "Spaces.rtsl",
+            """import std.spaces;
             class Spaces : rt_Material {
               void shade() {
                 vec3 p = pointToObject(rt_HitPoint);
@@ -96,18 +140,39 @@ class Library(Case):
                       cross(normalize(normalToObject(rt_GeometricNormal)), p),
                       pointToWorld(p + vectorToObject(vec3(0.0, 0.25, 0.0))) - rt_HitPoint, vectorToWorld(vectorToObject(p)) - p);
               }
-            };""")
+            };""",
+        )
         scene = json.loads((self.folder / "scene.json").read_text())
         scene["import"].append("Spaces.rtsl")
-        scene["camera"] = {"class": "PerspectiveCamera", "constructor": [[1000, 2000, 3020], [1000, 2000, 3000], [0, 1, 0]], "fieldOfView": 10}
-        scene["objects"] = [{"primitive": {"class": "Sphere", "center": [0, 0, 0]}, "material": {"class": "Spaces"},
-                             "transform": [{"scale": [1, 3, 2]}, {"rotate": [20, 30, 40]}, {"translate": [1000, 2000, 3000]}]}]
+        scene["camera"] = {
+            "class": "PerspectiveCamera",
+            "constructor": [[1000, 2000, 3020], [1000, 2000, 3000], [0, 1, 0]],
+            "fieldOfView": 10,
+        }
+        scene["objects"] = [
+            {
+                "primitive": {"class": "Sphere", "center": [0, 0, 0]},
+                "material": {"class": "Spaces"},
+                "transform": [
+                    {"scale": [1, 3, 2]},
+                    {"rotate": [20, 30, 40]},
+                    {"translate": [1000, 2000, 3000]},
+                ],
+            }
+        ]
         self.write("scene.json", json.dumps(scene))
         output, _ = self.run_rtslc("render", "scene.json", "-q", "--print", "-o", "x.exr")
         lines = output.splitlines()
         self.assertGreater(len(lines), 10)
         for line in lines:
-            length, *rest = [float(n) for n in line.split(": ", 1)[1].replace("vec3(", "").replace(")", "").replace(",", " ").split()]
+            length, *rest = [
+                float(n)
+                for n in line.split(": ", 1)[1]
+                .replace("vec3(", "")
+                .replace(")", "")
+                .replace(",", " ")
+                .split()
+            ]
             self.assertAlmostEqual(length, 1, delta=0.001)
             for value, wanted in zip(rest, [0] * 10 + [0.25] + [0] * 4):
                 self.assertAlmostEqual(value, wanted, delta=0.001, msg=line)
@@ -115,31 +180,73 @@ class Library(Case):
     def test_an_object_may_be_of_a_class_far_below_that_of_a_member(self):
         # Gold : Conductor : Scatterer; no object is a Conductor, so the program does not have that
         # class.
-        self.scene(**{"import": ["std.primitives", "std.cameras", "std.materials"],
-                      "objects": [{**SPHERE, "material": {"class": "TwoSided", "front": {"class": "Gold"}, "back": {"class": "Gold"}}}]})
+        self.scene(
+            **{
+                "import": ["std.primitives", "std.cameras", "std.materials"],
+                "objects": [
+                    {
+                        **SPHERE,
+                        "material": {
+                            "class": "TwoSided",
+                            "front": {"class": "Gold"},
+                            "back": {"class": "Gold"},
+                        },
+                    }
+                ],
+            }
+        )
         self.run_rtslc("render", "scene.json", "-o", "picture.png")
 
     def test_messages_say_where_the_library_defines_a_name(self):
-        self.write("main.rtsl", """class Painted : rt_Material {
+        self.write(
+            "main.rtsl",
+            """class Painted : rt_Material {
               public Sphere ball;
               void shade() { rt_SampleColor = color(gradientNoise(pointToWorld(rt_HitPoint)) + pi); }
             };
             class Egg : Torus { };
-            class Nowhere : Dodecahedron { };""")
+            class Nowhere : Dodecahedron { };""",
+        )
         messages = self.diagnose("check", "main.rtsl")
         said = {(each["code"], tuple(each["notes"])) for each in messages}
-        for code, module in (("E0201", "std.primitives.Sphere"), ("E0202", "std.noise"), ("E0202", "std.spaces"),
-                             ("E0206", "std.primitives.Torus")):
+        for code, module in (
+            ("E0201", "std.primitives.Sphere"),
+            ("E0202", "std.noise"),
+            ("E0202", "std.spaces"),
+            ("E0206", "std.primitives.Torus"),
+        ):
             self.assertIn((code, (f"it is in the standard library: add `import {module};`",)), said)
-        self.assertTrue(any("the base classes are" in note for each in messages for note in each["notes"]), messages)
+        self.assertTrue(
+            any("the base classes are" in note for each in messages for note in each["notes"]),
+            messages,
+        )
         # With what the messages say, they are gone.
-        imports = "".join(f"import {module};\n" for module in ("std.primitives.Sphere", "std.noise", "std.spaces", "std.primitives.Torus"))
-        self.write("main.rtsl", imports + (self.folder / "main.rtsl").read_text().replace(" + pi", "").replace("Dodecahedron", "Sphere"))
+        imports = "".join(
+            f"import {module};\n"
+            for module in (
+                "std.primitives.Sphere",
+                "std.noise",
+                "std.spaces",
+                "std.primitives.Torus",
+            )
+        )
+        self.write(
+            "main.rtsl",
+            imports
+            + (self.folder / "main.rtsl")
+            .read_text()
+            .replace(" + pi", "")
+            .replace("Dodecahedron", "Sphere"),
+        )
         self.run_rtslc("check", "main.rtsl")
 
     def test_unknown_modules(self):
-        for text, meant in (("std.cameas", "std.cameras"), ("std.cameras.Pinhole", "std.cameras.PinholeCamera"),
-                            ("PinholeCamera", "std.cameras.PinholeCamera"), ("std.primitives.sphere", "std.primitives.Sphere")):
+        for text, meant in (
+            ("std.cameas", "std.cameras"),
+            ("std.cameras.Pinhole", "std.cameras.PinholeCamera"),
+            ("PinholeCamera", "std.cameras.PinholeCamera"),
+            ("std.primitives.sphere", "std.primitives.Sphere"),
+        ):
             self.write("main.rtsl", f"import {text};\n")
             messages = self.diagnose("check", "main.rtsl")
             self.assert_message(messages, "E0126", text, line=1, column=8)
@@ -159,7 +266,10 @@ class Library(Case):
         self.scene(background={"class": "UniformSky"})
         messages = self.diagnose("check", "scene.json")
         self.assert_message(messages, "E0810", "UniformSky")
-        self.assertEqual(messages[0]["notes"], ['it is in the standard library: add "std.backgrounds" to `import`'])
+        self.assertEqual(
+            messages[0]["notes"],
+            ['it is in the standard library: add "std.backgrounds" to `import`'],
+        )
 
 
 if __name__ == "__main__":

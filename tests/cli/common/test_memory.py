@@ -19,8 +19,15 @@ class Memory(Case):
             resource.setrlimit(resource.RLIMIT_AS, (mebibytes * MIB, mebibytes * MIB))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
-        return subprocess.run([program, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, timeout=SECONDS, preexec_fn=limit)
+        return subprocess.run(
+            [program, *arguments],
+            cwd=self.folder,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            timeout=SECONDS,
+            preexec_fn=limit,
+        )
 
     def sweep(self, program, *arguments, limits):
         seen = set()
@@ -42,18 +49,37 @@ class Memory(Case):
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *small)
         # With less, the loader or the start of a library may crash.
         limits = [*range(88, 400, 24), 450, 500, 600, 800, 1200]
-        rows = [(RTSLC, "check", "Glass.rtsl"), (RTSLC, "compile", "Glass.rtsl", "--emit=llvm"), (RTSLC, "check", "scene.json"),
-                (RTSLC, "render", "scene.json", "-o", "b.exr", "-q", *small), (RTSLC, "compare", "a.exr", "a.exr"),
-                (RTSL_RUN, "x.rtslpkg", "-o", "b.exr", "-q", "--target=host", *small)]
+        rows = [
+            (RTSLC, "check", "Glass.rtsl"),
+            (RTSLC, "compile", "Glass.rtsl", "--emit=llvm"),
+            (RTSLC, "check", "scene.json"),
+            (RTSLC, "render", "scene.json", "-o", "b.exr", "-q", *small),
+            (RTSLC, "compare", "a.exr", "a.exr"),
+            (RTSL_RUN, "x.rtslpkg", "-o", "b.exr", "-q", "--target=host", *small),
+        ]
         for program, *arguments in rows:
             self.assertIn(FINE, self.sweep(program, *arguments, limits=limits))
 
     def test_a_large_picture_names_itself(self):
         self.glass_scene()
         for way in ([], ["--target=host-megakernel"]):
-            done = self.run_limited(RTSLC, "render", "scene.json", "-o", "a.exr", "-q", "--size", "65536x65536", *way, mebibytes=2048)
+            done = self.run_limited(
+                RTSLC,
+                "render",
+                "scene.json",
+                "-o",
+                "a.exr",
+                "-q",
+                "--size",
+                "65536x65536",
+                *way,
+                mebibytes=2048,
+            )
             self.assertEqual(done.returncode, DIAGNOSED)
-            self.assertRegex(done.stderr.decode(), r"E1001\]: not enough memory for the picture: 51539607552 bytes")
+            self.assertRegex(
+                done.stderr.decode(),
+                r"E1001\]: not enough memory for the picture: 51539607552 bytes",
+            )
 
 
 if __name__ == "__main__":

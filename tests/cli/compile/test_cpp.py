@@ -25,14 +25,22 @@ class Cpp(Case):
         shader = self.write("a.rtsl", "float f(float x) { return x; }\n")
         (self.folder / "folder").mkdir()
         for stage in ("cpp", "reflection", "ptx"):
-            _, error = self.run_rtslc("compile", shader, f"--emit={stage}", "-o", "folder", status=DIAGNOSED)
+            _, error = self.run_rtslc(
+                "compile", shader, f"--emit={stage}", "-o", "folder", status=DIAGNOSED
+            )
             self.assertIn("cannot write `folder`: Is a directory", error)
-            _, error = self.run_rtslc("compile", shader, f"--emit={stage}", "-o", "no/where", status=DIAGNOSED)
+            _, error = self.run_rtslc(
+                "compile", shader, f"--emit={stage}", "-o", "no/where", status=DIAGNOSED
+            )
             self.assertIn("cannot write `no/where`: No such file or directory", error)
-            _, error = self.run_rtslc("compile", shader, f"--emit={stage}", "-o", "/dev/full", status=DIAGNOSED)
+            _, error = self.run_rtslc(
+                "compile", shader, f"--emit={stage}", "-o", "/dev/full", status=DIAGNOSED
+            )
             self.assertIn("cannot write `/dev/full`: No space left on device", error)
             with open("/dev/full", "wb") as full:
-                _, error = self.run_rtslc("compile", shader, f"--emit={stage}", status=DIAGNOSED, stdout=full)
+                _, error = self.run_rtslc(
+                    "compile", shader, f"--emit={stage}", status=DIAGNOSED, stdout=full
+                )
             self.assertIn("cannot write to standard output: No space left", error)
         self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["a.rtsl", "folder"])
         self.assertEqual(list((self.folder / "folder").iterdir()), [])
@@ -44,8 +52,12 @@ class Cpp(Case):
             script = f"""mount -t tmpfs -o size=8k none full && cd full && echo old > out && head -c 9000 /dev/zero > filler 2>/dev/null
                 {RTSLC} compile {shader} --emit={stage} -MD -o out; echo "status $?"; cat out; ls -A"""
             (self.folder / "full").mkdir(exist_ok=True)
-            done = subprocess.run(["unshare", "--mount", "--map-root-user", "bash", "-c", script], cwd=self.folder,
-                                  capture_output=True, text=True)
+            done = subprocess.run(
+                ["unshare", "--mount", "--map-root-user", "bash", "-c", script],
+                cwd=self.folder,
+                capture_output=True,
+                text=True,
+            )
             if "status" not in done.stdout:
                 self.skipTest("no file system can be mounted: " + done.stderr)
             self.assertIn("No space left on device", done.stderr)
@@ -58,7 +70,15 @@ class Cpp(Case):
         (closed / "out").write_text("old")
         closed.chmod(0o555)
         for stage in ("cpp", "reflection", "ptx"):
-            _, error = self.run_rtslc("compile", shader, f"--emit={stage}", "-o", closed / "out", status=DIAGNOSED, unprivileged=True)
+            _, error = self.run_rtslc(
+                "compile",
+                shader,
+                f"--emit={stage}",
+                "-o",
+                closed / "out",
+                status=DIAGNOSED,
+                unprivileged=True,
+            )
             self.assertIn(f"cannot write `{closed / 'out'}`: Permission denied", error)
         self.assertEqual([p.name for p in closed.iterdir()], ["out"])
         self.assertEqual((closed / "out").read_text(), "old")
@@ -68,50 +88,70 @@ class Cpp(Case):
         out = self.write("a.cpp", "old")
         (self.folder / "folder").mkdir()
         for rule in ("folder", "/dev/full", "no/where.d"):
-            _, error = self.run_rtslc("compile", shader, "--emit=cpp", "-o", out, "-MD", "-MF", rule, status=DIAGNOSED)
+            _, error = self.run_rtslc(
+                "compile", shader, "--emit=cpp", "-o", out, "-MD", "-MF", rule, status=DIAGNOSED
+            )
             self.assertIn(f"cannot write `{rule}`", error)
             self.assertEqual(out.read_text(), "old")
-        self.assertEqual(sorted(p.name for p in self.folder.iterdir()), ["a.cpp", "a.rtsl", "folder"])
+        self.assertEqual(
+            sorted(p.name for p in self.folder.iterdir()), ["a.cpp", "a.rtsl", "folder"]
+        )
 
     def test_what_cpp_cannot_be_made_of(self):
         self.run_rtslc("compile", EXAMPLES / "glass/scene.json", "--emit=cpp", status=USAGE)
 
     def test_methods_that_trace(self):
         split, _ = self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp")
-        self.assertEqual(split, self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=split")[0])
+        self.assertEqual(
+            split,
+            self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=split")[
+                0
+            ],
+        )
         self.assertIn("struct ShadeFrame {", split)
         self.assertIn("// needed by line 40: `vec3 refracted = refract(direction, ...`", split)
         self.assertNotIn("rtsl::trace(", split)
-        recurse, _ = self.run_rtslc("compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=recurse")
+        recurse, _ = self.run_rtslc(
+            "compile", EXAMPLES / "glass/Glass.rtsl", "--emit=cpp", "--trace=recurse"
+        )
         self.assertIn("rtsl::trace(rt, rt.HitPoint, reflected)", recurse)
         self.assertNotIn("Frame", recurse)
 
     def test_arrays_stay_whole_in_states(self):
-        shader = self.write("table.rtsl", """class Table : rt_Material;
+        shader = self.write(
+            "table.rtsl",
+            """class Table : rt_Material;
             void shade() {
               float table[4];
               for (int i = 0; i < 4; ++i) table[i] = float(i);
               color c = trace(rt_HitPoint, rt_ShadingNormal);
               rt_SampleColor = c * table[rt_Depth];
             }
-            """)
+            """,
+        )
         text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
         self.assertIn("rtsl::array<float, 4> table; // needed by line 6: `float table[4]`", text)
         self.assertIn("rt.SampleColor = rtsl::traced(rt) * frame.table[rt.Depth];", text)
         self.assertEqual(text, self.run_rtslc("compile", shader, "--emit=cpp", "--trace=split")[0])
 
     def test_a_member_called_rtsl(self):
-        shader = self.write("names.rtsl", "class A : rt_Texture; public float rtsl = 1.0; void lookup() "
-                            "{ rt_TextureColor = color(rtsl); }")
+        shader = self.write(
+            "names.rtsl",
+            "class A : rt_Texture; public float rtsl = 1.0; void lookup() "
+            "{ rt_TextureColor = color(rtsl); }",
+        )
         text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
         self.assertIn("float rtsl2 = 1.0f;", text)
 
     def test_names_that_cpp_has_taken(self):
-        shader = self.write("my-names.rtsl", """
+        shader = self.write(
+            "my-names.rtsl",
+            """
             struct Ray { float template; vec3 Color; };
             float this_(float signed) { return signed; }
             float delete(float rt, float std) { Ray glm = Ray(rt, vec3(std)); float namespace = glm.template; return this_(namespace); }
-            """)
+            """,
+        )
         text, _ = self.run_rtslc("compile", shader, "--emit=cpp")
         self.assertIn("namespace my_names {", text)
         self.assertIn("inline float delete_(float rt_, float std_) {", text)
@@ -120,8 +160,12 @@ class Cpp(Case):
 
     def test_line_directives_and_dependencies(self):
         self.write("b.rtsl", "float half(float x) { return 0.5 * x; }\n")
-        shader = self.write("a.rtsl", 'import "b.rtsl";\nfloat f(float x) {\n  return half(x);\n}\n')
-        self.run_rtslc("compile", shader, "--emit=cpp", "-o", "a.cpp", "--line-directives", "-MD", "-MF", "a.d")
+        shader = self.write(
+            "a.rtsl", 'import "b.rtsl";\nfloat f(float x) {\n  return half(x);\n}\n'
+        )
+        self.run_rtslc(
+            "compile", shader, "--emit=cpp", "-o", "a.cpp", "--line-directives", "-MD", "-MF", "a.d"
+        )
         self.assertIn(f'#line 3 "{shader}"\n  return half(x);', (self.folder / "a.cpp").read_text())
         rule = (self.folder / "a.d").read_text()
         self.assertTrue(rule.startswith("a.cpp:"), rule)
@@ -136,7 +180,11 @@ class Cpp(Case):
 
     def options(self, command):
         text, _ = self.run_rtslc(command, "--help")
-        found = {option for line in text.splitlines() for option in re.findall(r"(?:^ +|,)(--?[A-Za-z][A-Za-z-]*)", line[:28])}
+        found = {
+            option
+            for line in text.splitlines()
+            for option in re.findall(r"(?:^ +|,)(--?[A-Za-z][A-Za-z-]*)", line[:28])
+        }
         return found - {"-h", "--help"}
 
     def test_the_manual_knows_every_command_and_option(self):
@@ -145,7 +193,15 @@ class Cpp(Case):
             self.assertIn(f".B rtslc {command}\n", manual)
             self.assertIn(f".TP\n.B {command}\n", manual)
             self.assertGreater(len(self.options(command)), 4)
-            self.assertEqual([o for o in self.options(command) if not re.search(re.escape(o) + "(?![a-z-])", manual)], [], command)
+            self.assertEqual(
+                [
+                    o
+                    for o in self.options(command)
+                    if not re.search(re.escape(o) + "(?![a-z-])", manual)
+                ],
+                [],
+                command,
+            )
         text, _ = self.run_rtslc("compile", "--help")
         stages = re.search(r"--emit ([a-z|-]+)", text)[1].split("|")
         said = re.search(r"what to write: (.*)\.", manual)[1].replace(" or ", ", ").split(", ")
@@ -154,20 +210,34 @@ class Cpp(Case):
     def test_the_manual_is_well_formed(self):
         if not shutil.which("man"):
             self.skipTest("man is not installed")
-        done = subprocess.run(["man", "--warnings", "-E", "UTF-8", "-l", ROOT / "tools/man/rtslc.1"], capture_output=True,
-                              text=True, env=dict(os.environ, MANWIDTH="100", PAGER="cat"))
+        done = subprocess.run(
+            ["man", "--warnings", "-E", "UTF-8", "-l", ROOT / "tools/man/rtslc.1"],
+            capture_output=True,
+            text=True,
+            env=dict(os.environ, MANWIDTH="100", PAGER="cat"),
+        )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
     def complete(self, *words):
-        script = (f"source {ROOT}/tools/completion/rtslc.bash; COMP_WORDS=({RTSLC} {' '.join(words)}); "
-                  f'COMP_CWORD={len(words)}; _rtslc; echo "${{COMPREPLY[@]}}"')
-        return set(subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True).stdout.split())
+        script = (
+            f"source {ROOT}/tools/completion/rtslc.bash; COMP_WORDS=({RTSLC} {' '.join(words)}); "
+            f'COMP_CWORD={len(words)}; _rtslc; echo "${{COMPREPLY[@]}}"'
+        )
+        return set(
+            subprocess.run(
+                ["bash", "-c", script], capture_output=True, text=True, check=True
+            ).stdout.split()
+        )
 
     def test_completion_knows_every_command_and_option(self):
-        self.assertEqual(self.complete("''") - {"--help", "--version", "help"}, set(self.commands()))
+        self.assertEqual(
+            self.complete("''") - {"--help", "--version", "help"}, set(self.commands())
+        )
         self.assertLessEqual(set(self.commands()), self.complete("help", "''"))
         for command in self.commands():
-            missing = {option for option in self.options(command) if option.startswith("--")} - self.complete(command, "--")
+            missing = {
+                option for option in self.options(command) if option.startswith("--")
+            } - self.complete(command, "--")
             self.assertEqual(missing, set(), command)
 
     def test_completion_knows_commands_and_stages(self):

@@ -72,7 +72,9 @@ class Fixes(Case):
     def test_common_slips(self):
         path = self.write("grey.rtsl", BEFORE)
         rounds = 0
-        while path.read_text() != AFTER and rounds < 3:  # the types are looked at once the syntax is right
+        while (
+            path.read_text() != AFTER and rounds < 3
+        ):  # the types are looked at once the syntax is right
             _, error = self.fix("grey.rtsl")
             self.assertRegex(error, r"\ngrey.rtsl: \d+ mistakes? fixed\n$")
             rounds += 1
@@ -88,7 +90,9 @@ class Fixes(Case):
         self.assertEqual(before, PLAIN)
 
     def test_standard_input_goes_to_standard_output(self):
-        out, _ = self.run_rtslc("check", "--fix", "-", stdin=b"float3 f() { return float3(1); }\n", status=DIAGNOSED)
+        out, _ = self.run_rtslc(
+            "check", "--fix", "-", stdin=b"float3 f() { return float3(1); }\n", status=DIAGNOSED
+        )
         self.assertEqual(out, "vec3 f() { return vec3(1); }\n")
 
     def test_several_files_and_what_they_import(self):
@@ -102,7 +106,9 @@ class Fixes(Case):
         self.run_rtslc("check", "a.rtsl", "b.rtsl")
 
     def test_more_mistakes_than_are_usually_shown(self):
-        path = self.write("many.rtsl", "".join(f"float3 f{i}() {{ return vec3(1); }}\n" for i in range(50)))
+        path = self.write(
+            "many.rtsl", "".join(f"float3 f{i}() {{ return vec3(1); }}\n" for i in range(50))
+        )
         _, error = self.fix("many.rtsl")
         self.assertIn("many.rtsl: 50 mistakes fixed\n", error)
         self.assertNotIn("float3", path.read_text())
@@ -114,13 +120,17 @@ class Fixes(Case):
         self.assertEqual(path.read_text(), text)
         self.assertNotIn("fixed", error)
         messages = self.diagnose("check", "guess.rtsl")
-        self.assertEqual([fix["sure"] for message in messages for fix in message["fixes"]], [False, False])
+        self.assertEqual(
+            [fix["sure"] for message in messages for fix in message["fixes"]], [False, False]
+        )
 
     def test_overlapping_fixes_wait_for_the_next_run(self):
         path = self.write("nested.rtsl", "int f(float x) { return lerp(x, 1.0, 0.5) + frac(x); }\n")
         for _ in range(3):
             self.fix("nested.rtsl") if self.run_messages("nested.rtsl") else None
-        self.assertEqual(path.read_text(), "int f(float x) { return int(mix(x, 1.0, 0.5) + fract(x)); }\n")
+        self.assertEqual(
+            path.read_text(), "int f(float x) { return int(mix(x, 1.0, 0.5) + fract(x)); }\n"
+        )
 
     def run_messages(self, name):
         done = self.run_rtslc("check", name, "--diagnostics=json", status=None)
@@ -134,7 +144,9 @@ class Fixes(Case):
         os.chmod(locked, 0o555)
         self.addCleanup(os.chmod, locked, 0o755)
         os.chmod(self.folder, 0o777)
-        _, error = self.run_rtslc("check", "--fix", "a.rtsl", "locked/b.rtsl", status=DIAGNOSED, unprivileged=True)
+        _, error = self.run_rtslc(
+            "check", "--fix", "a.rtsl", "locked/b.rtsl", status=DIAGNOSED, unprivileged=True
+        )
         self.assertIn("rtslc: ", error)
         self.assertIn("float3", (self.folder / "a.rtsl").read_text())
         self.assertIn("float3", (locked / "b.rtsl").read_text())

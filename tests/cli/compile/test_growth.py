@@ -7,49 +7,90 @@ import unittest
 from harness import EXAMPLES, Case
 
 SMALL = ["--size", "24x16", "--spp", "1"]
-WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
+WAYS = (
+    ["--trace=recurse", "--traversal=device"],
+    ["--trace=split", "--traversal=device"],
+    ["--target=host-megakernel"],
+)
 
 
 def traces(count):
     """A material with so many traces, each in an `if`: after each of them all later ones can be
     reached."""
-    steps = "".join(f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
-                    f"      d = normalize(d + vec3(0.1, {i % 5}.0, 0.2));\n    }}\n" for i in range(count))
-    return ("class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);\n"
-            "    float w = 0.5;\n    color sum = color(0.1);\n" + steps + "    rt_SampleColor = sum;\n  }\n};\n")
+    steps = "".join(
+        f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
+        f"      d = normalize(d + vec3(0.1, {i % 5}.0, 0.2));\n    }}\n"
+        for i in range(count)
+    )
+    return (
+        "class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);\n"
+        "    float w = 0.5;\n    color sum = color(0.1);\n"
+        + steps
+        + "    rt_SampleColor = sum;\n  }\n};\n"
+    )
 
 
 def classes(count):
-    return "".join(f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
-                   f"    rt_SampleColor = color(gloss * 0.01);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
-                   f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
-                   for i in range(count))
+    return "".join(
+        f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
+        f"    rt_SampleColor = color(gloss * 0.01);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
+        f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+        for i in range(count)
+    )
 
 
 def large_classes(count):
     """So many that their code is compiled in parts."""
-    lines = "".join(f"    x = x * 0.{k % 9 + 1}5 + rt_HitPoint.{'xyz'[k % 3]};\n" for k in range(80))
-    return "".join(f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n    float x = gloss;\n{lines}"
-                   f"    rt_SampleColor = color(abs(x) * 0.1);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
-                   f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
-                   for i in range(count))
+    lines = "".join(
+        f"    x = x * 0.{k % 9 + 1}5 + rt_HitPoint.{'xyz'[k % 3]};\n" for k in range(80)
+    )
+    return "".join(
+        f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n    float x = gloss;\n{lines}"
+        f"    rt_SampleColor = color(abs(x) * 0.1);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
+        f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+        for i in range(count)
+    )
 
 
 class Growth(Case):
     def write_scene(self, names):
         glass = EXAMPLES / "glass"
-        ball = lambda i, name: {"primitive": {"class": "Sphere", "center": [i % 8 - 3.5, i // 8 * 0.8 - 1, 0], "radius": 0.6},
-                                "material": name}
-        self.write("scene.json", json.dumps({
-            "rtsl": 1,
-            "import": [str(glass / "PinholeCamera.rtsl"), str(glass / "Sphere.rtsl"), "large.rtsl"],
-            "camera": {"class": "PinholeCamera",
-                       "constructor": {"eye": [0, 0, 9], "up": [0, 1, 0], "gaze": [0, 0, -1], "uv0": [-1.6, -0.9],
-                                       "uv1": [1.6, 0.9], "d": 2.2}},
-            "materials": {name: {"class": name} for name in names},
-            "objects": [ball(i, name) for i, name in enumerate(names)],
-            "background": [0.2, 0.3, 0.4],
-            "render": {"engine": "classic", "depth": 3}}))
+        ball = lambda i, name: {
+            "primitive": {
+                "class": "Sphere",
+                "center": [i % 8 - 3.5, i // 8 * 0.8 - 1, 0],
+                "radius": 0.6,
+            },
+            "material": name,
+        }
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": [
+                        str(glass / "PinholeCamera.rtsl"),
+                        str(glass / "Sphere.rtsl"),
+                        "large.rtsl",
+                    ],
+                    "camera": {
+                        "class": "PinholeCamera",
+                        "constructor": {
+                            "eye": [0, 0, 9],
+                            "up": [0, 1, 0],
+                            "gaze": [0, 0, -1],
+                            "uv0": [-1.6, -0.9],
+                            "uv1": [1.6, 0.9],
+                            "d": 2.2,
+                        },
+                    },
+                    "materials": {name: {"class": name} for name in names},
+                    "objects": [ball(i, name) for i, name in enumerate(names)],
+                    "background": [0.2, 0.3, 0.4],
+                    "render": {"engine": "classic", "depth": 3},
+                }
+            ),
+        )
 
     def assert_same_pictures(self):
         pictures = []
@@ -102,9 +143,23 @@ class Growth(Case):
         self.write("large.rtsl", large_classes(80))
         self.write_scene([f"M{i}" for i in range(80)])
         self.assert_same_pictures()
-        for number, options in enumerate((["-O3"], ["--threads", "1"], ["--trace=split", "--threads", "1"])):
-            self.run_rtslc("render", "scene.json", "-o", f"again{number}.exr", "-q", *SMALL, "--traversal=device", *options)
-            self.assertEqual((self.folder / f"again{number}.exr").read_bytes(), (self.folder / "0.exr").read_bytes())
+        for number, options in enumerate(
+            (["-O3"], ["--threads", "1"], ["--trace=split", "--threads", "1"])
+        ):
+            self.run_rtslc(
+                "render",
+                "scene.json",
+                "-o",
+                f"again{number}.exr",
+                "-q",
+                *SMALL,
+                "--traversal=device",
+                *options,
+            )
+            self.assertEqual(
+                (self.folder / f"again{number}.exr").read_bytes(),
+                (self.folder / "0.exr").read_bytes(),
+            )
 
 
 if __name__ == "__main__":

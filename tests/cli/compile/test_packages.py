@@ -30,9 +30,20 @@ class Packages(Case):
         """rtsl-run on the package, or on other bytes; `fake` names a way in which the stand-in of
         the driver fails."""
         self.write("x.rtslpkg", self.package() if content is None else content)
-        environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"], "FAKE_CUDA": fake or ""}
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *arguments], cwd=self.folder, timeout=SECONDS,
-                              env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        environment = {
+            **os.environ,
+            "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"],
+            "FAKE_CUDA": fake or "",
+        }
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *arguments],
+            cwd=self.folder,
+            timeout=SECONDS,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.assertEqual(done.returncode, status, done.stderr[:4000])
         if status != FINE:
             self.assertNotEqual(done.stderr, "")
@@ -43,14 +54,18 @@ class Packages(Case):
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "--target=host-megakernel", *SMALL)
         self.run_package("--target=host", *SMALL, "--compare", "a.exr")
         self.run_package("--target=host", *SMALL, "--threads", "1", "--compare", "a.exr")
-        _, error = self.run_package("--target=host", *SMALL, "--seed", "5", "--compare", "a.exr", status=DIAGNOSED)
+        _, error = self.run_package(
+            "--target=host", *SMALL, "--seed", "5", "--compare", "a.exr", status=DIAGNOSED
+        )
         self.assertIn("pixels differ from `a.exr`", error)
 
     def test_every_example_can_be_packed(self):
         scenes = sorted(EXAMPLES.glob("*/scene.json"))
         self.assertGreaterEqual(len(scenes), 2)
         for scene in scenes:
-            self.run_rtslc("render", str(scene), "-o", "a.exr", "-O0", "--target=host-megakernel", *SMALL)
+            self.run_rtslc(
+                "render", str(scene), "-o", "a.exr", "-O0", "--target=host-megakernel", *SMALL
+            )
             self.run_rtslc("pack", str(scene), "-o", "example.rtslpkg", "-O0", "--quiet")
             content = (self.folder / "example.rtslpkg").read_bytes()
             self.run_package("--target=host", *SMALL, "--compare", "a.exr", content=content)
@@ -63,11 +78,15 @@ class Packages(Case):
     def test_it_reports_as_json(self):
         out, error = self.run_package("--target=host", *SMALL, "--json")
         figures = json.loads(out)
-        self.assertEqual((figures["size"], figures["spp"], figures["frameBytes"]), ([32, 18], 2, 28))
+        self.assertEqual(
+            (figures["size"], figures["spp"], figures["frameBytes"]), ([32, 18], 2, 28)
+        )
         self.assertNotIn("rendered in", error)
 
     def test_needs_no_compiler(self):
-        done = subprocess.run([os.environ["READELF"], "-d", RTSL_RUN], stdout=subprocess.PIPE, text=True, check=True)
+        done = subprocess.run(
+            [os.environ["READELF"], "-d", RTSL_RUN], stdout=subprocess.PIPE, text=True, check=True
+        )
         libraries = [line for line in done.stdout.splitlines() if "NEEDED" in line]
         self.assertTrue(libraries)
         for unwanted in ("LLVM", "MLIR", "embree", "assimp", "cuda"):
@@ -77,17 +96,25 @@ class Packages(Case):
     def test_damaged_packages_are_refused(self):
         whole = self.package()
         # Of a small package the unit tests change every byte.
-        for place in list(range(0, 256, 16)) + list(range(256, len(whole), len(whole) // 10)) + [len(whole) - 1]:
+        for place in (
+            list(range(0, 256, 16))
+            + list(range(256, len(whole), len(whole) // 10))
+            + [len(whole) - 1]
+        ):
             damaged = bytearray(whole)
             damaged[place] ^= 0x20
-            _, error = self.run_package("--target=host", *SMALL, content=bytes(damaged), status=DIAGNOSED)
+            _, error = self.run_package(
+                "--target=host", *SMALL, content=bytes(damaged), status=DIAGNOSED
+            )
             self.assertIn("`x.rtslpkg` is", error)
         for length in (0, 7, 63, 64, 1000, len(whole) - 1):
             self.run_package("--target=host", *SMALL, content=whole[:length], status=DIAGNOSED)
         self.assertNotIn("out.exr", self.files())
 
     def test_foreign_and_newer_packages_are_refused(self):
-        _, error = self.run_package("--target=host", content=b"\x7fELF" + bytes(1000), status=DIAGNOSED)
+        _, error = self.run_package(
+            "--target=host", content=b"\x7fELF" + bytes(1000), status=DIAGNOSED
+        )
         self.assertIn("is not a package of rtslc", error)
         newer = bytearray(self.package())
         newer[8] = 200
@@ -107,17 +134,30 @@ class Packages(Case):
         self.run_package("--target=gpu", *SMALL, "--seed", "3", "--compare", "first.exr")
 
     def test_what_is_wrong_with_a_gpu_is_said(self):
-        for fake, text in (("no-device", "there is a CUDA driver, but no device"),
-                           ("old-driver", "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer"),
-                           ("old-ptx", "the CUDA driver is too old for the program's PTX"),
-                           ("other-gpu", "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed"),
-                           ("little-memory", "not enough GPU memory for")):
+        for fake, text in (
+            ("no-device", "there is a CUDA driver, but no device"),
+            (
+                "old-driver",
+                "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
+            ),
+            ("old-ptx", "the CUDA driver is too old for the program's PTX"),
+            (
+                "other-gpu",
+                "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
+            ),
+            ("little-memory", "not enough GPU memory for"),
+        ):
             with self.subTest(fake=fake):
                 _, error = self.run_package("--target=gpu", *SMALL, fake=fake, status=DIAGNOSED)
                 self.assertIn(text, error)
                 self.assertEqual(len(error.splitlines()), 1 if "memory" in text else 2, error)
-        for fake, text in (("fault", "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered"),
-                           ("overflow", "rays of depth 8 overflow the stack that was made for them")):
+        for fake, text in (
+            (
+                "fault",
+                "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered",
+            ),
+            ("overflow", "rays of depth 8 overflow the stack that was made for them"),
+        ):
             with self.subTest(fake=fake):
                 _, error = self.run_package("--target=gpu", *SMALL, fake=fake, status=INTERNAL)
                 self.assertIn(text, error)
@@ -126,8 +166,13 @@ class Packages(Case):
     def test_a_missing_driver_is_said(self):
         (self.folder / "libcuda.so.1").write_text("no driver")
         self.write("x.rtslpkg", self.package())
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "-o", "out.exr", "--target=gpu"], cwd=self.folder,
-                              env={**os.environ, "LD_LIBRARY_PATH": str(self.folder)}, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", "--target=gpu"],
+            cwd=self.folder,
+            env={**os.environ, "LD_LIBRARY_PATH": str(self.folder)},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.assertEqual(done.returncode, DIAGNOSED)
         self.assertIn("there is no CUDA driver", done.stderr)
         self.assertIn("--target=host", done.stderr)

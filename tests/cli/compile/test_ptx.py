@@ -26,7 +26,10 @@ class Ptx(Case):
         for number, scene in enumerate(SCENES):
             shaders = sorted(scene.parent.glob("*.rtsl"))
             later = ("sm_80", "sm_90")[number % 2]
-            for arch, is_whole, is_part in (("sm_75", True, True), (later, number % 4 < 2, number % 4 >= 2)):
+            for arch, is_whole, is_part in (
+                ("sm_75", True, True),
+                (later, number % 4 < 2, number % 4 >= 2),
+            ):
                 with self.subTest(arch=arch, scene=scene.parent.name):
                     if is_whole:
                         self.assemble(arch, scene)
@@ -35,12 +38,30 @@ class Ptx(Case):
 
     def assemble(self, arch, *inputs, relocatable=False):
         self.run_rtslc("compile", *inputs, "--emit=ptx", f"--gpu-arch={arch}", "-o", "out.ptx")
-        done = subprocess.run([PTXAS, f"-arch={arch}", "-O1", *(["-c"] if relocatable else []), "out.ptx", "-o", "out.cubin"],
-                              cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            [
+                PTXAS,
+                f"-arch={arch}",
+                "-O1",
+                *(["-c"] if relocatable else []),
+                "out.ptx",
+                "-o",
+                "out.cubin",
+            ],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
     def test_the_architecture_is_one_of_those_listed(self):
-        _, error = self.run_rtslc("compile", EXAMPLES / "glass" / "Glass.rtsl", "--emit=ptx", "--gpu-arch=sm_42", status=USAGE)
+        _, error = self.run_rtslc(
+            "compile",
+            EXAMPLES / "glass" / "Glass.rtsl",
+            "--emit=ptx",
+            "--gpu-arch=sm_42",
+            status=USAGE,
+        )
         self.assertIn("sm_75", error)
 
     def ptx(self, scene, *arguments):
@@ -49,13 +70,27 @@ class Ptx(Case):
     def test_schedules(self):
         """Scenes that choose rays at random let their lanes vote, others keep them together."""
         schedules = ("majority", "prioritized")
-        for name, chosen in (("glass/scene.json", "prioritized"), ("metal/scene.json", "majority"),
-                             ("whitted-programs/scene.json", "prioritized"), ("cornell/scene.json", "majority")):
+        for name, chosen in (
+            ("glass/scene.json", "prioritized"),
+            ("metal/scene.json", "majority"),
+            ("whitted-programs/scene.json", "prioritized"),
+            ("cornell/scene.json", "majority"),
+        ):
             with self.subTest(scene=name):
                 automatic = self.ptx(EXAMPLES / name)
-                same = [one for one in schedules if self.ptx(EXAMPLES / name, f"--schedule={one}") == automatic]
+                same = [
+                    one
+                    for one in schedules
+                    if self.ptx(EXAMPLES / name, f"--schedule={one}") == automatic
+                ]
                 self.assertEqual(same, [chosen])
-        _, error = self.run_rtslc("compile", EXAMPLES / "glass" / "scene.json", "--emit=ptx", "--schedule=fair", status=USAGE)
+        _, error = self.run_rtslc(
+            "compile",
+            EXAMPLES / "glass" / "scene.json",
+            "--emit=ptx",
+            "--schedule=fair",
+            status=USAGE,
+        )
         self.assertIn("`fair` is none of auto, majority, prioritized, round-robin, naive", error)
 
     @unittest.skipUnless(PTXAS, "ptxas is not installed")
@@ -65,10 +100,14 @@ class Ptx(Case):
 
     def test_a_scene_stands_alone(self):
         glass = EXAMPLES / "glass"
-        _, error = self.run_rtslc("compile", glass / "scene.json", glass / "Glass.rtsl", "--emit=ptx", status=USAGE)
+        _, error = self.run_rtslc(
+            "compile", glass / "scene.json", glass / "Glass.rtsl", "--emit=ptx", status=USAGE
+        )
         self.assertIn("one scene", error)
         self.run_rtslc("compile", glass / "scene.json", "--emit=ast", status=USAGE)
-        self.run_rtslc("compile", glass / "Glass.rtsl", "--emit=ptx", "--set", "camera.fov=30", status=USAGE)
+        self.run_rtslc(
+            "compile", glass / "Glass.rtsl", "--emit=ptx", "--set", "camera.fov=30", status=USAGE
+        )
 
 
 if __name__ == "__main__":

@@ -17,7 +17,11 @@ def complaints(value, schema, where="$"):
         yield f"{where} is {value!r}"
     if "enum" in schema and value not in schema["enum"]:
         yield f"{where} is {value!r}"
-    if "type" in schema and (not isinstance(value, KINDS[schema["type"]]) or schema["type"] == "integer" and value is True):
+    if "type" in schema and (
+        not isinstance(value, KINDS[schema["type"]])
+        or schema["type"] == "integer"
+        and value is True
+    ):
         yield f"{where} is no {schema['type']}"
         return
     if value < schema["minimum"] if "minimum" in schema else False:
@@ -46,8 +50,21 @@ class Reflection(Case):
         return value
 
     def test_the_validator_knows_what_the_schema_uses(self):
-        known = {"$schema", "$ref", "$defs", "title", "description", "type", "properties", "required", "additionalProperties",
-                 "items", "enum", "const", "minimum"}
+        known = {
+            "$schema",
+            "$ref",
+            "$defs",
+            "title",
+            "description",
+            "type",
+            "properties",
+            "required",
+            "additionalProperties",
+            "items",
+            "enum",
+            "const",
+            "minimum",
+        }
 
         def keywords(schema):
             yield from schema
@@ -61,7 +78,9 @@ class Reflection(Case):
         self.assertEqual(set(keywords(SCHEMA)) - known, set())
 
     def test_every_example(self):
-        folders = {file.parent for file in EXAMPLES.rglob("*.rtsl")} | {EXAMPLES.parent / "tests/cpp/scenes"}
+        folders = {file.parent for file in EXAMPLES.rglob("*.rtsl")} | {
+            EXAMPLES.parent / "tests/cpp/scenes"
+        }
         self.assertGreater(len(folders), 2)
         for folder in sorted(folders):
             for file in sorted(folder.glob("*.rtsl")):
@@ -75,8 +94,16 @@ class Reflection(Case):
     def test_names_that_cpp_has_taken(self):
         value = self.reflect(EXAMPLES.parent / "tests/cpp/scenes/Names.rtsl")
         names = {one["name"]: one["cpp"] for one in value["cppNames"]}
-        for name, cpp in (("shade", "shade_"), ("State", "State_"), ("State.template", "template_"), ("State.new.delete", "delete_"),
-                          ("lookup", "lookup_"), ("fields", "fields_"), ("Follow.union", "union_"), ("State.NULL", "NULL_")):
+        for name, cpp in (
+            ("shade", "shade_"),
+            ("State", "State_"),
+            ("State.template", "template_"),
+            ("State.new.delete", "delete_"),
+            ("lookup", "lookup_"),
+            ("fields", "fields_"),
+            ("Follow.union", "union_"),
+            ("State.NULL", "NULL_"),
+        ):
             self.assertEqual(names.get(name), cpp, names)
 
     def test_the_validator_complains(self):
@@ -92,8 +119,10 @@ class Reflection(Case):
         self.assertEqual(classes["Sphere"]["recordSize"], 20)
         self.assertEqual((sphere["center"]["offset"], sphere["center"]["type"]), (4, "vec3"))
         self.assertEqual((sphere["radius"]["offset"], sphere["radius"]["default"]), (16, 1.0))
-        self.assertEqual([one["name"] for one in classes["Glass"]["constructor"]["parameters"]],
-                         ["index", "surroundings", "tint"])
+        self.assertEqual(
+            [one["name"] for one in classes["Glass"]["constructor"]["parameters"]],
+            ["index", "surroundings", "tint"],
+        )
         shade = classes["Glass"]["methods"][0]
         self.assertTrue(shade["traces"] and shade["random"])
         self.assertIn("rt_ShadingNormal", shade["stateRead"])
@@ -103,23 +132,32 @@ class Reflection(Case):
         self.assertGreater(value["tracing"]["frameSize"], 0)
 
     def test_inheritance_structs_and_renamed_names(self):
-        shader = self.write("a.rtsl", """
+        shader = self.write(
+            "a.rtsl",
+            """
             // What a surface is like.
             struct Surface { float template; vec3 colors[2]; bool rough; };
             class Base : rt_Texture { public Surface surface; public int count = 3; void lookup() { rt_TextureColor = color(surface.template); } };
             class Derived : Base { private float other; };
-            """)
+            """,
+        )
         value = self.reflect(shader)
         surface = value["structs"][0]
-        self.assertEqual((surface["size"], [one["offset"] for one in surface["fields"]]), (32, [0, 4, 28]))
+        self.assertEqual(
+            (surface["size"], [one["offset"] for one in surface["fields"]]), (32, [0, 4, 28])
+        )
         self.assertEqual(surface["comment"], "What a surface is like.")
         derived = value["classes"][1]
-        self.assertEqual([(one["name"], one["declaredIn"], one["offset"]) for one in derived["members"]],
-                         [("surface", "Base", 4), ("count", "Base", 36), ("other", "Derived", 40)])
+        self.assertEqual(
+            [(one["name"], one["declaredIn"], one["offset"]) for one in derived["members"]],
+            [("surface", "Base", 4), ("count", "Base", 36), ("other", "Derived", 40)],
+        )
         self.assertEqual(value["cppNames"], [{"name": "Surface.template", "cpp": "template_"}])
 
     def test_bad_input(self):
-        self.run_rtslc("compile", self.write("a.rtsl", "float f() {"), "--emit=reflection", status=DIAGNOSED)
+        self.run_rtslc(
+            "compile", self.write("a.rtsl", "float f() {"), "--emit=reflection", status=DIAGNOSED
+        )
         self.run_rtslc("compile", EXAMPLES / "glass/scene.json", "--emit=reflection", status=USAGE)
 
 

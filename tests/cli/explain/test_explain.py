@@ -78,8 +78,13 @@ class Explain(Case):
         """{item: {subject: (needed, reason, line)}} of the scene."""
         out, _ = self.run_rtslc("explain", "scene.json", "--json", *arguments)
         self.document = json.loads(out)
-        return {item["item"]: {e["subject"]: (e["needed"], e["reason"], e.get("place", {}).get("line")) for e in item["entries"]}
-                for item in self.document["items"]}
+        return {
+            item["item"]: {
+                e["subject"]: (e["needed"], e["reason"], e.get("place", {}).get("line"))
+                for e in item["entries"]
+            }
+            for item in self.document["items"]
+        }
 
     def line(self, text):
         return 1 + next(i for i, line in enumerate(SHADERS.split("\n")) if text in line)
@@ -87,19 +92,48 @@ class Explain(Case):
     def test_each_item_says_what_is_needed_and_by_which_line(self):
         self.write_scene()
         items = self.entries()
-        needed = {(item, subject) for item, entries in items.items() for subject, entry in entries.items() if entry[0]}
-        left_out = {(item, subject) for item, entries in items.items() for subject, entry in entries.items() if not entry[0]}
-        for one in (("classes", "Ball"), ("methods", "Ball.intersect"), ("states", "Answering.shade"),
-                    ("methods", "Ball.computeTextureCoordinates"), ("outputs", "computeTextureCoordinates")):
+        needed = {
+            (item, subject)
+            for item, entries in items.items()
+            for subject, entry in entries.items()
+            if entry[0]
+        }
+        left_out = {
+            (item, subject)
+            for item, entries in items.items()
+            for subject, entry in entries.items()
+            if not entry[0]
+        }
+        for one in (
+            ("classes", "Ball"),
+            ("methods", "Ball.intersect"),
+            ("states", "Answering.shade"),
+            ("methods", "Ball.computeTextureCoordinates"),
+            ("outputs", "computeTextureCoordinates"),
+        ):
             self.assertIn(one, needed)
-        for one in (("classes", "Paint"), ("methods", "Ball.computeNormal"), ("states", "Answering.closestHit(Probe)"),
-                    ("outputs", "computeNormal"), ("outputs", "computeDerivatives"), ("attributes", "depth"),
-                    ("outputs", "rt_TextureUVW of Ball.computeTextureCoordinates"), ("parameters", "Ball.radius"),
-                    ("dispatch", "rt_Primitive.intersect"), ("lights", "illuminance"), ("events", "print"),
-                    ("events", "exceptions")):
+        for one in (
+            ("classes", "Paint"),
+            ("methods", "Ball.computeNormal"),
+            ("states", "Answering.closestHit(Probe)"),
+            ("outputs", "computeNormal"),
+            ("outputs", "computeDerivatives"),
+            ("attributes", "depth"),
+            ("outputs", "rt_TextureUVW of Ball.computeTextureCoordinates"),
+            ("parameters", "Ball.radius"),
+            ("dispatch", "rt_Primitive.intersect"),
+            ("lights", "illuminance"),
+            ("events", "print"),
+            ("events", "exceptions"),
+        ):
             self.assertIn(one, left_out)
-        self.assertEqual(items["methods"]["Ball.computeTextureCoordinates"][1:],
-                         ("read by `Answering.shade`", self.line("void shade() { rt_SampleColor = tint * rt_TextureUV.x; }")))
+        self.assertEqual(
+            items["methods"]["Ball.computeTextureCoordinates"][1:],
+            (
+                "read by `Answering.shade`",
+                self.line("void shade() { rt_SampleColor = tint * rt_TextureUV.x; }"),
+            ),
+        )
         self.assertEqual(items["classes"]["Paint"][2], self.line("class Paint"))
         self.assertIn("(0, 0, 4)", items["parameters"]["Eye.position"][1])
         saved = {item["item"]: item["saved"] for item in self.document["items"]}
@@ -109,7 +143,9 @@ class Explain(Case):
 
     def test_what_only_code_reads_that_never_runs(self):
         """A member is read where another one's number says that the code runs; else it is left out."""
-        self.write("more.rtsl", """
+        self.write(
+            "more.rtsl",
+            """
             class Layered : rt_Material {
               public float detail = 0.0;
               public float depth = 1.0;
@@ -117,50 +153,82 @@ class Explain(Case):
               float deeper(float d) { return d > 0.0 ? depth * d : 1.0; }
               void shade() { rt_SampleColor = color(tone * deeper(detail)); }
             };
-            """)
+            """,
+        )
         ball = SCENE["objects"][0]["primitive"]
         for detail, isNeeded in ((0, False), (0.5, True)):
-            self.write_scene(**{"import": ["all.rtsl", "more.rtsl"]}, objects=[
-                {"primitive": ball, "material": {"class": "Layered", "detail": detail, "depth": n, "tone": n}} for n in (1, 2)], materials={})
+            self.write_scene(
+                **{"import": ["all.rtsl", "more.rtsl"]},
+                objects=[
+                    {
+                        "primitive": ball,
+                        "material": {"class": "Layered", "detail": detail, "depth": n, "tone": n},
+                    }
+                    for n in (1, 2)
+                ],
+                materials={},
+            )
             parameters = self.entries("--no-savings")["parameters"]
             self.assertTrue(parameters["Layered.tone"][0])
             self.assertEqual(parameters["Layered.depth"][0], isNeeded, parameters)
 
     def test_functions_have_the_names_of_the_source(self):
         """Overloads by their parameters, definitions of base classes by these."""
-        self.write("more.rtsl", """
+        self.write(
+            "more.rtsl",
+            """
             class Twice : Unlit {
               color tone(float x) { return x * tint; }
               color tone(vec2 x, int n) { return tone(x[n & 1]); }
               void shade() { rt_SampleColor = tone(rt_TextureUV, rt_Depth); Unlit::shade(); }
             };
-            """)
-        self.write_scene(**{"import": ["all.rtsl", "more.rtsl"]}, materials={"red": {"class": "Twice", "tint": [1, 0.2, 0.1]}})
+            """,
+        )
+        self.write_scene(
+            **{"import": ["all.rtsl", "more.rtsl"]},
+            materials={"red": {"class": "Twice", "tint": [1, 0.2, 0.1]}},
+        )
         methods = self.entries()["methods"]
         self.assertEqual(methods["Twice.tone(vec2, int)"][:2], (True, "called by `Twice.shade`"))
-        self.assertEqual(methods["Twice.tone(float)"][:2], (True, "called by `Twice.tone(vec2, int)`"))
+        self.assertEqual(
+            methods["Twice.tone(float)"][:2], (True, "called by `Twice.tone(vec2, int)`")
+        )
         self.assertEqual(methods["Twice.Unlit::shade"][:2], (True, "called by `Twice.shade`"))
 
     def test_what_a_scene_adds_is_needed(self):
         self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
         items = self.entries()
-        self.assertEqual(items["lights"]["illuminance"][:2], (False, "the scene has no lights: the loop is removed"))
-        self.assertTrue(items["outputs"]["computeNormal"][0]) # a shadow ray would leave the hit
+        self.assertEqual(
+            items["lights"]["illuminance"][:2],
+            (False, "the scene has no lights: the loop is removed"),
+        )
+        self.assertTrue(items["outputs"]["computeNormal"][0])  # a shadow ray would leave the hit
         self.assertFalse(items["methods"]["Paint.unusedHelper"][0])
 
     def test_meshes_lose_what_no_material_reads(self):
-        self.write("triangle.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n")
+        self.write(
+            "triangle.obj",
+            "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n",
+        )
         self.write_scene(objects=[{"mesh": "triangle.obj", "material": "red"}])
         meshes = self.entries()["meshes"]
-        self.assertEqual([meshes[name][0] for name in ("normals of triangle.obj", "texture coordinates of triangle.obj")],
-                         [False, True])
+        self.assertEqual(
+            [
+                meshes[name][0]
+                for name in ("normals of triangle.obj", "texture coordinates of triangle.obj")
+            ],
+            [False, True],
+        )
         self.assertEqual(self.document["items"][-1]["saved"]["memoryBytes"], 3 * 3 * 4)
 
     def test_text_names_every_left_out_thing_with_its_line(self):
         self.write_scene()
         text, _ = self.run_rtslc("explain", "scene.json")
         self.assertRegex(text, r"left out +Paint +all\.rtsl:\d+ +it has no objects")
-        self.assertRegex(text, r"needed +Ball\.computeTextureCoordinates +all\.rtsl:\d+ +read by `Answering\.shade`")
+        self.assertRegex(
+            text,
+            r"needed +Ball\.computeTextureCoordinates +all\.rtsl:\d+ +read by `Answering\.shade`",
+        )
         kept, _ = self.run_rtslc("explain", "scene.json", "--keep=dispatch,meshes")
         self.assertRegex(kept, r"Choices between classes +\S+ +\S+ +kept")
 
@@ -179,15 +247,24 @@ class Explain(Case):
     def test_keeping_changes_no_picture(self):
         # The second scene's material reads no normal, and sends shadow rays, for which the runtime
         # does.
-        self.write_scene(materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}},
-                         lights=[{"class": "Lamp", "position": [3, 1, 2]}])
+        self.write_scene(
+            materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}},
+            lights=[{"class": "Lamp", "position": [3, 1, 2]}],
+        )
         (self.folder / "scene.json").rename(self.folder / "lit.json")
         self.write_scene()
         # Code is kept or left out before traces are compiled, and before machine code is optimised:
         # the examples have one kind of trace each, in turn, without optimisation.
         traces = ("recurse", "split")
-        rows = [(self.folder / scene, f"--trace={trace}") for scene in ("scene.json", "lit.json") for trace in traces]
-        rows += [(scene, f"--trace={traces[number % 2]}", "-O0") for number, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json")))]
+        rows = [
+            (self.folder / scene, f"--trace={trace}")
+            for scene in ("scene.json", "lit.json")
+            for trace in traces
+        ]
+        rows += [
+            (scene, f"--trace={traces[number % 2]}", "-O0")
+            for number, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json")))
+        ]
         for scene, *options in rows:
             for picture, kept in (("a.exr", []), ("b.exr", ["--keep=all"])):
                 self.run_rtslc("render", scene, "-o", picture, *SMALL, *options, *kept)
@@ -198,15 +275,23 @@ class Explain(Case):
         pictures = []
         for kept in ([], ["--keep=all"]):
             self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", *kept)
-            subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "x.exr", "--target=host"], cwd=self.folder, check=True,
-                           timeout=SECONDS, capture_output=True)
+            subprocess.run(
+                [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "x.exr", "--target=host"],
+                cwd=self.folder,
+                check=True,
+                timeout=SECONDS,
+                capture_output=True,
+            )
             pictures.append((self.folder / "x.exr").read_bytes())
         self.assertEqual(*pictures)
 
     def ptx(self, *arguments):
         return self.run_rtslc("compile", "scene.json", "--emit=ptx", *arguments)[0]
 
-    UNUSED = {"blue": {"class": "Paint", "tint": [0, 0, 1]}, "green": {"class": "Answering", "tint": [0, 1, 0]}}
+    UNUSED = {
+        "blue": {"class": "Paint", "tint": [0, 0, 1]},
+        "green": {"class": "Answering", "tint": [0, 1, 0]},
+    }
 
     def test_objects_that_nothing_refers_to_leave_the_program_as_it_is(self):
         self.write_scene()
@@ -215,28 +300,44 @@ class Explain(Case):
         self.assertEqual(self.ptx(), without)
         self.assertGreater(len(self.ptx("--keep=objects")), len(without) + 1000)
         items = self.entries()
-        self.assertEqual(items["objects"]["material blue"][:2], (False, "nothing that is used refers to it"))
+        self.assertEqual(
+            items["objects"]["material blue"][:2], (False, "nothing that is used refers to it")
+        )
         self.assertEqual(items["objects"]["material red"][:2], (True, "referred to by objects.0"))
         self.assertEqual(items["classes"]["Paint"][:2], (False, "nothing refers to its objects"))
         self.assertTrue(items["classes"]["Answering"][0])
-        self.assertIn("in the code", items["parameters"]["Answering.tint"][1]) # a green one that nothing has does not differ
+        self.assertIn(
+            "in the code", items["parameters"]["Answering.tint"][1]
+        )  # a green one that nothing has does not differ
         saved = {item["item"]: item["saved"] for item in self.document["items"]}
         self.assertGreater(saved["objects"]["instructions"], 10)
 
     def change_methods(self, items):
         """Empties the void methods that are left out, where no class needs one of that name. How
         many there were."""
-        needed = {subject.split(".")[-1] for item in ("methods", "states") for subject, entry in items[item].items() if entry[0]}
+        needed = {
+            subject.split(".")[-1]
+            for item in ("methods", "states")
+            for subject, entry in items[item].items()
+            if entry[0]
+        }
         changed = 0
         for item in self.document["items"]:
             for entry in item["entries"] if item["item"] in ("methods", "states") else []:
-                if entry["needed"] or entry["subject"].split(".")[-1] in needed or "built" in entry["reason"] or "place" not in entry:
+                if (
+                    entry["needed"]
+                    or entry["subject"].split(".")[-1] in needed
+                    or "built" in entry["reason"]
+                    or "place" not in entry
+                ):
                     continue
                 path = self.folder / entry["place"]["file"]
-                if self.folder not in path.parents:  # a file of the library, which all programs share
+                if (
+                    self.folder not in path.parents
+                ):  # a file of the library, which all programs share
                     continue
                 lines = path.read_text().split("\n")
-                start = sum(len(line) + 1 for line in lines[:entry["place"]["line"] - 1])
+                start = sum(len(line) + 1 for line in lines[: entry["place"]["line"] - 1])
                 text = "\n".join(lines)
                 if "void " not in lines[entry["place"]["line"] - 1]:
                     continue
@@ -246,7 +347,9 @@ class Explain(Case):
                     depth += {"{": 1, "}": -1}.get(text[end], 0)
                     end += 1
                 # Lines stay where they are, and so do the places of everything else.
-                path.write_text(text[:begin + 1] + "\n" * text.count("\n", begin, end) + text[end - 1:])
+                path.write_text(
+                    text[: begin + 1] + "\n" * text.count("\n", begin, end) + text[end - 1 :]
+                )
                 changed += 1
         return changed
 
@@ -257,18 +360,28 @@ class Explain(Case):
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
             shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)
             text = example.read_text()
-            for other in set(re.findall(r'"(\.\./[^"]+)"', text)): # shaders and meshes of other examples
+            for other in set(
+                re.findall(r'"(\.\./[^"]+)"', text)
+            ):  # shaders and meshes of other examples
                 shutil.copy(example.parent / other, self.folder)
                 text = text.replace(f'"{other}"', f'"{pathlib.Path(other).name}"')
             self.write("scene.json", text)
             items = self.entries("--no-savings")
-            before = self.ptx("-O0") # programs that are equal before they are optimised are equal afterwards
+            before = self.ptx(
+                "-O0"
+            )  # programs that are equal before they are optimised are equal afterwards
             here = self.change_methods(items)
             scene = json.loads((self.folder / "scene.json").read_text())
-            for kind in ("textures", "materials"): # numbers of objects that nothing refers to
+            for kind in ("textures", "materials"):  # numbers of objects that nothing refers to
                 for name, description in scene.get(kind, {}).items():
                     if not items["objects"][f"{kind[:-1]} {name}"][0]:
-                        description.update({key: value * 1.5 for key, value in description.items() if isinstance(value, float)})
+                        description.update(
+                            {
+                                key: value * 1.5
+                                for key, value in description.items()
+                                if isinstance(value, float)
+                            }
+                        )
             (self.folder / "scene.json").write_text(json.dumps(scene))
             self.assertEqual(self.ptx("-O0"), before, example)
             changed += here
@@ -280,30 +393,60 @@ class Explain(Case):
         lit = self.entries("--no-savings")
         self.assertEqual(lit["objects"]["lights.0 (Lamp)"][:2], (False, "no `illuminance` runs"))
         self.assertFalse(lit["classes"]["Lamp"][0])
-        self.write_scene(lights=lights, materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}})
+        self.write_scene(
+            lights=lights, materials={"red": {"class": "Paint", "tint": [1, 0.2, 0.1]}}
+        )
         lit = self.entries("--no-savings")
         self.assertTrue(lit["objects"]["lights.0 (Lamp)"][0])
         self.assertTrue(lit["classes"]["Lamp"][0])
 
     def test_what_is_referred_to_through_others_is_used(self):
-        self.write("all.rtsl", SHADERS + """
+        self.write(
+            "all.rtsl",
+            SHADERS
+            + """
 class Plain : rt_Texture { public color value; void lookup() { rt_TextureColor = value; } };
 class Twice : rt_Texture { public rt_Texture inner; void lookup() { rt_TextureColor = 2.0 * inner.lookup(); } };
 class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleColor = paper.lookup(); } };
-""")
-        scene = {**SCENE, "textures": {"a": {"class": "Plain", "value": [1, 2, 3]}, "b": {"class": "Twice", "inner": "a"},
-                                       "c": {"class": "Twice", "inner": "b"}, "d": {"class": "Plain", "value": [3, 2, 1]}},
-                 "materials": {"red": {"class": "Papered", "paper": "b"}, "rest": {"class": "Papered", "paper": "c"}}}
+""",
+        )
+        scene = {
+            **SCENE,
+            "textures": {
+                "a": {"class": "Plain", "value": [1, 2, 3]},
+                "b": {"class": "Twice", "inner": "a"},
+                "c": {"class": "Twice", "inner": "b"},
+                "d": {"class": "Plain", "value": [3, 2, 1]},
+            },
+            "materials": {
+                "red": {"class": "Papered", "paper": "b"},
+                "rest": {"class": "Papered", "paper": "c"},
+            },
+        }
         self.write("scene.json", json.dumps(scene))
         objects = self.entries("--no-savings")["objects"]
-        self.assertEqual({name: entry[0] for name, entry in objects.items()},
-                         {"texture a": True, "texture b": True, "texture c": False, "texture d": False,
-                          "material red": True, "material rest": False})
+        self.assertEqual(
+            {name: entry[0] for name, entry in objects.items()},
+            {
+                "texture a": True,
+                "texture b": True,
+                "texture c": False,
+                "texture d": False,
+                "material red": True,
+                "material rest": False,
+            },
+        )
         self.assertEqual(objects["texture a"][1], "referred to by texture b")
 
     def test_what_is_left_out_is_checked_all_the_same(self):
-        self.write_scene(materials={**SCENE["materials"], "blue": {"class": "Paint", "tnt": [0, 0, 1]}})
-        for command in (("render", "scene.json", "-o", "a.exr"), ("compile", "scene.json", "--emit=ptx"), ("pack", "scene.json", "-o", "x.rtslpkg")):
+        self.write_scene(
+            materials={**SCENE["materials"], "blue": {"class": "Paint", "tnt": [0, 0, 1]}}
+        )
+        for command in (
+            ("render", "scene.json", "-o", "a.exr"),
+            ("compile", "scene.json", "--emit=ptx"),
+            ("pack", "scene.json", "-o", "x.rtslpkg"),
+        ):
             _, error = self.run_rtslc(*command, status=1)
             self.assertIn("class `Paint` has no member `tnt`", error)
 
@@ -311,25 +454,48 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
         pictures = []
         for materials in (SCENE["materials"], {**SCENE["materials"], **self.UNUSED}):
             self.write_scene(materials=materials)
-            for arguments in (("--trace=recurse",), ("--trace=split",), ("--traversal=device",), ("--target=host-megakernel",), ("--keep=objects",)):
+            for arguments in (
+                ("--trace=recurse",),
+                ("--trace=split",),
+                ("--traversal=device",),
+                ("--target=host-megakernel",),
+                ("--keep=objects",),
+            ):
                 self.run_rtslc("render", "scene.json", "-o", "a.exr", *SMALL, *arguments)
                 pictures.append((self.folder / "a.exr").read_bytes())
         self.assertEqual(len(set(pictures)), 1)
 
     def test_index_checks_are_needed_where_they_change_the_program(self):
         def shade(index):
-            return SHADERS.replace("void shade() { rt_SampleColor = tint * rt_TextureUV.x; }",
-                                   "void shade() { float a[4] = float[4](1.0, 2.0, 3.0, 4.0); rt_SampleColor = tint * a[%s]; }" % index)
-        for index, isNeeded in (("2", False), ("int(rt_HitDistance) & 3", False), ("int(rt_HitDistance)", True)):
+            return SHADERS.replace(
+                "void shade() { rt_SampleColor = tint * rt_TextureUV.x; }",
+                "void shade() { float a[4] = float[4](1.0, 2.0, 3.0, 4.0); rt_SampleColor = tint * a[%s]; }"
+                % index,
+            )
+
+        for index, isNeeded in (
+            ("2", False),
+            ("int(rt_HitDistance) & 3", False),
+            ("int(rt_HitDistance)", True),
+        ):
             self.write_scene()
             self.write("all.rtsl", shade(index))
             self.assertEqual(self.ptx() != self.ptx("--unchecked"), isNeeded, index)
-            self.assertEqual(self.entries("--no-savings")["events"]["index checks"][0], isNeeded, index)
+            self.assertEqual(
+                self.entries("--no-savings")["events"]["index checks"][0], isNeeded, index
+            )
 
     def test_prints_are_needed_where_a_shader_that_runs_prints(self):
         self.write_scene()
-        self.write("all.rtsl", SHADERS.replace("illuminance (rt_HitPoint)", 'print("paint"); illuminance (rt_HitPoint)'))
-        self.assertEqual(self.entries("--no-savings")["events"]["print"][:2], (False, "no `print` runs"))
+        self.write(
+            "all.rtsl",
+            SHADERS.replace(
+                "illuminance (rt_HitPoint)", 'print("paint"); illuminance (rt_HitPoint)'
+            ),
+        )
+        self.assertEqual(
+            self.entries("--no-savings")["events"]["print"][:2], (False, "no `print` runs")
+        )
 
     def test_ptx_of_a_scene_is_bound_to_it(self):
         self.write_scene()
@@ -345,14 +511,25 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
 
         def without_programs():
             os.environ["PATH"] = str(self.folder)
-        (message,) = self.diagnose("explain", "--states", "--format=svg", "all.rtsl", "-o", "states.svg", prepare=without_programs)
+
+        (message,) = self.diagnose(
+            "explain",
+            "--states",
+            "--format=svg",
+            "all.rtsl",
+            "-o",
+            "states.svg",
+            prepare=without_programs,
+        )
         self.assert_message([message], "E0900", "cannot find `dot` of Graphviz")
         self.assertIn("--format=dot", str(message["notes"]))
         self.assertFalse((self.folder / "states.svg").exists())
 
         self.write("dot", "#!/bin/sh\necho 'syntax error in line 1' >&2\nexit 3\n")
         (self.folder / "dot").chmod(0o755)
-        (message,) = self.diagnose("explain", "--states", "--format=svg", "all.rtsl", prepare=without_programs)
+        (message,) = self.diagnose(
+            "explain", "--states", "--format=svg", "all.rtsl", prepare=without_programs
+        )
         self.assert_message([message], "E0901", "failed: syntax error in line 1")
 
     def test_without_savings(self):
@@ -368,13 +545,24 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
 
     def test_usage(self):
         self.write_scene()
-        for arguments, text in ((("explain", "all.rtsl"), "give a scene, or --states"),
-                                (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
-                                (("explain", "scene.json", "--measure", "--states"), "cannot be combined with --states"),
-                                (("explain", "scene.json", "--no-savings", "--states"), "cannot be combined with --states"),
-                                (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
-                                (("render", "scene.json", "-o", "a.exr", "--keep=everything"), "`everything` is none of all|objects|classes"),
-                                (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything")):
+        for arguments, text in (
+            (("explain", "all.rtsl"), "give a scene, or --states"),
+            (("explain", "scene.json", "--measure", "--pairs=9"), "--pairs"),
+            (
+                ("explain", "scene.json", "--measure", "--states"),
+                "cannot be combined with --states",
+            ),
+            (
+                ("explain", "scene.json", "--no-savings", "--states"),
+                "cannot be combined with --states",
+            ),
+            (("explain", "scene.json", "--format=svg"), "only --states has pictures"),
+            (
+                ("render", "scene.json", "-o", "a.exr", "--keep=everything"),
+                "`everything` is none of all|objects|classes",
+            ),
+            (("compile", "all.rtsl", "--emit=ir", "--keep=all"), "a file alone keeps everything"),
+        ):
             with self.subTest(arguments):
                 _, error = self.run_rtslc(*arguments, status=USAGE)
                 self.assertIn(text, error)

@@ -45,7 +45,18 @@ class New(Case):
 
     def test_the_scene_renders(self):
         self.run_rtslc("new", "scene", "room")
-        _, error = self.run_rtslc("render", "room.json", "-o", "room.exr", "-q", "--size", "48x32", "--spp", "4", "-Werror")
+        _, error = self.run_rtslc(
+            "render",
+            "room.json",
+            "-o",
+            "room.exr",
+            "-q",
+            "--size",
+            "48x32",
+            "--spp",
+            "4",
+            "-Werror",
+        )
         self.assertEqual(error, "")
         self.write_exr("black.exr", 48, 32, 0.0)
         self.run_rtslc("compare", "black.exr", "room.exr", "--threshold", "0.3", status=DIAGNOSED)
@@ -55,7 +66,10 @@ class New(Case):
         os.symlink("nowhere", self.folder / "Link.rtsl")
         for name in ("Clay", "Link"):
             (message,) = self.diagnose("new", "material", name)
-            self.assertEqual((message["code"], message["message"]), ("E0902", f"cannot write `{name}.rtsl`: File exists"))
+            self.assertEqual(
+                (message["code"], message["message"]),
+                ("E0902", f"cannot write `{name}.rtsl`: File exists"),
+            )
             self.assertIn("another folder by `-o`", message["notes"][0])
         self.assertEqual(path.read_text(), "mine")
         self.assertEqual(self.files(), ["Clay.rtsl", "Link.rtsl"])
@@ -63,7 +77,9 @@ class New(Case):
     def test_folders(self):
         (self.folder / "a b").mkdir()
         out, _ = self.run_rtslc("new", "scene", "room", "-o", "a b")
-        self.assertEqual(out, "wrote a b/room.json\nnext: rtslc render 'a b/room.json' -o room.png\n")
+        self.assertEqual(
+            out, "wrote a b/room.json\nnext: rtslc render 'a b/room.json' -o room.png\n"
+        )
         (message,) = self.diagnose("new", "scene", "room", "-o", "no such")
         self.assertIn("`mkdir -p 'no such'` makes it", message["notes"][0])
         (message,) = self.diagnose("new", "scene", "room", "-o", "/dev/full")
@@ -74,13 +90,18 @@ class New(Case):
 
     def test_nothing_is_left_half_written(self):
         """A limit on the size of files stands in for a full disk."""
+
         def small_files():
             import signal
+
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 
         (message,) = self.diagnose("new", "material", "Clay", prepare=small_files)
-        self.assertEqual((message["code"], message["message"]), ("E0902", "cannot write `Clay.rtsl`: File too large"))
+        self.assertEqual(
+            (message["code"], message["message"]),
+            ("E0902", "cannot write `Clay.rtsl`: File too large"),
+        )
         self.assertEqual(self.files(), [])
 
     def test_full_standard_output_is_said(self):
@@ -108,7 +129,11 @@ class New(Case):
         self.assertEqual(self.files(), ["Lambert.json"])
 
     def test_kinds(self):
-        self.refused("materal", "Clay", "`materal` is none of material, camera, primitive, texture, light, scene")
+        self.refused(
+            "materal",
+            "Clay",
+            "`materal` is none of material, camera, primitive, texture, light, scene",
+        )
 
     def test_templates_are_no_modules(self):
         self.write("a.rtsl", "import templates.material;\n")

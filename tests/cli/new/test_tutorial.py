@@ -17,10 +17,15 @@ import unittest
 from harness import DIAGNOSED, EXAMPLES, FINE, RTSLC, SECONDS, Case
 
 PAGE = EXAMPLES.parent / "docs/tutorial.md"
-PART = re.compile(r"^`(?P<file>[\w.]+)`\n```(?P<kind>glsl|json|diff)\n(?P<text>.*?)^```$"
-                  r"|^```console\n(?P<console>.*?)^```$|^!\[[^]]*\]\((?P<picture>[^)]+)\)$", re.M | re.S)
+PART = re.compile(
+    r"^`(?P<file>[\w.]+)`\n```(?P<kind>glsl|json|diff)\n(?P<text>.*?)^```$"
+    r"|^```console\n(?P<console>.*?)^```$|^!\[[^]]*\]\((?P<picture>[^)]+)\)$",
+    re.M | re.S,
+)
 # Times, and counts of rays, which may differ between processors.
-VARIES = re.compile(r"compiled in \d+ ms, rendered in [\d.]+ s \([\d.]+ million|\b\d+ rays in \d+ samples")
+VARIES = re.compile(
+    r"compiled in \d+ ms, rendered in [\d.]+ s \([\d.]+ million|\b\d+ rays in \d+ samples"
+)
 
 
 def without_times(text):
@@ -36,8 +41,14 @@ class Tutorial(Case):
         self.assertEqual(words[0], "rtslc")
         if "-o" in words:
             self.last_picture = words[words.index("-o") + 1]
-        running = subprocess.Popen([RTSLC, *words[1:]], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        running = subprocess.Popen(
+            [RTSLC, *words[1:]],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         if "--watch" not in words:
             return running.communicate(timeout=SECONDS)[0], running.returncode
         text = ""
@@ -60,7 +71,10 @@ class Tutorial(Case):
         return "".join(line + "\n" for line in lines)
 
     def change(self, name, diff):
-        old, new = ("".join(line[1:] + "\n" for line in diff.splitlines() if line[0] == sign) for sign in "-+")
+        old, new = (
+            "".join(line[1:] + "\n" for line in diff.splitlines() if line[0] == sign)
+            for sign in "-+"
+        )
         path = self.folder / name
         text = path.read_text()
         self.assertEqual(text.count(old), 1, f"{name} has not these lines:\n{old}")
@@ -77,7 +91,7 @@ class Tutorial(Case):
         counts = {"files": 0, "consoles": 0, "pictures": 0}
         renewed, end = "", 0
         for part in PART.finditer(page):
-            renewed += page[end:part.start()]
+            renewed += page[end : part.start()]
             end = part.end()
             text = part.group()
             if part["console"] is not None:
@@ -99,8 +113,14 @@ class Tutorial(Case):
             renewed += text
         if self.renews:
             PAGE.write_text(renewed + page[end:])
-        self.assertEqual(counts, {"files": page.count("```glsl") + page.count("```json") + page.count("```diff"),
-                                  "consoles": page.count("```console"), "pictures": page.count("![")})
+        self.assertEqual(
+            counts,
+            {
+                "files": page.count("```glsl") + page.count("```json") + page.count("```diff"),
+                "consoles": page.count("```console"),
+                "pictures": page.count("!["),
+            },
+        )
         self.assertGreater(min(counts.values()), 5)
 
 

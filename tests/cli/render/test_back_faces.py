@@ -70,6 +70,7 @@ WAVE = BOX.replace("v 1 1 1", "v 1.5 1.2 1")
 
 def scene(back_faces=False, rejects=False):
     """Meshes in world space, in their own space, mirrored, moving, and with keys."""
+
     def mesh(file, **more):
         return {"mesh": file, "material": "paint", "backFaces": back_faces, **more}
 
@@ -80,15 +81,44 @@ def scene(back_faces=False, rejects=False):
         "rayGeneration": {"class": "Rays"},
         "background": {"class": "Sky"},
         "materials": {"paint": {"class": "Paint", "rejectsBacks": rejects}},
-        "objects": [mesh("box.obj", transform=[{"rotate": [20, 30, 0]}, {"translate": [-2.5, 2, 0]}]),
-                    mesh("inside-out.obj", transform=[{"rotate": [-40, 10, 0]}, {"translate": [2.5, 2, 0]}]),
-                    {"primitive": {"class": "Sphere", "center": [0, 0, -4], "radius": 2}, "material": "paint"}],
+        "objects": [
+            mesh("box.obj", transform=[{"rotate": [20, 30, 0]}, {"translate": [-2.5, 2, 0]}]),
+            mesh(
+                "inside-out.obj", transform=[{"rotate": [-40, 10, 0]}, {"translate": [2.5, 2, 0]}]
+            ),
+            {
+                "primitive": {"class": "Sphere", "center": [0, 0, -4], "radius": 2},
+                "material": "paint",
+            },
+        ],
         "nodes": {
-            "box": mesh("box.obj"), "room": mesh("inside-out.obj"), "wave": mesh({"keys": ["box.obj", "wave.obj"]}),
-            "mirrored": {"child": "box", "transform": [{"scale": [-1, 0.7, 1]}, {"rotate": [50, -40, 0]}, {"translate": [-3, -1.5, 0]}]},
-            "moving": {"child": "room", "transform": [{"scale": 0.6}, {"keys": [{"rotate": [0, 0, 0], "translate": [0, -2, 1]},
-                                                                               {"rotate": [90, 140, 0], "translate": [1, -2, 1]}]}]},
-            "waving": {"child": "wave", "transform": [{"rotate": [30, 210, 0]}, {"translate": [3, -1.5, -1]}]},
+            "box": mesh("box.obj"),
+            "room": mesh("inside-out.obj"),
+            "wave": mesh({"keys": ["box.obj", "wave.obj"]}),
+            "mirrored": {
+                "child": "box",
+                "transform": [
+                    {"scale": [-1, 0.7, 1]},
+                    {"rotate": [50, -40, 0]},
+                    {"translate": [-3, -1.5, 0]},
+                ],
+            },
+            "moving": {
+                "child": "room",
+                "transform": [
+                    {"scale": 0.6},
+                    {
+                        "keys": [
+                            {"rotate": [0, 0, 0], "translate": [0, -2, 1]},
+                            {"rotate": [90, 140, 0], "translate": [1, -2, 1]},
+                        ]
+                    },
+                ],
+            },
+            "waving": {
+                "child": "wave",
+                "transform": [{"rotate": [30, 210, 0]}, {"translate": [3, -1.5, -1]}],
+            },
             "top": {"children": ["mirrored", "moving", "waving"]},
         },
         "root": "top",
@@ -113,9 +143,17 @@ class BackFaces(Case):
     def test_every_path_leaves_out_what_any_hit_would_reject(self):
         expected = self.render(scene(back_faces=True, rejects=True))
         self.assertLess(self.means(expected)[0], 1)
-        self.assertGreater(self.means(self.render(scene(back_faces=True)))[0], 5)  # where they are seen
-        for options in ([], ["--trace=recurse"], ["--traversal=device"], ["--traversal=device", "--trace=recurse", "-O0"],
-                        ["--target=host-megakernel"], ["--keep=all"]):
+        self.assertGreater(
+            self.means(self.render(scene(back_faces=True)))[0], 5
+        )  # where they are seen
+        for options in (
+            [],
+            ["--trace=recurse"],
+            ["--traversal=device"],
+            ["--traversal=device", "--trace=recurse", "-O0"],
+            ["--target=host-megakernel"],
+            ["--keep=all"],
+        ):
             self.assert_same_bits(self.render(scene(), *options), expected, options)
 
     def lit(self, mesh, back_faces, material="floor", engine="classic"):
@@ -123,23 +161,44 @@ class BackFaces(Case):
         self.write("floor.obj", "v -9 -1 -9\nv -9 -1 9\nv 9 -1 9\nv 9 -1 -9\nf 1 2 3 4\n")
         self.write("up.obj", "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nf 1 2 3 4\n")
         self.write("down.obj", "v -2 0 -2\nv -2 0 2\nv 2 0 2\nv 2 0 -2\nf 4 3 2 1\n")
-        return {"rtsl": 1, "import": ["Faces.rtsl", "std.lights", "std.materials.Lambert", "std.materials.Emitter"], "camera": {"class": "Below"},
-                "materials": {"floor": {"class": "Matte" if engine == "classic" else "Lambert"}, "glow": {"class": "Emitter", "radiance": [4, 4, 4], "isTwoSided": True}},
-                "objects": [{"mesh": "floor.obj", "material": "floor"},
-                            {"mesh": mesh, "material": material, "backFaces": back_faces}],
-                "lights": [{"class": "PointLight", "position": [0, 4, 0], "intensity": [30, 30, 30]}] if engine == "classic" else [],
-                "render": {"size": [48, 32], "spp": 16, "engine": engine}}
+        return {
+            "rtsl": 1,
+            "import": [
+                "Faces.rtsl",
+                "std.lights",
+                "std.materials.Lambert",
+                "std.materials.Emitter",
+            ],
+            "camera": {"class": "Below"},
+            "materials": {
+                "floor": {"class": "Matte" if engine == "classic" else "Lambert"},
+                "glow": {"class": "Emitter", "radiance": [4, 4, 4], "isTwoSided": True},
+            },
+            "objects": [
+                {"mesh": "floor.obj", "material": "floor"},
+                {"mesh": mesh, "material": material, "backFaces": back_faces},
+            ],
+            "lights": [{"class": "PointLight", "position": [0, 4, 0], "intensity": [30, 30, 30]}]
+            if engine == "classic"
+            else [],
+            "render": {"size": [48, 32], "spp": 16, "engine": engine},
+        }
 
     def test_shadow_rays_pass_from_behind_and_not_from_the_front(self):
         """Those of the floor meet the lower side of the face."""
         shadowed = self.render(self.lit("down.obj", True))
         self.assert_same_bits(self.render(self.lit("down.obj", False)), shadowed)
-        self.assertGreater(self.means(self.render(self.lit("up.obj", False)))[0], 1.2 * self.means(shadowed)[0])
+        self.assertGreater(
+            self.means(self.render(self.lit("up.obj", False)))[0], 1.2 * self.means(shadowed)[0]
+        )
 
     def test_surfaces_shine_to_the_front_alone(self):
         """The floor below a lamp that faces down is as bright as without the option, and below one that faces up it is black."""
         for name, shines in (("down.obj", True), ("up.obj", False)):
-            means = [self.means(self.render(self.lit(name, back_faces, "glow", "path")))[0] for back_faces in (False, True)]
+            means = [
+                self.means(self.render(self.lit(name, back_faces, "glow", "path")))[0]
+                for back_faces in (False, True)
+            ]
             self.assertGreater(means[1], 0.05)
             if shines:
                 self.assertAlmostEqual(*means, delta=0.1 * means[1])
@@ -155,13 +214,22 @@ class BackFaces(Case):
             self.assertEqual(needed["back faces"], not back_faces)
 
     def test_mistakes(self):
-        for change, code, part in (({"backFaces": 0}, "E0804", "`backFaces`"), ({"backFaces": "cull"}, "E0804", "`backFaces`")):
+        for change, code, part in (
+            ({"backFaces": 0}, "E0804", "`backFaces`"),
+            ({"backFaces": "cull"}, "E0804", "`backFaces`"),
+        ):
             wrong = scene()
             wrong["objects"][0].update(change)
-            self.assert_message(self.diagnose("check", self.write("scene.json", json.dumps(wrong))), code, part)
+            self.assert_message(
+                self.diagnose("check", self.write("scene.json", json.dumps(wrong))), code, part
+            )
         wrong = scene()
         wrong["objects"][2]["backFaces"] = False
-        self.assert_message(self.diagnose("check", self.write("scene.json", json.dumps(wrong))), "E0802", "`backFaces` is for a `mesh`")
+        self.assert_message(
+            self.diagnose("check", self.write("scene.json", json.dumps(wrong))),
+            "E0802",
+            "`backFaces` is for a `mesh`",
+        )
 
 
 if __name__ == "__main__":

@@ -13,7 +13,9 @@ class BadScenes(Case):
     def render(self, *arguments):
         """The messages of a rendering that must fail and leave no picture."""
         diagnostics = self.diagnose("render", "scene.json", "-o", "picture.png", *SMALL, *arguments)
-        self.assertFalse([name for name in self.files() if "picture" in name], "a picture was left behind")
+        self.assertFalse(
+            [name for name in self.files() if "picture" in name], "a picture was left behind"
+        )
         return diagnostics
 
     def line_of(self, text):
@@ -34,31 +36,52 @@ class BadScenes(Case):
 
     def test_unknown_class(self):
         self.glass_scene(background={"class": "Skye"})
-        self.assert_message(self.render(), "E0810", "Skye", line=self.line_of('"Skye"'), file="scene.json")
+        self.assert_message(
+            self.render(), "E0810", "Skye", line=self.line_of('"Skye"'), file="scene.json"
+        )
 
     def test_everything_wrong_is_said_at_once(self):
         self.glass_scene(background={"class": "Skye"}, camera={"class": "PinholeCamra"})
         diagnostics = self.render()
-        self.assertEqual([(d["code"], d["fixes"][0]["replacement"]) for d in diagnostics], [("E0810", "PinholeCamera"), ("E0810", "Sky")])
-        self.glass_scene(background={"class": "Sky", "horizont": 1}, ambient="blue", render={"spp": 0})
+        self.assertEqual(
+            [(d["code"], d["fixes"][0]["replacement"]) for d in diagnostics],
+            [("E0810", "PinholeCamera"), ("E0810", "Sky")],
+        )
+        self.glass_scene(
+            background={"class": "Sky", "horizont": 1}, ambient="blue", render={"spp": 0}
+        )
         self.assertEqual([d["code"] for d in self.render()], ["E0804", "E0805"])
         self.glass_scene(background={"class": "Sky", "horizont": 1, "zenit": 2})
-        self.assertEqual([d["code"] for d in self.render("--set", "objects.1.material=gless")], ["E0806", "E0812", "E0812"])
+        self.assertEqual(
+            [d["code"] for d in self.render("--set", "objects.1.material=gless")],
+            ["E0806", "E0812", "E0812"],
+        )
 
     def test_engines_want_their_beginning(self):
         self.glass_scene(render={"engine": "programs"})
-        self.assert_message(self.render(), "E0803", "a scene for the engine `programs` needs a `rayGeneration`")
-        self.assert_message(self.render("--set", "render.engine=wavefront"), "E0808", "no engine `wavefront`")
+        self.assert_message(
+            self.render(), "E0803", "a scene for the engine `programs` needs a `rayGeneration`"
+        )
+        self.assert_message(
+            self.render("--set", "render.engine=wavefront"), "E0808", "no engine `wavefront`"
+        )
 
     def test_overrides_are_shown_where_they_are_wrong(self):
         self.glass_scene()
         for text, code, begin, length in (
-                ("objects.7.material=glass", "E0809", 15, 1), ("textures.cheks.scale=8", "E0809", 16, 5),
-                ("render.spp=many", "E0804", 18, 4), ("rendr.spp=4", "E0802", 7, 5), ("objects.1.material=gless", "E0806", 26, 5),
-                ('background={"class": "Sky", "horizont": 1}', "E0812", 36, 8)):
-            message, = self.render("--set", text)
+            ("objects.7.material=glass", "E0809", 15, 1),
+            ("textures.cheks.scale=8", "E0809", 16, 5),
+            ("render.spp=many", "E0804", 18, 4),
+            ("rendr.spp=4", "E0802", 7, 5),
+            ("objects.1.material=gless", "E0806", 26, 5),
+            ('background={"class": "Sky", "horizont": 1}', "E0812", 36, 8),
+        ):
+            (message,) = self.render("--set", text)
             place = message["range"]
-            self.assertEqual((message["code"], place["file"], place["begin"]), (code, "command line", {**place["begin"], "line": 1, "column": begin}))
+            self.assertEqual(
+                (message["code"], place["file"], place["begin"]),
+                (code, "command line", {**place["begin"], "line": 1, "column": begin}),
+            )
             self.assertEqual(place["end"]["column"] - begin, length, text)
         _, error = self.run_rtslc("check", "scene.json", "--set", "render.spp=many", status=1)
         self.assertIn("1 | --set render.spp=many\n  |                  ^^^^\n", error)
@@ -85,11 +108,15 @@ class BadScenes(Case):
     def test_mesh_with_nan(self):
         self.write("broken.obj", TRIANGLE.replace("1 0 0", "nan 0 0"))
         self.glass_scene()
-        self.assert_message(self.render("--set", "objects.3.mesh=broken.obj"), "E0904", "broken.obj")
+        self.assert_message(
+            self.render("--set", "objects.3.mesh=broken.obj"), "E0904", "broken.obj"
+        )
 
     def test_truncated_mesh(self):
-        header = b"ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\nproperty float y\n" \
-                 b"property float z\nelement face 50\nproperty list uchar int vertex_indices\nend_header\n"
+        header = (
+            b"ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 50\nproperty list uchar int vertex_indices\nend_header\n"
+        )
         self.write("half.ply", header + b"\0" * 300)
         self.glass_scene()
         self.assert_message(self.render("--set", "objects.3.mesh=half.ply"), "E0904", "half.ply")
@@ -106,10 +133,20 @@ class BadScenes(Case):
 
     def test_sphere_of_radius_zero(self):
         self.glass_scene()
-        out, error = self.run_rtslc("render", "scene.json", "-o", "picture.png", *SMALL, "--set",
-                                    "objects.1.primitive.radius=0", "--diagnostics=json")
+        out, error = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "picture.png",
+            *SMALL,
+            "--set",
+            "objects.1.primitive.radius=0",
+            "--diagnostics=json",
+        )
         warnings = json.loads(error)["diagnostics"]
-        self.assertTrue(any(w["code"] == "W2800" and "Sphere" in w["message"] for w in warnings), error)
+        self.assertTrue(
+            any(w["code"] == "W2800" and "Sphere" in w["message"] for w in warnings), error
+        )
 
     def test_sphere_of_radius_nan(self):
         self.glass_scene()
@@ -117,8 +154,11 @@ class BadScenes(Case):
         self.assertTrue(diagnostics)
 
     def test_attribute_without_source(self):
-        self.write("Needy.rtsl", "class Needy : rt_Material;\nscratch vec3 grain;\n"
-                                 "void shade() { rt_SampleColor = color(grain.x); }\n")
+        self.write(
+            "Needy.rtsl",
+            "class Needy : rt_Material;\nscratch vec3 grain;\n"
+            "void shade() { rt_SampleColor = color(grain.x); }\n",
+        )
         path = self.glass_scene()
         scene = json.loads(path.read_text())
         scene["import"].append("Needy.rtsl")
@@ -129,8 +169,11 @@ class BadScenes(Case):
         self.assertTrue(diagnostics[0]["labels"][0]["range"]["file"].endswith("Sphere.rtsl"))
 
     def test_attribute_of_another_type(self):
-        self.write("Needy.rtsl", "class Needy : rt_Material;\nscratch vec3 coordinates;\n"
-                                 "void shade() { rt_SampleColor = color(coordinates.x); }\n")
+        self.write(
+            "Needy.rtsl",
+            "class Needy : rt_Material;\nscratch vec3 coordinates;\n"
+            "void shade() { rt_SampleColor = color(coordinates.x); }\n",
+        )
         path = self.glass_scene()
         scene = json.loads(path.read_text())
         scene["import"].append("Needy.rtsl")
@@ -150,21 +193,29 @@ class BadScenes(Case):
         path.write_text(json.dumps(scene, indent=1))
 
     def test_more_attributes_than_a_ray_carries(self):
-        self.add_material("class Odd : rt_Material;\nscratch mat4 a, b, c;\n"
-                          "void shade() { rt_SampleColor = color(a[0].x + b[0].x + c[0].x); }\n")
+        self.add_material(
+            "class Odd : rt_Material;\nscratch mat4 a, b, c;\n"
+            "void shade() { rt_SampleColor = color(a[0].x + b[0].x + c[0].x); }\n"
+        )
         sphere = (self.folder / "Parallelogram.rtsl").read_text()
-        (self.folder / "Parallelogram.rtsl").write_text(sphere.replace(
-            "scratch vec2 coordinates;", "scratch vec2 coordinates;\nscratch mat4 a, b, c;").replace(
-            "    hit(t);", "  {\n    a = mat4(t); b = a; c = a;\n    hit(t);\n  }"))
+        (self.folder / "Parallelogram.rtsl").write_text(
+            sphere.replace(
+                "scratch vec2 coordinates;", "scratch vec2 coordinates;\nscratch mat4 a, b, c;"
+            ).replace("    hit(t);", "  {\n    a = mat4(t); b = a; c = a;\n    hit(t);\n  }")
+        )
         self.assert_message(self.render(), "E0702", "32")
 
     def test_reference_that_is_not_set(self):
-        self.add_material("class Odd : rt_Material;\npublic rt_Texture albedo;\n"
-                          "void shade() { rt_SampleColor = albedo.lookup(); }\n")
+        self.add_material(
+            "class Odd : rt_Material;\npublic rt_Texture albedo;\n"
+            "void shade() { rt_SampleColor = albedo.lookup(); }\n"
+        )
         self.assert_message(self.render(), "E0815", "albedo", file="scene.json")
 
     def test_material_that_shades_nothing(self):
-        self.add_material("class Odd : rt_Material;\nvoid emission() { rt_EmissionColor = color(1.0); }\n")
+        self.add_material(
+            "class Odd : rt_Material;\nvoid emission() { rt_EmissionColor = color(1.0); }\n"
+        )
         self.assert_message(self.render(), "E0817", "shade", file="scene.json")
 
     def test_module_that_is_not_there(self):
@@ -184,15 +235,28 @@ class BadScenes(Case):
 
     def test_picture_of_unknown_format(self):
         self.glass_scene()
-        _, error = self.run_rtslc("render", "scene.json", "-o", "picture.jpeg", *SMALL, status=USAGE)
+        _, error = self.run_rtslc(
+            "render", "scene.json", "-o", "picture.jpeg", *SMALL, status=USAGE
+        )
         self.assertIn("`picture.jpeg`", error)
 
     def test_arguments_that_make_no_sense(self):
         self.glass_scene()
-        for arguments in (["--spp", "0"], ["--spp", "-3"], ["--size", "0x10"], ["--size", "10"], ["--size", "1e9x2"],
-                          ["--threads", "0"], ["--color", "spectral:99"], ["--traversal", "fast"], ["--unknown"]):
+        for arguments in (
+            ["--spp", "0"],
+            ["--spp", "-3"],
+            ["--size", "0x10"],
+            ["--size", "10"],
+            ["--size", "1e9x2"],
+            ["--threads", "0"],
+            ["--color", "spectral:99"],
+            ["--traversal", "fast"],
+            ["--unknown"],
+        ):
             with self.subTest(arguments=arguments):
-                _, error = self.run_rtslc("render", "scene.json", "-o", "picture.png", *arguments, status=USAGE)
+                _, error = self.run_rtslc(
+                    "render", "scene.json", "-o", "picture.png", *arguments, status=USAGE
+                )
                 self.assertIn(arguments[0], error)
         self.run_rtslc("render", "scene.json", status=USAGE)
         self.run_rtslc(status=USAGE)

@@ -10,7 +10,11 @@ from harness import EXAMPLES, Case
 
 SHADERS = EXAMPLES.parent / "tests/cpp/scenes/Chains.rtsl"
 
-WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
+WAYS = (
+    ["--trace=recurse", "--traversal=device"],
+    ["--trace=split", "--traversal=device"],
+    ["--target=host-megakernel"],
+)
 
 
 class CallFrames(Case):
@@ -22,15 +26,31 @@ class CallFrames(Case):
         """Tints in a chain of this length, the last with a filter that only traces inside."""
         textures = {"t0": {"class": "Filter"}}
         for i in range(1, chain + 1):
-            textures[f"t{i}"] = {"class": "Tint", "inner": f"t{i - 1}", "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],
-                                 "rounds": rounds}
-        scene = {"rtsl": 1, "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
-                 "camera": {"class": "Eye"}, "textures": textures,
-                 "materials": {"mirror": {"class": "Mirror", "filter": f"t{chain}"}},
-                 "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 4], "radius": 2}, "material": "mirror"},
-                             {"primitive": {"class": "Sphere", "center": [3, 2, 0], "radius": 1}, "material": "mirror"}],
-                 "background": {"class": "Sky", "filter": "t0"},
-                 "render": {"engine": "classic", "size": [8, 8], "spp": 1, "depth": depth}}
+            textures[f"t{i}"] = {
+                "class": "Tint",
+                "inner": f"t{i - 1}",
+                "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],
+                "rounds": rounds,
+            }
+        scene = {
+            "rtsl": 1,
+            "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
+            "camera": {"class": "Eye"},
+            "textures": textures,
+            "materials": {"mirror": {"class": "Mirror", "filter": f"t{chain}"}},
+            "objects": [
+                {
+                    "primitive": {"class": "Sphere", "center": [0, 0, 4], "radius": 2},
+                    "material": "mirror",
+                },
+                {
+                    "primitive": {"class": "Sphere", "center": [3, 2, 0], "radius": 1},
+                    "material": "mirror",
+                },
+            ],
+            "background": {"class": "Sky", "filter": "t0"},
+            "render": {"engine": "classic", "size": [8, 8], "spp": 1, "depth": depth},
+        }
         self.write("scene.json", json.dumps(scene))
 
     def test_engines_agree(self):
@@ -48,14 +68,46 @@ class CallFrames(Case):
 
     def test_no_object_does_nothing_whatever_is_left_out(self):
         self.write("nothing.rtsl", (SHADERS.parent / "Nothing.rtsl").read_text())
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["nothing.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl"), str(EXAMPLES / "glass" / "PinholeCamera.rtsl")],
-            "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 6], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
-            "textures": {"filter": {"class": "Filter"}, "half": {"class": "Scale"}},
-            "materials": {"mirror": {"class": "Mirror", "filter": "filter", "scales": ["half", "half"]}},
-            "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 1.5}, "material": "mirror"}],
-            "background": {"class": "Sky"},
-            "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": [
+                        "nothing.rtsl",
+                        str(EXAMPLES / "glass" / "Sphere.rtsl"),
+                        str(EXAMPLES / "glass" / "PinholeCamera.rtsl"),
+                    ],
+                    "camera": {
+                        "class": "PinholeCamera",
+                        "constructor": [
+                            [0, 0, 6],
+                            [0, 1, 0],
+                            [0, 0, -1],
+                            [-0.5, -0.5],
+                            [0.5, 0.5],
+                            1,
+                        ],
+                    },
+                    "textures": {"filter": {"class": "Filter"}, "half": {"class": "Scale"}},
+                    "materials": {
+                        "mirror": {
+                            "class": "Mirror",
+                            "filter": "filter",
+                            "scales": ["half", "half"],
+                        }
+                    },
+                    "objects": [
+                        {
+                            "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 1.5},
+                            "material": "mirror",
+                        }
+                    ],
+                    "background": {"class": "Sky"},
+                    "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2},
+                }
+            ),
+        )
         for i, way in enumerate([*WAYS, ["--keep=all"], ["--keep=all", *WAYS[1]]]):
             self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", *way)
             self.assert_same_bits("0.exr", f"{i}.exr")
@@ -66,23 +118,41 @@ class CallFrames(Case):
         self.scene(3, 2)
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
-        subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"], cwd=self.folder, check=True)
+        subprocess.run(
+            [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"],
+            cwd=self.folder,
+            check=True,
+        )
         self.assert_same_bits("0.exr", "1.exr")
 
     def test_the_bound_of_the_stack_counts_them(self):
         self.scene(3, 2)
         text, _ = self.run_rtslc("explain", "--states", "scene.json")
         self.assertIn("call of dispatch.Filter.follow at shaders.rtsl:", text)
-        self.assertRegex(text, r"stack: \d+ more bytes for each level and each object in the scene's longest chain of references")
+        self.assertRegex(
+            text,
+            r"stack: \d+ more bytes for each level and each object in the scene's longest chain of references",
+        )
         report = json.loads(self.run_rtslc("explain", "--states", "--json", "scene.json")[0])
-        [filter_] = [function for function in report["functions"] if function["name"] == "dispatch.Filter.follow"]
-        self.assertEqual(report["stack"]["levelBytesAReference"], (filter_["frameSize"] + 7) // 8 * 8)
-        self.assertEqual({trace.get("callee") for trace in filter_["traces"]}, {None, "dispatch.Filter.follow"})
+        [filter_] = [
+            function
+            for function in report["functions"]
+            if function["name"] == "dispatch.Filter.follow"
+        ]
+        self.assertEqual(
+            report["stack"]["levelBytesAReference"], (filter_["frameSize"] + 7) // 8 * 8
+        )
+        self.assertEqual(
+            {trace.get("callee") for trace in filter_["traces"]}, {None, "dispatch.Filter.follow"}
+        )
 
     def test_cpp_is_printed_with_frames(self):
         text, _ = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp", "--trace=split")
         self.assertIn("struct FollowFrame : FilterRef::Follow {", text)
-        self.assertRegex(text, r"return rtsl::callThen\(rt, frame, Step::Tint_followAfterCall1, inner,\s+FilterRef::Follow\{frame.o,")
+        self.assertRegex(
+            text,
+            r"return rtsl::callThen\(rt, frame, Step::Tint_followAfterCall1, inner,\s+FilterRef::Follow\{frame.o,",
+        )
         self.assertNotIn("rtsl::trace(", text)
         self.assertEqual(text, self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp")[0])
         text, _ = self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp", "--trace=recurse")

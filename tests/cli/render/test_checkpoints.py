@@ -16,17 +16,25 @@ from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
 
 SMALL = ("--size", "50x37")  # not whole tiles
 KILLS = int(os.environ.get("RTSL_KILLS", "5"))
-COUNTS = ("samples", "pixels", "badRays", "raysTooDeep", "samplesNotFinite", "pixelsWithoutSample", "notFinite")
+COUNTS = (
+    "samples",
+    "pixels",
+    "badRays",
+    "raysTooDeep",
+    "samplesNotFinite",
+    "pixelsWithoutSample",
+    "notFinite",
+)
 
 
 def crc64(data):
     """CRC-64/XZ."""
-    remainder = 2 ** 64 - 1
+    remainder = 2**64 - 1
     for byte in data:
         remainder ^= byte
         for _ in range(8):
-            remainder = remainder >> 1 ^ (0xc96c5795d7870f42 if remainder & 1 else 0)
-    return remainder ^ 2 ** 64 - 1
+            remainder = remainder >> 1 ^ (0xC96C5795D7870F42 if remainder & 1 else 0)
+    return remainder ^ 2**64 - 1
 
 
 class Checkpoints(Case):
@@ -47,8 +55,14 @@ class Checkpoints(Case):
             signal.signal(signal.SIGINT, signal.default_int_handler)
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
-        return subprocess.Popen([RTSLC, *self.arguments("a.exr", *options)], cwd=self.folder, stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, text=True, preexec_fn=signals)
+        return subprocess.Popen(
+            [RTSLC, *self.arguments("a.exr", *options)],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=signals,
+        )
 
     def inode(self):
         return os.stat(self.folder / "a.ckpt").st_ino if (self.folder / "a.ckpt").exists() else 0
@@ -73,22 +87,36 @@ class Checkpoints(Case):
 
 class Resuming(Checkpoints):
     def test_the_bits_are_those_of_a_rendering_without_interruption(self):
-        for way in ([], ["--traversal=device"], ["--trace=split"], ["--target=host-megakernel"], ["--color=spectral:4"],
-                    ["--engine=path"], ["--fp=fast"]):
+        for way in (
+            [],
+            ["--traversal=device"],
+            ["--trace=split"],
+            ["--target=host-megakernel"],
+            ["--color=spectral:4"],
+            ["--engine=path"],
+            ["--fp=fast"],
+        ):
             with self.subTest(way=way):
                 whole = self.render("whole.exr", "--spp=11", *way)
                 self.render("part.exr", "--spp=4", "--checkpoint=a.ckpt", "--threads=1", *way)
                 again = self.render("again.exr", "--spp=4", "--checkpoint=a.ckpt", *way)
                 self.assertEqual(again["resumedAt"], 4)
                 self.assert_same_bits("part.exr", "again.exr")
-                resumed = self.render("resumed.exr", "--spp=11", "--checkpoint=a.ckpt", "--threads=3", *way)
+                resumed = self.render(
+                    "resumed.exr", "--spp=11", "--checkpoint=a.ckpt", "--threads=3", *way
+                )
                 self.assert_same_bits("whole.exr", "resumed.exr")
                 for count in COUNTS:
                     self.assertEqual(whole[count], resumed[count], count)
                 (self.folder / "a.ckpt").unlink()
 
     def test_another_backend_goes_on(self):
-        ways = (["--traversal=device"], ["--target=host-megakernel"], ["--trace=split", "-O", "0"], [])
+        ways = (
+            ["--traversal=device"],
+            ["--target=host-megakernel"],
+            ["--trace=split", "-O", "0"],
+            [],
+        )
         for i, way in enumerate(ways):
             self.render("parts.exr", f"--spp={3 * (i + 1)}", "--checkpoint=a.ckpt", *way)
         self.render("whole.exr", f"--spp={3 * len(ways)}")
@@ -97,23 +125,35 @@ class Resuming(Checkpoints):
     def test_noise_ends_at_the_same_sample(self):
         whole = self.render("whole.exr", "--noise=0.02")
         self.render("part.exr", "--noise=0.02", "--spp=18", "--checkpoint=a.ckpt")
-        resumed = self.render("resumed.exr", "--noise=0.02", "--checkpoint=a.ckpt", "--target=host-megakernel")
+        resumed = self.render(
+            "resumed.exr", "--noise=0.02", "--checkpoint=a.ckpt", "--target=host-megakernel"
+        )
         self.assertEqual((whole["spp"], whole["noise"]), (resumed["spp"], resumed["noise"]))
         self.assert_same_bits("whole.exr", "resumed.exr")
-        self.assertEqual(self.render("again.exr", "--noise=0.02", "--checkpoint=a.ckpt")["spp"], whole["spp"])
+        self.assertEqual(
+            self.render("again.exr", "--noise=0.02", "--checkpoint=a.ckpt")["spp"], whole["spp"]
+        )
 
     def test_time_counts_from_the_first_start(self):
         first = self.render("a.exr", "--time=400ms", "--checkpoint=a.ckpt")
         again = self.render("b.exr", "--time=400ms", "--checkpoint=a.ckpt")
         self.assertEqual(first["spp"], again["spp"])
-        self.assertGreater(self.render("c.exr", "--time=800ms", "--checkpoint=a.ckpt")["spp"], first["spp"])
+        self.assertGreater(
+            self.render("c.exr", "--time=800ms", "--checkpoint=a.ckpt")["spp"], first["spp"]
+        )
 
     def test_signals_end_it_at_once(self):
         """In the middle of a pass, with some pixels further than others."""
         self.render("whole.exr", "--spp=400", "--engine=path")
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             before = self.inode()
-            running = self.start("--spp=400", "--checkpoint=a.ckpt", "--checkpoint-every=10ms", "--engine=path", "--json")
+            running = self.start(
+                "--spp=400",
+                "--checkpoint=a.ckpt",
+                "--checkpoint-every=10ms",
+                "--engine=path",
+                "--json",
+            )
             self.wait_for_checkpoint(running, before)
             running.send_signal(number)
             out, error = running.communicate(timeout=SECONDS)
@@ -122,7 +162,9 @@ class Resuming(Checkpoints):
             self.assertIn("of 400 samples per pixel", error)
             self.assertEqual(json.loads(out)["stoppedBy"], signal.Signals(number).name)
             self.run_rtslc("compare", "a.exr", "a.exr")
-        resumed = self.render("resumed.exr", "--spp=400", "--checkpoint=a.ckpt", "--engine=path", "--threads=3")
+        resumed = self.render(
+            "resumed.exr", "--spp=400", "--checkpoint=a.ckpt", "--engine=path", "--threads=3"
+        )
         self.assertEqual(resumed["samples"], 400 * 50 * 37)
         self.assert_same_bits("whole.exr", "resumed.exr")
 
@@ -155,7 +197,7 @@ class Resuming(Checkpoints):
     def samples_of_checkpoint(self):
         """The least and the most of a pixel: the last numbers of the file."""
         pixels = 50 * 37
-        taken = struct.unpack(f"<{pixels}I", self.checkpoint()[-4 * pixels:])
+        taken = struct.unpack(f"<{pixels}I", self.checkpoint()[-4 * pixels :])
         return min(taken), max(taken)
 
 
@@ -165,15 +207,18 @@ class Refusing(Checkpoints):
         self.render("a.exr", "--spp=2", "--checkpoint=a.ckpt")
 
     def test_other_options(self):
-        for option, part in (("--seed=2", "the seed is 1 there and 2 here"), ("--depth=3", "the depth is 8 there and 3 here"),
-                             ("--size=51x37", "the size is 50x37 there and 51x37 here"),
-                             ("--color=mono", "the number of components of a color is 3 there and 1 here"),
-                             ("--fp=fast", "`--fp` is strict there and fast here"),
-                             ("--exceptions", "`--exceptions` is off there and on here"),
-                             ("-DGREEN", "what `-D` and `-U` define is nothing there and GREEN=1 here"),
-                             ("--engine=normals", "the scene has changed since it was written"),
-                             ("--set=background=[0,0,0]", "the scene has changed"),
-                             ("--spp=1", "it has 2 samples per pixel, more than 1")):
+        for option, part in (
+            ("--seed=2", "the seed is 1 there and 2 here"),
+            ("--depth=3", "the depth is 8 there and 3 here"),
+            ("--size=51x37", "the size is 50x37 there and 51x37 here"),
+            ("--color=mono", "the number of components of a color is 3 there and 1 here"),
+            ("--fp=fast", "`--fp` is strict there and fast here"),
+            ("--exceptions", "`--exceptions` is off there and on here"),
+            ("-DGREEN", "what `-D` and `-U` define is nothing there and GREEN=1 here"),
+            ("--engine=normals", "the scene has changed since it was written"),
+            ("--set=background=[0,0,0]", "the scene has changed"),
+            ("--spp=1", "it has 2 samples per pixel, more than 1"),
+        ):
             with self.subTest(option=option):
                 self.refuse(part, option)
 
@@ -182,10 +227,17 @@ class Refusing(Checkpoints):
             with self.subTest(name=name):
                 path = self.folder / name
                 text = path.read_text()
-                path.write_text(text.replace("0.85", "0.75", 1) if name == "scene.json" else
-                                text + ("# more\n" if name.endswith("obj") else "// more\n"))
+                path.write_text(
+                    text.replace("0.85", "0.75", 1)
+                    if name == "scene.json"
+                    else text + ("# more\n" if name.endswith("obj") else "// more\n")
+                )
                 self.assertNotEqual(path.read_text(), text)
-                self.refuse("the scene has changed" if name == "scene.json" else f"`{name}` has changed since it was written")
+                self.refuse(
+                    "the scene has changed"
+                    if name == "scene.json"
+                    else f"`{name}` has changed since it was written"
+                )
                 path.write_text(text)
         scene = json.loads((self.folder / "scene.json").read_text())
         self.write("scene.json", json.dumps(scene, indent=4))  # the same in other words
@@ -199,7 +251,7 @@ class Refusing(Checkpoints):
                 self.refuse("it is cut short" if size > 8 else "it is no checkpoint of rtslc")
         for at in (20, 70, len(whole) // 2, len(whole) - 1):
             with self.subTest(at=at):
-                self.write("a.ckpt", whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1:])
+                self.write("a.ckpt", whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
                 self.refuse("it is ")
         shutil.copy(self.folder / "a.exr", self.folder / "a.ckpt")
         self.refuse("it is no checkpoint of rtslc")
@@ -230,26 +282,37 @@ class Writing(Checkpoints):
         before = self.checkpoint()
         arguments = self.arguments("a.png", "--spp=5", "--checkpoint=a.ckpt", "--diagnostics=json")
         _, error = self.run_rtslc(*arguments, status=DIAGNOSED, prepare=self.small_files)
-        self.assert_message(json.loads(error)["diagnostics"], "E0902", "cannot write `a.ckpt`: File too large")
+        self.assert_message(
+            json.loads(error)["diagnostics"], "E0902", "cannot write `a.ckpt`: File too large"
+        )
         self.assertEqual(self.checkpoint(), before)
         self.render("whole.png", "--spp=5")
         self.assert_same_bits("a.png", "whole.png")
         self.assertEqual([file for file in self.files() if file.endswith(".tmp")], [])
 
     def test_a_disk_that_is_full_for_a_while(self):
-        running = self.start("--spp=100000", "--checkpoint=a.ckpt", "--checkpoint-every=20ms", "--diagnostics=json")
+        running = self.start(
+            "--spp=100000", "--checkpoint=a.ckpt", "--checkpoint-every=20ms", "--diagnostics=json"
+        )
         try:
             self.wait_for_checkpoint(running, 0)
             resource.prlimit(running.pid, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
             time.sleep(0.5)
-            resource.prlimit(running.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
+            resource.prlimit(
+                running.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+            )
         finally:
             running.send_signal(signal.SIGINT)
         _, error = running.communicate(timeout=SECONDS)
         self.assertEqual(running.returncode, 130, error)
         messages = json.loads(error)["diagnostics"]
-        self.assertEqual(sorted(message["code"] for message in messages), ["W2867", "W2868"], messages)
-        self.assertRegex(error, r"[0-9]+ checkpoints were not written, but the last one was: cannot write `a.ckpt`")
+        self.assertEqual(
+            sorted(message["code"] for message in messages), ["W2867", "W2868"], messages
+        )
+        self.assertRegex(
+            error,
+            r"[0-9]+ checkpoints were not written, but the last one was: cannot write `a.ckpt`",
+        )
         self.assertTrue((self.folder / "a.ckpt").exists())
 
     def test_other_files_are_not_replaced(self):
@@ -257,28 +320,40 @@ class Writing(Checkpoints):
             with self.subTest(name=name):
                 before = (self.folder / name).read_bytes()
                 messages = self.diagnose(*self.arguments("a.exr", f"--checkpoint={name}"))
-                self.assert_message(messages, "E0965", f"`{name}` is an input and would be overwritten")
+                self.assert_message(
+                    messages, "E0965", f"`{name}` is an input and would be overwritten"
+                )
                 self.assertEqual((self.folder / name).read_bytes(), before)
         os.symlink("a.exr", self.folder / "link")
         for name in ("a.exr", "./a.exr", "link", "a.d"):
             with self.subTest(name=name):
                 messages = self.diagnose(*self.arguments("a.exr", f"--checkpoint={name}", "-MD"))
-                self.assert_message(messages, "E0965", "cannot be the checkpoint and another output")
+                self.assert_message(
+                    messages, "E0965", "cannot be the checkpoint and another output"
+                )
         self.assertFalse((self.folder / "a.exr").exists())
 
     def test_places_that_cannot_be_written(self):
-        for name, part in (("no/where.ckpt", "No such file or directory"), (".", "Is a directory"),
-                           ("/dev/null", "is no regular file"), ("/dev/full", "is no regular file")):
+        for name, part in (
+            ("no/where.ckpt", "No such file or directory"),
+            (".", "Is a directory"),
+            ("/dev/null", "is no regular file"),
+            ("/dev/full", "is no regular file"),
+        ):
             with self.subTest(name=name):
-                self.assert_message(self.diagnose(*self.arguments("a.exr", f"--checkpoint={name}")), "E0902", part)
+                self.assert_message(
+                    self.diagnose(*self.arguments("a.exr", f"--checkpoint={name}")), "E0902", part
+                )
 
     def test_bad_values(self):
-        for options, part in ((["--checkpoint=-"], "standard output cannot be read again; give a file"),
-                              (["--checkpoint=a", "--watch"], "a checkpoint is of one picture"),
-                              (["--checkpoint=a", "--print"], "a checkpoint does not keep what shaders have printed"),
-                              (["--checkpoint-every=1s"], "there is no `--checkpoint`"),
-                              (["--checkpoint=a", "--checkpoint-every=0s"], "`0s` is not a time"),
-                              (["--checkpoint=a", "--checkpoint-every=soon"], "`soon` is not a time")):
+        for options, part in (
+            (["--checkpoint=-"], "standard output cannot be read again; give a file"),
+            (["--checkpoint=a", "--watch"], "a checkpoint is of one picture"),
+            (["--checkpoint=a", "--print"], "a checkpoint does not keep what shaders have printed"),
+            (["--checkpoint-every=1s"], "there is no `--checkpoint`"),
+            (["--checkpoint=a", "--checkpoint-every=0s"], "`0s` is not a time"),
+            (["--checkpoint=a", "--checkpoint-every=soon"], "`soon` is not a time"),
+        ):
             with self.subTest(options=options):
                 _, error = self.run_rtslc(*self.arguments("a.exr", *options), status=USAGE)
                 self.assertIn(part, error)

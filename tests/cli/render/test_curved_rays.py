@@ -93,13 +93,22 @@ class Turning : rt_RayGeneration {
 class CurvedCase(Case):
     def run_rays(self, generation, field, count=16, **members):
         self.write("shaders.rtsl", SHADERS)
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["std.media", "shaders.rtsl"], "helpers": {"field": field},
-            "rayGeneration": {"class": generation, "field": "field", **members}, "render": {"engine": "programs", "size": [count]}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["std.media", "shaders.rtsl"],
+                    "helpers": {"field": field},
+                    "rayGeneration": {"class": generation, "field": "field", **members},
+                    "render": {"engine": "programs", "size": [count]},
+                }
+            ),
+        )
         self.run_rtslc("run", "scene.json", "--out", "results=results.npy", "-q")
         shape, numbers = read_npy(self.folder / "results.npy")
         width = shape[1] if len(shape) > 1 else 1
-        return [numbers[i:i + width] for i in range(0, len(numbers), width)]
+        return [numbers[i : i + width] for i in range(0, len(numbers), width)]
 
 
 class Curves(CurvedCase):
@@ -117,15 +126,19 @@ class Curves(CurvedCase):
                 self.assertLess(error, 1e-3)
                 self.assertLess(count, 1000)
             steps.append(max(count for _, _, count in results))
-        self.assertLess(steps[-1], 20 * steps[0])  # the logarithm of the thickness, not its reciprocal
+        self.assertLess(
+            steps[-1], 20 * steps[0]
+        )  # the logarithm of the thickness, not its reciprocal
 
     def test_total_reflection(self):
         """From the dense side a ray at a small angle comes back as steep as it went."""
         for width in (1e-2, 1e-4):
-            results = self.run_rays("Snell", {"class": "Step", "width": width}, **{"from": -5.0, "index": 1.5})
+            results = self.run_rays(
+                "Snell", {"class": "Step", "width": width}, **{"from": -5.0, "index": 1.5}
+            )
             for x, (y, _, _) in zip(self.slopes(16), results):
                 square = 2.25 * (1 - x * x)
-                exact = (square - 1.25) ** 0.5 if square > 1.25 else -(square ** 0.5)
+                exact = (square - 1.25) ** 0.5 if square > 1.25 else -(square**0.5)
                 if abs(square - 1.25) > 0.02:
                     self.assertAlmostEqual(y, exact, delta=2e-3, msg=(width, x))
 
@@ -141,24 +154,63 @@ class Curves(CurvedCase):
 
     def test_where_a_ray_over_hot_ground_turns(self):
         """Where the index is the cosine of the first angle: thickness * log(2 |difference| / slope^2)."""
-        results = self.run_rays("Turning", {"class": "LayeredAir", "thickness": 0.2, "difference": -3e-5})
+        results = self.run_rays(
+            "Turning", {"class": "LayeredAir", "thickness": 0.2, "difference": -3e-5}
+        )
         for i, (height,) in enumerate(results):
             slope = 0.001 + 0.005 * (i + 0.5) / 16
-            exact = 0.2 * log(2 * 3e-5 / slope ** 2)
+            exact = 0.2 * log(2 * 3e-5 / slope**2)
             self.assertAlmostEqual(height, exact, delta=0.01, msg=slope)
 
 
 class Pictures(CurvedCase):
     def scene(self, engine, **air):
         self.level = "-O0"
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["std.cameras", "std.primitives", "std.materials", "std.media", "std.engines", "std.backgrounds", "std.lights"],
-            "camera": {"class": "PerspectiveCamera", "constructor": [[0, 1.4, 0], [0, 1.2, -400], [0, 1, 0]], "fieldOfView": 2},
-            "helpers": {"air": {"class": "LayeredAir", **air}}, "rayGeneration": {"class": "CurvedTracer", "field": "air", "reach": 2000},
-            "objects": [{"primitive": {"class": "Box", "low": [-900, -1, -3000], "high": [900, 0, 9]}, "material": {"class": "Lambert"}},
-                        {"primitive": {"class": "Box", "low": [-2, 1, -520], "high": [2, 3, -510]}, "material": {"class": "Emitter", "radiance": [9, 0, 0]}}],
-            "lights": [{"class": "DistantLight"}], "background": {"class": "UniformSky"},
-            "render": {"engine": engine, "size": [24, 24], "spp": 4, "depth": 4}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": [
+                        "std.cameras",
+                        "std.primitives",
+                        "std.materials",
+                        "std.media",
+                        "std.engines",
+                        "std.backgrounds",
+                        "std.lights",
+                    ],
+                    "camera": {
+                        "class": "PerspectiveCamera",
+                        "constructor": [[0, 1.4, 0], [0, 1.2, -400], [0, 1, 0]],
+                        "fieldOfView": 2,
+                    },
+                    "helpers": {"air": {"class": "LayeredAir", **air}},
+                    "rayGeneration": {"class": "CurvedTracer", "field": "air", "reach": 2000},
+                    "objects": [
+                        {
+                            "primitive": {
+                                "class": "Box",
+                                "low": [-900, -1, -3000],
+                                "high": [900, 0, 9],
+                            },
+                            "material": {"class": "Lambert"},
+                        },
+                        {
+                            "primitive": {
+                                "class": "Box",
+                                "low": [-2, 1, -520],
+                                "high": [2, 3, -510],
+                            },
+                            "material": {"class": "Emitter", "radiance": [9, 0, 0]},
+                        },
+                    ],
+                    "lights": [{"class": "DistantLight"}],
+                    "background": {"class": "UniformSky"},
+                    "render": {"engine": engine, "size": [24, 24], "spp": 4, "depth": 4},
+                }
+            ),
+        )
 
     def render(self, name, *arguments):
         self.run_rtslc("render", "scene.json", "-o", name, "-q", *arguments)
@@ -186,7 +238,13 @@ class Pictures(CurvedCase):
     def test_every_path_gives_the_same_bits(self):
         self.scene("programs")
         self.render("a.exr")
-        for way in (["--trace=split"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"], ["--threads", "1"]):
+        for way in (
+            ["--trace=split"],
+            ["--traversal=device"],
+            ["--target=host-megakernel"],
+            ["--keep=all"],
+            ["--threads", "1"],
+        ):
             self.render("b.exr", *way)
             self.assert_same_bits("a.exr", "b.exr", way)
 

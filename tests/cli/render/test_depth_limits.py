@@ -57,7 +57,11 @@ class Fading : rt_Material {
 };
 """
 
-WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
+WAYS = (
+    ["--trace=recurse", "--traversal=device"],
+    ["--trace=split", "--traversal=device"],
+    ["--target=host-megakernel"],
+)
 ENDLESS = "each material of this scene sends another ray"
 
 
@@ -67,12 +71,23 @@ class DepthLimits(Case):
         self.write("shaders.rtsl", SHADERS)
 
     def scene(self, material, depth):
-        eye = {"engine": "programs", "rayGeneration": {"class": "PathEye"}} if material == "Fading" else {
-            "engine": "classic", "camera": {"class": "Eye"}}
-        scene = {"rtsl": 1, "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
-                 "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2},
-                              "material": {"class": material}}],
-                 "render": {"engine": eye.pop("engine"), "size": [8, 8], "spp": 2, "depth": depth}, **eye}
+        eye = (
+            {"engine": "programs", "rayGeneration": {"class": "PathEye"}}
+            if material == "Fading"
+            else {"engine": "classic", "camera": {"class": "Eye"}}
+        )
+        scene = {
+            "rtsl": 1,
+            "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
+            "objects": [
+                {
+                    "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2},
+                    "material": {"class": material},
+                }
+            ],
+            "render": {"engine": eye.pop("engine"), "size": [8, 8], "spp": 2, "depth": depth},
+            **eye,
+        }
         self.write("scene.json", json.dumps(scene))
 
     def overflows(self, material, depth):
@@ -81,7 +96,9 @@ class DepthLimits(Case):
         self.scene(material, depth)
         counts = []
         for i, way in enumerate(WAYS):
-            out, error = self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", "--json", "--exceptions", *way)
+            out, error = self.run_rtslc(
+                "render", "scene.json", "-o", f"{i}.exr", "--json", "--exceptions", *way
+            )
             counts.append(json.loads(out).get("exceptions", {}).get("stackOverflow", 0))
             self.assertEqual(ENDLESS in error, material == "Endless", error)
             self.assert_same_bits("0.exr", f"{i}.exr")
@@ -98,7 +115,9 @@ class DepthLimits(Case):
         self.assertEqual(self.overflows("Endless", 256), 128)
         text = self.explained("Endless", 9)
         self.assertIn("traces on every path: ends at the depth limit", text)
-        self.assertRegex(text, r"stack: 10 levels of \d+ bytes for rays as deep as 9, more if that is larger")
+        self.assertRegex(
+            text, r"stack: 10 levels of \d+ bytes for rays as deep as 9, more if that is larger"
+        )
 
     def test_a_shader_that_always_traces_is_a_warning_at_compile_time(self):
         self.scene("Endless", 5)
@@ -121,7 +140,7 @@ class DepthLimits(Case):
         text = self.explained("Fading")
         self.assertIn("traces depending on its payload", text)
         self.assertIn("recursion runs as a loop", text)
-        self.assertIn("stack: 1 level of", text) # that of `generate`
+        self.assertIn("stack: 1 level of", text)  # that of `generate`
 
     def test_a_shader_limits_depth(self):
         self.assertEqual(self.overflows("Shallow", 3), 0)

@@ -31,10 +31,26 @@ class Thin : rt_Miss {
 """
 
 SCENE = {
-    "rtsl": 1, "import": ["thin.rtsl"], "camera": {"class": "Eye"}, "background": {"class": "Thin", "tau": 1e-6, "index": 2},
-    "objects": [], "render": {"size": [4, 3], "spp": 2},
+    "rtsl": 1,
+    "import": ["thin.rtsl"],
+    "camera": {"class": "Eye"},
+    "background": {"class": "Thin", "tau": 1e-6, "index": 2},
+    "objects": [],
+    "render": {"size": [4, 3], "spp": 2},
 }
-ITEMS = ["classes", "methods", "states", "dispatch", "outputs", "attributes", "parameters", "lights", "events", "meshes", "all"]
+ITEMS = [
+    "classes",
+    "methods",
+    "states",
+    "dispatch",
+    "outputs",
+    "attributes",
+    "parameters",
+    "lights",
+    "events",
+    "meshes",
+    "all",
+]
 
 
 class Double(Case):
@@ -44,30 +60,48 @@ class Double(Case):
         self.write("scene.json", json.dumps(SCENE))
 
     def picture(self, scene, *options):
-        self.run_rtslc("render", scene, "-o", "picture.exr", "--size", "24x14", "--spp", "1", *options)
+        self.run_rtslc(
+            "render", scene, "-o", "picture.exr", "--size", "24x14", "--spp", "1", *options
+        )
         return (self.folder / "picture.exr").read_bytes()
 
     def test_nothing_is_folded_in_single_precision(self):
-        out, _ = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--fp=double", "--quiet", "--print", "--spp", "1", "--size", "1x1")
+        out, _ = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "--fp=double",
+            "--quiet",
+            "--print",
+            "--spp",
+            "1",
+            "--size",
+            "1x1",
+        )
         numbers = [float(word) for word in out.split()[-3:]]
         for number in numbers:  # what the scene sets, the same in a function, and a constant
             self.assertAlmostEqual(number, 0.9999995, delta=6e-8)
 
     def test_keeping_changes_no_picture(self):
-        self.level = "-O0" # what is kept is decided before machine code is optimised
+        self.level = "-O0"  # what is kept is decided before machine code is optimised
         for scene in ("scene.json", EXAMPLES / "glass" / "scene.json"):
             for mode in ("strict", "double"):
                 expected = self.picture(scene, f"--fp={mode}")
                 for item in ITEMS:
                     with self.subTest(scene=str(scene), mode=mode, item=item):
-                        self.assertEqual(self.picture(scene, f"--fp={mode}", f"--keep={item}"), expected)
+                        self.assertEqual(
+                            self.picture(scene, f"--fp={mode}", f"--keep={item}"), expected
+                        )
 
     def test_what_is_kept_moves_roundings_alone_in_fast_mode(self):
         expected = EXAMPLES / "glass" / "scene.json"
         self.picture(expected, "--fp=fast")
         (self.folder / "picture.exr").rename(self.folder / "fast.exr")
         self.picture(expected, "--fp=fast", "--keep=all")
-        self.run_rtslc("compare", "fast.exr", "picture.exr", "--metric", "rmse", "--threshold", "1e-3")
+        self.run_rtslc(
+            "compare", "fast.exr", "picture.exr", "--metric", "rmse", "--threshold", "1e-3"
+        )
 
 
 if __name__ == "__main__":

@@ -10,7 +10,10 @@ from harness import RTSLC
 from test_path_engine import FLOOR, WAYS, PathCase
 
 CLAY = {"class": "Own", "albedo": 0.5}
-LAMP = ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Emitter", "radiance": 4})
+LAMP = (
+    {"class": "Sphere", "center": [0, 3, 0], "radius": 0.5},
+    {"class": "Emitter", "radiance": 4},
+)
 
 # A sky that is bright within a disk around the zenith, and knows how to find it.
 SUN = """
@@ -37,22 +40,51 @@ class EnvironmentCase(PathCase):
     def sky(self, width, height, values, filter="bilinear", wrap=("repeat", "clamp"), **members):
         """An EnvironmentMap; the values are those of texels, from the lower left one."""
         self.write("sky.raw", struct.pack(f"<{width * height}f", *values))
-        return {"class": "EnvironmentMap", "image": {"raw": "sky.raw", "size": [width, height], "filter": filter, "wrap": list(wrap)}, **members}
+        return {
+            "class": "EnvironmentMap",
+            "image": {
+                "raw": "sky.raw",
+                "size": [width, height],
+                "filter": filter,
+                "wrap": list(wrap),
+            },
+            **members,
+        }
 
     def lit_floor(self, background, camera="Down", spp=64, objects=(), material=None, **rest):
-        self.scene([(FLOOR, material or CLAY), *objects], camera=camera, spp=spp, background=background, **rest)
-        scene = (self.folder / "scene.json").read_text().replace('"std.lights"', '"std.lights", "std.backgrounds"')
+        self.scene(
+            [(FLOOR, material or CLAY), *objects],
+            camera=camera,
+            spp=spp,
+            background=background,
+            **rest,
+        )
+        scene = (
+            (self.folder / "scene.json")
+            .read_text()
+            .replace('"std.lights"', '"std.lights", "std.backgrounds"')
+        )
         self.write("scene.json", scene)
 
     def without_search(self):
         """What the same scene gives if directions are found by the materials alone."""
-        source = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl").read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace("pathShare(path.density, rt_PDF)", "1.0")
+        source = (
+            pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
+        ).read_text()
+        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace(
+            "pathShare(path.density, rt_PDF)", "1.0"
+        )
         self.assertEqual(len(plain.split("if (false)")), 2)
         self.write("PathTracer.rtsl", plain)
         scene = (self.folder / "scene.json").read_text()
-        self.write("scene.json", scene.replace('"import": [', '"import": ["PathTracer.rtsl", ').replace('"engine": "path"', '"engine": "programs"')
-                   .replace('"camera":', '"rayGeneration": {"class": "PathTracer", "bounces": 64}, "camera":'))
+        self.write(
+            "scene.json",
+            scene.replace('"import": [', '"import": ["PathTracer.rtsl", ')
+            .replace('"engine": "path"', '"engine": "programs"')
+            .replace(
+                '"camera":', '"rayGeneration": {"class": "PathTracer", "bounces": 64}, "camera":'
+            ),
+        )
         return self.mean()
 
 
@@ -78,22 +110,40 @@ class Images(EnvironmentCase):
         self.assert_gray(expected, 0.01)
 
     def test_a_furnace(self):
-        for material in ({"class": "Lambert", "reflectance": 1}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}):
+        for material in (
+            {"class": "Lambert", "reflectance": 1},
+            {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0},
+        ):
             self.lit_floor(self.sky(8, 4, [1.0] * 32), material=material, spp=256)
             self.assert_gray(1.0, 0.01)
 
     def test_both_ways_find_the_same_light(self):
         """Smooth, glossy and diffuse surfaces and a lamp under a sky with strong contrast, rotated
         and in each wrap."""
-        values = [0.2 + 5 * math.exp(-((i % 16 - 11) ** 2 + (i // 16 - 5) ** 2)) for i in range(16 * 8)]
-        for wrap, material in ((("repeat", "clamp"), {"class": "Conductor", "alpha": 0.2}), (("black", "black"), {"class": "Plastic"}),
-                               (("mirror", "mirror"), CLAY)):
+        values = [
+            0.2 + 5 * math.exp(-((i % 16 - 11) ** 2 + (i // 16 - 5) ** 2)) for i in range(16 * 8)
+        ]
+        for wrap, material in (
+            (("repeat", "clamp"), {"class": "Conductor", "alpha": 0.2}),
+            (("black", "black"), {"class": "Plastic"}),
+            (("mirror", "mirror"), CLAY),
+        ):
             with self.subTest(wrap=wrap, material=material):
-                objects = [LAMP, ({"class": "Sphere", "center": [0.6, 0.7, 0], "radius": 0.5}, {"class": "Plastic"})]
+                objects = [
+                    LAMP,
+                    (
+                        {"class": "Sphere", "center": [0.6, 0.7, 0], "radius": 0.5},
+                        {"class": "Plastic"},
+                    ),
+                ]
                 sky = self.sky(16, 8, values, wrap=wrap, rotation=77.0, scale=[1.0, 0.5, 0.25])
-                self.lit_floor(sky, objects=objects, camera="Under", material=material, depth=4, spp=128)
+                self.lit_floor(
+                    sky, objects=objects, camera="Under", material=material, depth=4, spp=128
+                )
                 both = self.mean()
-                self.lit_floor(sky, objects=objects, camera="Under", material=material, depth=4, spp=1024)
+                self.lit_floor(
+                    sky, objects=objects, camera="Under", material=material, depth=4, spp=1024
+                )
                 for one, other in zip(both, self.without_search()):
                     self.assertAlmostEqual(one, other, delta=0.015 * other)
 
@@ -117,7 +167,12 @@ class Images(EnvironmentCase):
         self.assertEqual(self.mean(), [0, 0, 0])
 
     def test_every_path_gives_the_same_bits(self):
-        self.lit_floor(self.sky(4, 2, [0.1, 0.2, 0.3, 0.4, 5.0, 0.1, 0.1, 0.1]), objects=[LAMP], camera="Under", spp=4)
+        self.lit_floor(
+            self.sky(4, 2, [0.1, 0.2, 0.3, 0.4, 5.0, 0.1, 0.1, 0.1]),
+            objects=[LAMP],
+            camera="Under",
+            spp=4,
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
         for way in WAYS:
             self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", *way)
@@ -127,9 +182,20 @@ class Images(EnvironmentCase):
         """The classic engine chooses no directions: nothing of it is in the program."""
         self.lit_floor(self.sky(4, 2, [1.0] * 8), material={"class": "Lambert"}, spp=1)
         for engine, isThere in (("path", True), ("classic", False)):
-            out, _ = self.run_rtslc("explain", "scene.json", "--no-savings", "--json", "--set", f"render.engine={engine}")
-            methods = {entry["subject"]: entry["needed"] for item in json.loads(out)["items"] if item["item"] == "methods"
-                       for entry in item["entries"]}
+            out, _ = self.run_rtslc(
+                "explain",
+                "scene.json",
+                "--no-savings",
+                "--json",
+                "--set",
+                f"render.engine={engine}",
+            )
+            methods = {
+                entry["subject"]: entry["needed"]
+                for item in json.loads(out)["items"]
+                if item["item"] == "methods"
+                for entry in item["entries"]
+            }
             self.assertEqual(methods["EnvironmentMap.sampleDirection"], isThere)
 
 
@@ -138,9 +204,13 @@ class OwnSkies(EnvironmentCase):
         """The irradiance of a disk around the zenith, and the sky's around it."""
         self.write("sun.rtsl", SUN)
         self.lit_floor({"class": "Sun"}, depth=1, spp=64)
-        scene = (self.folder / "scene.json").read_text().replace('"shaders.rtsl"', '"shaders.rtsl", "sun.rtsl"')
+        scene = (
+            (self.folder / "scene.json")
+            .read_text()
+            .replace('"shaders.rtsl"', '"shaders.rtsl", "sun.rtsl"')
+        )
         self.write("scene.json", scene)
-        of_disk = math.pi * (1 - 0.99 ** 2)
+        of_disk = math.pi * (1 - 0.99**2)
         self.assert_gray(0.5 / math.pi * (20 * of_disk + 0.1 * (math.pi - of_disk)), 0.005)
 
 

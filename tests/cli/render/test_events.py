@@ -42,7 +42,12 @@ SCENE = {
     "rtsl": 1,
     "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
     "rayGeneration": {"class": "Eye"},
-    "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2}, "material": {"class": "Endless"}}],
+    "objects": [
+        {
+            "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2},
+            "material": {"class": "Endless"},
+        }
+    ],
     "render": {"engine": "programs", "size": [4, 3], "spp": 2, "depth": 5},
 }
 
@@ -63,31 +68,54 @@ class Events(Case):
 
     def test_prints_come_in_the_order_of_the_launch(self):
         said = self.render("scene.json", "a.exr", "--print")["printed"]
-        places = [(x, y, s) for y in range(3) for x in range(4) for s in range(2) if x == 1 or y == 2]
-        self.assertEqual(said, [
-            f"pixel {x},{y} sample {s}: at uvec2({x}, {y}) is {'true' if x == 1 else 'false'} ivec2(-1, 2) "
-            "color(0.5, 0.5, 0.5) mat2(1, 0, 0, 1) -0.125" for x, y, s in places])
-        for arguments in (["--threads", "1", "-O", "0"], ["--trace", "split"], ["--target", "host-megakernel"]):
+        places = [
+            (x, y, s) for y in range(3) for x in range(4) for s in range(2) if x == 1 or y == 2
+        ]
+        self.assertEqual(
+            said,
+            [
+                f"pixel {x},{y} sample {s}: at uvec2({x}, {y}) is {'true' if x == 1 else 'false'} ivec2(-1, 2) "
+                "color(0.5, 0.5, 0.5) mat2(1, 0, 0, 1) -0.125"
+                for x, y, s in places
+            ],
+        )
+        for arguments in (
+            ["--threads", "1", "-O", "0"],
+            ["--trace", "split"],
+            ["--target", "host-megakernel"],
+        ):
             with self.subTest(arguments=arguments):
-                self.assertEqual(self.render("scene.json", "b.exr", "--print", *arguments)["printed"], said)
+                self.assertEqual(
+                    self.render("scene.json", "b.exr", "--print", *arguments)["printed"], said
+                )
                 self.assert_same("a.exr", "b.exr")
 
     def test_nothing_is_printed_unless_asked(self):
         self.assertNotIn("printed", self.render("scene.json", "a.exr"))
         out, _ = self.run_rtslc("render", "scene.json", "-o", "b.exr", "--quiet")
         self.assertEqual(out, "")
-        out, _ = self.run_rtslc("render", "scene.json", "-o", "b.exr", "--quiet", "--print", "--spp", "1")
+        out, _ = self.run_rtslc(
+            "render", "scene.json", "-o", "b.exr", "--quiet", "--print", "--spp", "1"
+        )
         self.assertEqual(len(out.splitlines()), 6)
         self.assert_same("a.exr", "b.exr")
 
     def test_exceptions_are_counted_and_answered(self):
         # Two samples a pixel: table[3], the ray without a direction, three mirrors.
         expected = {"stackOverflow": 6, "badRay": 2, "index": 2}
-        ways = ([], ["-O", "0", "--trace", "split", "--threads", "1"], ["--target", "host-megakernel"])
+        ways = (
+            [],
+            ["-O", "0", "--trace", "split", "--threads", "1"],
+            ["--target", "host-megakernel"],
+        )
         for way in ways:
             with self.subTest(way=way):
-                self.assertEqual(self.render("scene.json", "a.exr", "--exceptions", *way)["exceptions"], expected)
-                self.assertEqual(self.render("answered.json", "b.exr", *way)["exceptions"], expected)
+                self.assertEqual(
+                    self.render("scene.json", "a.exr", "--exceptions", *way)["exceptions"], expected
+                )
+                self.assertEqual(
+                    self.render("answered.json", "b.exr", *way)["exceptions"], expected
+                )
                 if not way:
                     self.run_rtslc("render", "scene.json", "-o", "first.exr", "-q", "--exceptions")
                     self.run_rtslc("render", "answered.json", "-o", "second.exr", "-q")

@@ -20,7 +20,17 @@ class Parts(Case):
         self.glass_scene()
 
     def render(self, name, *options, **more):
-        out, _ = self.run_rtslc("render", "scene.json", "-o", name, "-Wno-depth-limit", "--spp=3", *SMALL, *options, **more)
+        out, _ = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            name,
+            "-Wno-depth-limit",
+            "--spp=3",
+            *SMALL,
+            *options,
+            **more,
+        )
         return out
 
     def change(self, **changes):
@@ -41,21 +51,29 @@ class Crop(Parts):
         left, _, right, _ = struct.unpack("<4i", attributes(data)["dataWindow"])
         width = right - left + 1
         pixels = list(zip(*channels(data).values()))
-        return [pixels[i:i + width] for i in range(0, len(pixels), width)]
+        return [pixels[i : i + width] for i in range(0, len(pixels), width)]
 
     def cut(self, name, x0, y0, x1, y1):
         """The pixels of a picture that lie in a part of it."""
         return [row[x0:x1] for row in self.pixels(name)[y0:y1]]
 
     def test_it_has_the_bits_of_the_whole_picture(self):
-        for way in ([], ["--traversal=device", "--threads=1"], ["--target=host-megakernel"], ["--time=5m"], ["--trace=split"]):
+        for way in (
+            [],
+            ["--traversal=device", "--threads=1"],
+            ["--target=host-megakernel"],
+            ["--time=5m"],
+            ["--trace=split"],
+        ):
             self.render("whole.exr", *way)
             for crop in ((0, 0, 50, 37), (3, 2, 4, 3), (17, 5, 50, 36)):
                 with self.subTest(way=way, crop=crop):
                     self.render("crop.exr", "--crop={},{},{},{}".format(*crop), *way)
                     header = attributes((self.folder / "crop.exr").read_bytes())
                     x0, y0, x1, y1 = crop
-                    self.assertEqual(struct.unpack("<4i", header["dataWindow"]), (x0, y0, x1 - 1, y1 - 1))
+                    self.assertEqual(
+                        struct.unpack("<4i", header["dataWindow"]), (x0, y0, x1 - 1, y1 - 1)
+                    )
                     self.assertEqual(struct.unpack("<4i", header["displayWindow"]), (0, 0, 49, 36))
                     self.assertEqual(self.pixels("crop.exr"), self.cut("whole.exr", *crop))
 
@@ -67,25 +85,59 @@ class Crop(Parts):
     def test_of_a_package(self):
         self.run_rtslc("pack", "scene.json", "-o", "a.rtslpkg")
         self.render("a.exr", "--crop=10,10,20,15", "--target=host-megakernel")
-        subprocess.run([os.environ["RTSL_RUN"], "a.rtslpkg", "-o", "b.exr", "--target=host", "--crop=10,10,20,15", "--spp=3", *SMALL],
-                       cwd=self.folder, check=True, capture_output=True)
+        subprocess.run(
+            [
+                os.environ["RTSL_RUN"],
+                "a.rtslpkg",
+                "-o",
+                "b.exr",
+                "--target=host",
+                "--crop=10,10,20,15",
+                "--spp=3",
+                *SMALL,
+            ],
+            cwd=self.folder,
+            check=True,
+            capture_output=True,
+        )
         self.assert_same_bits("a.exr", "b.exr")
 
     def test_samples_that_are_not_finite_are_named_by_their_place_in_the_whole(self):
-        self.write("Bad.rtsl", "class Bad : rt_Miss;\nvoid miss() { rt_SampleColor = color(1.0 / (rt_RayDirection.x * 0.0)); }\n")
+        self.write(
+            "Bad.rtsl",
+            "class Bad : rt_Miss;\nvoid miss() { rt_SampleColor = color(1.0 / (rt_RayDirection.x * 0.0)); }\n",
+        )
         scene = self.change(background={"class": "Bad"}, objects=[])
         self.change(**{"import": scene["import"] + ["Bad.rtsl"]})
         for way in ([], ["--target=host-megakernel"]):
-            document = json.loads(self.render("a.exr", "--crop=20,10,22,12", "--json", "-Wno-not-finite", *way))
+            document = json.loads(
+                self.render("a.exr", "--crop=20,10,22,12", "--json", "-Wno-not-finite", *way)
+            )
             self.assertEqual(document["notFinite"][0]["pixel"], [20, 10], way)
             self.assertEqual(document["samplesNotFinite"], 12)
 
     def test_bad_values(self):
-        for crop in ("1", "1,2,3", "1,2,3,4,5", "5,5,5,9", "5,9,9,9", "-1,0,3,3", "a,b,c,d", "0,0,1e3,4", "0, 0,3,3", "0,0,999999,3"):
+        for crop in (
+            "1",
+            "1,2,3",
+            "1,2,3,4,5",
+            "5,5,5,9",
+            "5,9,9,9",
+            "-1,0,3,3",
+            "a,b,c,d",
+            "0,0,1e3,4",
+            "0, 0,3,3",
+            "0,0,999999,3",
+        ):
             with self.subTest(crop=crop):
-                self.refuse("give x0,y0,x1,y1 in pixels from the top left, such as 0,0,64,48", f"--crop={crop}")
+                self.refuse(
+                    "give x0,y0,x1,y1 in pixels from the top left, such as 0,0,64,48",
+                    f"--crop={crop}",
+                )
         messages = self.diagnose("render", "scene.json", "-o", "a.png", *SMALL, "--crop=0,0,51,3")
-        self.assert_message(messages, "E0805", "the crop 0,0,51,3 is no part of a picture of 50x37 pixels")
+        self.assert_message(
+            messages, "E0805", "the crop 0,0,51,3 is no part of a picture of 50x37 pixels"
+        )
 
 
 class Cameras(Parts):
@@ -109,20 +161,40 @@ class Cameras(Parts):
         self.render("object.exr")
         for one, other in (("first", "front"), ("top", "set"), ("top", "scene"), ("top", "object")):
             self.assert_same_bits(f"{one}.exr", f"{other}.exr")
-        self.assertNotEqual((self.folder / "top.exr").read_bytes(), (self.folder / "front.exr").read_bytes())
+        self.assertNotEqual(
+            (self.folder / "top.exr").read_bytes(), (self.folder / "front.exr").read_bytes()
+        )
 
     def test_others_are_not_in_the_program(self):
-        self.write("Odd.rtsl", "class Odd : rt_Camera;\nvoid generateRay() { rt_RayOrigin = vec3(123.456); rt_RayDirection = vec3(0.0, 0.0, 1.0); }\n")
+        self.write(
+            "Odd.rtsl",
+            "class Odd : rt_Camera;\nvoid generateRay() { rt_RayOrigin = vec3(123.456); rt_RayDirection = vec3(0.0, 0.0, 1.0); }\n",
+        )
         scene = json.loads((self.folder / "scene.json").read_text())
-        self.change(**{"import": scene["import"] + ["Odd.rtsl"], "cameras": {**scene["cameras"], "odd": {"class": "Odd"}}})
+        self.change(
+            **{
+                "import": scene["import"] + ["Odd.rtsl"],
+                "cameras": {**scene["cameras"], "odd": {"class": "Odd"}},
+            }
+        )
         for camera in ("front", "odd"):
-            text, _ = self.run_rtslc("compile", "scene.json", "--emit=ir", "--set", f"camera={camera}")
+            text, _ = self.run_rtslc(
+                "compile", "scene.json", "--emit=ir", "--set", f"camera={camera}"
+            )
             self.assertEqual("Odd" in text, camera == "odd")
 
     def test_mistakes(self):
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.png", "--camera=frond"), "E0806",
-                            "there is no camera `frond`; there are `front`, `top`")
-        self.change(cameras={"front": self.front, "bad": {"class": "PinholeCamera", "constructor": {"eye": 1}}})
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "a.png", "--camera=frond"),
+            "E0806",
+            "there is no camera `frond`; there are `front`, `top`",
+        )
+        self.change(
+            cameras={
+                "front": self.front,
+                "bad": {"class": "PinholeCamera", "constructor": {"eye": 1}},
+            }
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.png", "--size=8x8", "--spp=1")
         messages = self.diagnose("check", "scene.json")
         self.assertTrue(messages)
@@ -144,8 +216,12 @@ class Frames(Parts):
         self.run_rtslc("render", "fixed.json", "-o", name, "-Wno-depth-limit", "--spp=3", *SMALL)
 
     def test_values_of_a_frame(self):
-        for frame, eye, background in ((0, [0, 1, 5], [0, 0, 0]), (1, [0, 1.5, 5], [0.25, 0.125, 0]),
-                                       (3, [0, 2, 5], [0.75, 0.375, 0]), (0.5, [0, 1.25, 5], [0.125, 0.0625, 0])):
+        for frame, eye, background in (
+            (0, [0, 1, 5], [0, 0, 0]),
+            (1, [0, 1.5, 5], [0.25, 0.125, 0]),
+            (3, [0, 2, 5], [0.75, 0.375, 0]),
+            (0.5, [0, 1.25, 5], [0.125, 0.0625, 0]),
+        ):
             with self.subTest(frame=frame):
                 self.render("frame.exr", f"--frame={frame}")
                 self.render("set.exr", "--set", f"frame={frame}")
@@ -158,8 +234,10 @@ class Frames(Parts):
 
     def test_numbered_pictures(self):
         self.render("frame.%04d.exr", "--frames=1..3", "-q")
-        self.assertEqual([file for file in self.files() if file.startswith("frame")],
-                         ["frame.0001.exr", "frame.0002.exr", "frame.0003.exr"])
+        self.assertEqual(
+            [file for file in self.files() if file.startswith("frame")],
+            ["frame.0001.exr", "frame.0002.exr", "frame.0003.exr"],
+        )
         for frame in (1, 2, 3):
             self.render("one.exr", f"--frame={frame}")
             self.assert_same_bits("one.exr", f"frame.000{frame}.exr")
@@ -168,19 +246,41 @@ class Frames(Parts):
 
     def test_a_checkpoint_is_of_one_frame(self):
         self.render("a.exr", "--frame=1", "--checkpoint=a.ckpt")
-        arguments = ["render", "scene.json", "-o", "b.exr", "--spp=3", *SMALL, "--checkpoint=a.ckpt"]
-        self.assert_message(self.diagnose(*arguments, "--frame=2"), "E0907", "depends on the scene at frame 1")
+        arguments = [
+            "render",
+            "scene.json",
+            "-o",
+            "b.exr",
+            "--spp=3",
+            *SMALL,
+            "--checkpoint=a.ckpt",
+        ]
+        self.assert_message(
+            self.diagnose(*arguments, "--frame=2"), "E0907", "depends on the scene at frame 1"
+        )
 
     def test_the_first_mistake_ends_a_sequence(self):
         self.change(ambient={"frames": {"0": 0, "1": "dark"}, "interpolate": "step"})
-        _, error = self.run_rtslc("render", "scene.json", "-o", "f%d.png", "--frames=0..3", "--spp=1", *SMALL, status=DIAGNOSED)
+        _, error = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "f%d.png",
+            "--frames=0..3",
+            "--spp=1",
+            *SMALL,
+            status=DIAGNOSED,
+        )
         self.assertEqual(error.count("is a color, not a string"), 1)
         self.assertEqual([file for file in self.files() if file.endswith(".png")], ["f0.png"])
 
     def test_ctrl_c_ends_a_sequence(self):
-        running = subprocess.Popen([RTSLC, "render", "scene.json", "-o", "f%d.exr", "--frames=0..9", "--time=5m", *SMALL],
-                                   cwd=self.folder, stderr=subprocess.PIPE,
-                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        running = subprocess.Popen(
+            [RTSLC, "render", "scene.json", "-o", "f%d.exr", "--frames=0..9", "--time=5m", *SMALL],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         for _ in range(SECONDS * 10):
             if (self.folder / "f0.exr").exists():
                 break
@@ -192,22 +292,35 @@ class Frames(Parts):
 
     def test_mistakes_in_key_frames(self):
         self.change(background={"frames": {"0": [0, 0, 0], "last": [1, 1, 1]}})
-        self.assert_message(self.diagnose("check", "scene.json"), "E0804", "a key of `frames` is the number of a frame, not `last`")
+        self.assert_message(
+            self.diagnose("check", "scene.json"),
+            "E0804",
+            "a key of `frames` is the number of a frame, not `last`",
+        )
 
     def test_bad_values(self):
-        for options, part in ((["--frame=soon"], "`soon` is not a number"), (["--frame=inf"], "`inf` is not a number"),
-                              (["--frames=3"], "`3` is no range of frames; write the first and the last: `0..47`"),
-                              (["--frames=3..1"], "frame 3 comes after frame 1"), (["--frames=0..x"], "--frames"),
-                              (["--frames=0..9999999"], "1000000"),
-                              (["--frames=0..3"], "`a.png` needs one place for the number of the frame"),
-                              (["--frames=0..3", "-o", "%d.%d.png"], "needs one place for the number of the frame"),
-                              (["--frames=0..3", "-o", "%d.png", "--frame=1"], "`--frame` is one frame"),
-                              (["--frames=0..3", "-o", "%d.png", "--watch"], "`--watch` renders one picture"),
-                              (["--frames=0..3", "-o", "%d.png", "--json"], "a JSON document describes one picture"),
-                              (["--frames=0..3", "-o", "%d.png", "--checkpoint=a"], "`a` needs one place for the number")):
+        for options, part in (
+            (["--frame=soon"], "`soon` is not a number"),
+            (["--frame=inf"], "`inf` is not a number"),
+            (["--frames=3"], "`3` is no range of frames; write the first and the last: `0..47`"),
+            (["--frames=3..1"], "frame 3 comes after frame 1"),
+            (["--frames=0..x"], "--frames"),
+            (["--frames=0..9999999"], "1000000"),
+            (["--frames=0..3"], "`a.png` needs one place for the number of the frame"),
+            (["--frames=0..3", "-o", "%d.%d.png"], "needs one place for the number of the frame"),
+            (["--frames=0..3", "-o", "%d.png", "--frame=1"], "`--frame` is one frame"),
+            (["--frames=0..3", "-o", "%d.png", "--watch"], "`--watch` renders one picture"),
+            (["--frames=0..3", "-o", "%d.png", "--json"], "a JSON document describes one picture"),
+            (
+                ["--frames=0..3", "-o", "%d.png", "--checkpoint=a"],
+                "`a` needs one place for the number",
+            ),
+        ):
             with self.subTest(options=options):
                 arguments = [] if "-o" in options else ["-o", "a.png"]
-                _, error = self.run_rtslc("render", "scene.json", *arguments, *options, status=USAGE)
+                _, error = self.run_rtslc(
+                    "render", "scene.json", *arguments, *options, status=USAGE
+                )
                 self.assertIn(part, error)
 
 

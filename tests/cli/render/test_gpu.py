@@ -20,7 +20,11 @@ def has_gpu():
     except OSError:
         return False
     count = ctypes.c_int(0)
-    return driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0 and count.value > 0
+    return (
+        driver.cuInit(0) == 0
+        and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
+        and count.value > 0
+    )
 
 
 class Gpu(Case):
@@ -28,11 +32,25 @@ class Gpu(Case):
         super().setUp()
         self.glass_scene()
 
-    def render(self, *arguments, status=FINE, fake="", folder=os.environ["FAKE_CUDA_FOLDER"], program=(RTSLC, "render", "scene.json")):
+    def render(
+        self,
+        *arguments,
+        status=FINE,
+        fake="",
+        folder=os.environ["FAKE_CUDA_FOLDER"],
+        program=(RTSLC, "render", "scene.json"),
+    ):
         """With the stand-in of the driver; `fake` names a way in which it fails."""
         environment = {**os.environ, "LD_LIBRARY_PATH": str(folder), "FAKE_CUDA": fake}
-        done = subprocess.run([*program, "-o", "a.exr", "--target=gpu", *arguments], cwd=self.folder, timeout=SECONDS,
-                              env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        done = subprocess.run(
+            [*program, "-o", "a.exr", "--target=gpu", *arguments],
+            cwd=self.folder,
+            timeout=SECONDS,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
         self.assertEqual(done.returncode, status, done.stderr[:4000])
         return done.stdout, done.stderr
 
@@ -43,34 +61,56 @@ class Gpu(Case):
         self.assertEqual(error, "")
         self.assertEqual((figures["pixels"], figures["samples"], figures["seed"]), (576, 1152, 3))
         gpu = figures["gpu"]
-        self.assertEqual((gpu["device"], gpu["blocks"], gpu["threadsPerBlock"], gpu["registers"]), ("Fake 1000", 5, 128, 40))
+        self.assertEqual(
+            (gpu["device"], gpu["blocks"], gpu["threadsPerBlock"], gpu["registers"]),
+            ("Fake 1000", 5, 128, 40),
+        )
         for seconds in (gpu["loadSeconds"], gpu["uploadSeconds"], *figures["seconds"].values()):
             self.assertGreaterEqual(seconds, 0)
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
         (self.folder / "a.exr").rename(self.folder / "first.exr")
-        out, _ = self.render("--size", "32x18", "--spp", "2", "--seed", "3", "--compare", "first.exr", "--json",
-                             program=(RTSL_RUN, "x.rtslpkg"))
+        out, _ = self.render(
+            "--size",
+            "32x18",
+            "--spp",
+            "2",
+            "--seed",
+            "3",
+            "--compare",
+            "first.exr",
+            "--json",
+            program=(RTSL_RUN, "x.rtslpkg"),
+        )
         self.assertEqual(json.loads(out)["laneBytes"], gpu["laneBytes"])
 
     def test_a_rendering_goes_on_with_its_sums(self):
         """They go to the device and come back; sample n of the stand-in is n times what it
         paints."""
-        whole = json.loads(self.render(*SMALL[:2], "--spp=9", "--checkpoint=whole.ckpt", "--json")[0])
+        whole = json.loads(
+            self.render(*SMALL[:2], "--spp=9", "--checkpoint=whole.ckpt", "--json")[0]
+        )
         (self.folder / "a.exr").rename(self.folder / "whole.exr")
         for spp in (2, 5, 9):
-            part = json.loads(self.render(*SMALL[:2], f"--spp={spp}", "--checkpoint=a.ckpt", "--json")[0])
+            part = json.loads(
+                self.render(*SMALL[:2], f"--spp={spp}", "--checkpoint=a.ckpt", "--json")[0]
+            )
             self.assertEqual(part["samples"], 576 * spp)
         self.assertEqual(part["resumedAt"], 5)
         self.assertEqual((part["samples"], part["pixels"]), (whole["samples"], whole["pixels"]))
         self.assert_same_bits("a.exr", "whole.exr")
-        document = json.loads(self.render(*SMALL[:2], "--time=300ms", "--json", "--crop=3,4,10,8")[0])
+        document = json.loads(
+            self.render(*SMALL[:2], "--time=300ms", "--json", "--crop=3,4,10,8")[0]
+        )
         self.assertEqual(document["samples"], 28 * document["spp"])
 
     def test_it_says_what_ran(self):
         _, error = self.render(*SMALL)
-        self.assertRegex(error, r"^a\.exr: 32x18, 2 spp; compiled in \d+ ms, rendered in .* samples/s\)\n"
-                                r"Fake 1000: 40 registers and 40 local bytes per thread, 5 blocks of 128 threads, \d+ bytes for the rays of "
-                                r"each; code loaded in \d+ ms, scene in \d+ ms\n$")
+        self.assertRegex(
+            error,
+            r"^a\.exr: 32x18, 2 spp; compiled in \d+ ms, rendered in .* samples/s\)\n"
+            r"Fake 1000: 40 registers and 40 local bytes per thread, 5 blocks of 128 threads, \d+ bytes for the rays of "
+            r"each; code loaded in \d+ ms, scene in \d+ ms\n$",
+        )
 
     def test_every_example_goes_there(self):
         for scene in sorted(EXAMPLES.glob("*/scene.json")):
@@ -79,18 +119,31 @@ class Gpu(Case):
 
     def test_what_is_wrong_with_a_gpu_is_said(self):
         host = "`--target=host-megakernel` renders the same picture on the CPU"
-        for fake, text in (("no-device", "there is a CUDA driver, but no device"),
-                           ("old-driver", "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer"),
-                           ("old-ptx", "the CUDA driver is too old for the program's PTX"),
-                           ("other-gpu", "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed")):
+        for fake, text in (
+            ("no-device", "there is a CUDA driver, but no device"),
+            (
+                "old-driver",
+                "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
+            ),
+            ("old-ptx", "the CUDA driver is too old for the program's PTX"),
+            (
+                "other-gpu",
+                "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
+            ),
+        ):
             with self.subTest(fake=fake):
                 _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
                 self.assertIn("error[E1002]: " + text, error)
                 self.assertIn(host, error)
         _, error = self.render(*SMALL, "-O0", fake="little-memory", status=DIAGNOSED)
         self.assertIn("error[E1001]: not enough GPU memory for", error)
-        for fake, text in (("fault", "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered"),
-                           ("overflow", "rays of depth 8 overflow the stack that was made for them")):
+        for fake, text in (
+            (
+                "fault",
+                "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered",
+            ),
+            ("overflow", "rays of depth 8 overflow the stack that was made for them"),
+        ):
             with self.subTest(fake=fake):
                 _, error = self.render(*SMALL, "-O0", fake=fake, status=INTERNAL)
                 self.assertIn(text, error)
@@ -98,16 +151,24 @@ class Gpu(Case):
 
     def test_a_missing_driver_is_said_before_anything_is_compiled(self):
         (self.folder / "libcuda.so.1").write_text("no driver")
-        self.write("scene.json", (self.folder / "scene.json").read_text().replace("Glass.rtsl", "Missing.rtsl"))
+        self.write(
+            "scene.json",
+            (self.folder / "scene.json").read_text().replace("Glass.rtsl", "Missing.rtsl"),
+        )
         _, error = self.render(*SMALL, folder=self.folder, status=DIAGNOSED)
         self.assertIn("error[E1002]: there is no CUDA driver", error)
         self.assertNotIn("Missing.rtsl", error)
         self.assertIn("--target=host-megakernel", error)
 
     def test_what_a_gpu_cannot_do_is_refused(self):
-        for arguments, text in ((["--print"], "--print: a GPU cannot print; `--target=host-megakernel` prints"),
-                                (["--fp=double"], "--fp: shaders on a GPU compute in single precision; give strict or fast"),
-                                (["--gpu-arch=sm_12"], "--gpu-arch")):
+        for arguments, text in (
+            (["--print"], "--print: a GPU cannot print; `--target=host-megakernel` prints"),
+            (
+                ["--fp=double"],
+                "--fp: shaders on a GPU compute in single precision; give strict or fast",
+            ),
+            (["--gpu-arch=sm_12"], "--gpu-arch"),
+        ):
             with self.subTest(arguments=arguments):
                 _, error = self.render(*SMALL, *arguments, status=USAGE)
                 self.assertIn(text, error)
@@ -122,15 +183,31 @@ class Gpu(Case):
             for arguments in ((), ("--exceptions",), ("--gpu-arch=sm_75",)):
                 with self.subTest(scene=scene, arguments=arguments):
                     for target in ("gpu", "host-megakernel"):
-                        self.run_rtslc("render", scene, "-o", f"{target}.exr", "-q", *SMALL, *arguments, f"--target={target}")
+                        self.run_rtslc(
+                            "render",
+                            scene,
+                            "-o",
+                            f"{target}.exr",
+                            "-q",
+                            *SMALL,
+                            *arguments,
+                            f"--target={target}",
+                        )
                     self.assert_same_bits("gpu.exr", "host-megakernel.exr")
 
     @unittest.skipUnless(has_gpu(), "this machine has no GPU")
     def test_checkpoints_of_other_backends(self):
         arguments = ["render", "scene.json", "-q", "-Wno-depth-limit", "--size=200x150"]
         for spp, target in ((3, "gpu"), (5, "host-megakernel"), (11, "gpu"), (13, "host")):
-            self.run_rtslc(*arguments, "-o", "a.exr", f"--spp={spp}", f"--target={target}", "--checkpoint=a.ckpt",
-                           "--checkpoint-every=1ms")
+            self.run_rtslc(
+                *arguments,
+                "-o",
+                "a.exr",
+                f"--spp={spp}",
+                f"--target={target}",
+                "--checkpoint=a.ckpt",
+                "--checkpoint-every=1ms",
+            )
         self.run_rtslc(*arguments, "-o", "whole.exr", "--spp=13")
         self.assert_same_bits("a.exr", "whole.exr")
 

@@ -17,7 +17,12 @@ SQUASHED = {"scale": [0.5, 1.5, 1], "rotate": [20, 30, 0], "translate": [4, 0, 0
 
 
 def balls(*all, **more):
-    return {"primitive": {"class": "Balls", "balls": [list(ball) for ball in all]}, "count": len(all), "material": "paint", **more}
+    return {
+        "primitive": {"class": "Balls", "balls": [list(ball) for ball in all]},
+        "count": len(all),
+        "material": "paint",
+        **more,
+    }
 
 
 def scene(nodes=None, **more):
@@ -28,19 +33,37 @@ def scene(nodes=None, **more):
         "camera": {"class": "Look"},
         "background": [0.1, 0.1, 0.2],
         "materials": {"paint": {"class": "Paint"}},
-        "nodes": nodes or {
+        "nodes": nodes
+        or {
             "cluster": balls(*CLUSTER),
             "one": balls([0, 0, 0, 1.5]),
             "lod": {"selector": {"class": "Near", "limit": 14.6}, "children": ["cluster", "one"]},
-            "dice": {"selector": {"class": "Chance"}, "children": ["cluster", "one", {"child": "one", "transform": {"scale": 0.5}}]},
-            "world": {"children": [
-                {"child": "cluster", "id": 7},
-                {"child": "cluster", "transform": SQUASHED, "variables": {"tint": [0.2, 0.9, 0.3]}, "id": -2},
-                {"child": "lod", "transform": {"translate": [-4, 0, 0]}},
-                {"child": "lod", "transform": {"translate": [-4, 0, -6]}, "variables": {"tint": [0.9, 0.5, 0.1]}},
-                {"selector": {"class": "Some", "mask": 6}, "children": [{"child": "one", "transform": {"scale": 100}}, "far", "dice"],
-                 "transform": {"translate": [3, 2, -4]}},
-            ]},
+            "dice": {
+                "selector": {"class": "Chance"},
+                "children": ["cluster", "one", {"child": "one", "transform": {"scale": 0.5}}],
+            },
+            "world": {
+                "children": [
+                    {"child": "cluster", "id": 7},
+                    {
+                        "child": "cluster",
+                        "transform": SQUASHED,
+                        "variables": {"tint": [0.2, 0.9, 0.3]},
+                        "id": -2,
+                    },
+                    {"child": "lod", "transform": {"translate": [-4, 0, 0]}},
+                    {
+                        "child": "lod",
+                        "transform": {"translate": [-4, 0, -6]},
+                        "variables": {"tint": [0.9, 0.5, 0.1]},
+                    },
+                    {
+                        "selector": {"class": "Some", "mask": 6},
+                        "children": [{"child": "one", "transform": {"scale": 100}}, "far", "dice"],
+                        "transform": {"translate": [3, 2, -4]},
+                    },
+                ]
+            },
             "far": {"child": "lod", "transform": {"translate": [0, 2, 0]}},
         },
         "root": "world",
@@ -75,16 +98,35 @@ class EveryPath(GraphCase):
 
     def test_gives_the_same_bits(self):
         expected, _ = self.render_scene(scene())
-        for options in (["--trace=recurse"], ["--traversal=device"], ["--traversal=device", "--trace=recurse"], ["-O0"],
-                        ["--target=host-megakernel"], ["--keep=all"], ["--target=host-megakernel", "--keep=graph"]):
+        for options in (
+            ["--trace=recurse"],
+            ["--traversal=device"],
+            ["--traversal=device", "--trace=recurse"],
+            ["-O0"],
+            ["--target=host-megakernel"],
+            ["--keep=all"],
+            ["--target=host-megakernel", "--keep=graph"],
+        ):
             picture, _ = self.render_scene(scene(), *options)
             self.assert_same_bits(picture, expected, options)
 
     def test_gives_the_same_forest(self):
         shutil.copytree(EXAMPLES / "forest", self.folder, dirs_exist_ok=True)
         first = None
-        for number, options in enumerate(([], ["--trace=recurse"], ["--traversal=device"], ["--target=host-megakernel"])):
-            self.run_rtslc("render", "forest.json", "-o", f"{number}.exr", "--set", "render.size=[64, 36]", "--spp", "1", *options)
+        for number, options in enumerate(
+            ([], ["--trace=recurse"], ["--traversal=device"], ["--target=host-megakernel"])
+        ):
+            self.run_rtslc(
+                "render",
+                "forest.json",
+                "-o",
+                f"{number}.exr",
+                "--set",
+                "render.size=[64, 36]",
+                "--spp",
+                "1",
+                *options,
+            )
             first = first or "0.exr"
             self.assert_same_bits(f"{number}.exr", first, options)
 
@@ -95,7 +137,9 @@ class EveryPath(GraphCase):
             path = self.write("scene.json", json.dumps(one))
             said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
             graph = next(item for item in json.loads(said)["items"] if item["item"] == "graph")
-            self.assertEqual({entry["subject"] for entry in graph["entries"] if entry["needed"]}, needed)
+            self.assertEqual(
+                {entry["subject"] for entry in graph["entries"] if entry["needed"]}, needed
+            )
 
     def test_in_double_precision_it_is_nearly_the_same(self):
         expected, _ = self.render_scene(scene())
@@ -107,10 +151,18 @@ class EveryPath(GraphCase):
 class Counts(GraphCase):
     def test_several_primitives_are_found_like_several_objects(self):
         """Nothing but the numbers of primitives and instances may differ."""
-        together = {"all": balls(*CLUSTER), "again": {"child": "all", "transform": SQUASHED}, "root": {"children": ["all", "again"]}}
+        together = {
+            "all": balls(*CLUSTER),
+            "again": {"child": "all", "transform": SQUASHED},
+            "root": {"children": ["all", "again"]},
+        }
         each = {f"b{i}": balls(ball) for i, ball in enumerate(CLUSTER)}
-        apart = {**each, "all": {"children": list(each)}, "again": {"child": "all", "transform": SQUASHED},
-                 "root": {"children": ["all", "again"]}}
+        apart = {
+            **each,
+            "all": {"children": list(each)},
+            "again": {"child": "all", "transform": SQUASHED},
+            "root": {"children": ["all", "again"]},
+        }
         text = SHADERS.read_text().replace("(facing + mark)", "facing")
         self.write("Graph.rtsl", text)
         for traversal in ("embree", "device"):
@@ -122,7 +174,9 @@ class Counts(GraphCase):
         """Their t is known to 0.1 only: within that, a ray must not meet the ball that it leaves,
         but must meet others, however they are grouped. Two rays leave each hit, so that the second
         one starts after another ray was traced."""
-        self.write("Rough.rtsl", """
+        self.write(
+            "Rough.rtsl",
+            """
             class RoughBalls : Balls {
               void intersect() {
                 vec4 ball = balls[rt_PrimitiveIndex];
@@ -140,18 +194,38 @@ class Counts(GraphCase):
                                               : trace(rt_HitPoint, away()) + trace(rt_HitPoint, 2.0 * away());
               }
             };
-            """)
+            """,
+        )
         balls = [[0, 0, 0, 1], [1.9, 0, 0, 1], [0, 1.9, 0, 1], [0.95, -1.8, 0, 1]]
 
         def picture(groups, *options):
-            objects = [{"primitive": {"class": "RoughBalls", "balls": group}, "count": len(group), "material": "near"}
-                       for group in groups]
-            return self.render_scene({"rtsl": 1, "import": ["Graph.rtsl", "Rough.rtsl"], "camera": {"class": "Look"}, "objects": objects,
-                                "materials": {"near": {"class": "HowNear"}}, "render": {"size": [48, 36], "spp": 4, "depth": 1}},
-                               *options)[0]
+            objects = [
+                {
+                    "primitive": {"class": "RoughBalls", "balls": group},
+                    "count": len(group),
+                    "material": "near",
+                }
+                for group in groups
+            ]
+            return self.render_scene(
+                {
+                    "rtsl": 1,
+                    "import": ["Graph.rtsl", "Rough.rtsl"],
+                    "camera": {"class": "Look"},
+                    "objects": objects,
+                    "materials": {"near": {"class": "HowNear"}},
+                    "render": {"size": [48, 36], "spp": 4, "depth": 1},
+                },
+                *options,
+            )[0]
 
         apart = picture([[ball] for ball in balls])
-        for options in ((), ("--trace=split",), ("--traversal=device",), ("--target=host-megakernel",)):
+        for options in (
+            (),
+            ("--trace=split",),
+            ("--traversal=device",),
+            ("--target=host-megakernel",),
+        ):
             self.assert_same_bits(picture([balls], *options), apart, options)
 
     def test_the_count_may_be_that_of_a_buffer(self):
@@ -169,11 +243,35 @@ class Counts(GraphCase):
         shuffle = random.Random(1)
         with open(self.folder / "balls.raw", "wb") as file:
             for _ in range(100000):
-                file.write(struct.pack("<4f", *(shuffle.uniform(-6, 6) for _ in range(3)), shuffle.uniform(0.005, 0.03)))
-        many = scene({"all": {"primitive": {"class": "Balls", "balls": {"buffer": "balls.raw", "shape": [100000]}}, "count": "balls",
-                              "material": "paint"},
-                      "two": {"children": ["all", {"child": "all", "transform": {"rotate": [0, 40, 0], "translate": [0, 0, -9]}}]}},
-                     root="two")
+                file.write(
+                    struct.pack(
+                        "<4f",
+                        *(shuffle.uniform(-6, 6) for _ in range(3)),
+                        shuffle.uniform(0.005, 0.03),
+                    )
+                )
+        many = scene(
+            {
+                "all": {
+                    "primitive": {
+                        "class": "Balls",
+                        "balls": {"buffer": "balls.raw", "shape": [100000]},
+                    },
+                    "count": "balls",
+                    "material": "paint",
+                },
+                "two": {
+                    "children": [
+                        "all",
+                        {
+                            "child": "all",
+                            "transform": {"rotate": [0, 40, 0], "translate": [0, 0, -9]},
+                        },
+                    ]
+                },
+            },
+            root="two",
+        )
         first, _ = self.render_scene(many)
         second, _ = self.render_scene(many, "--traversal=device")
         self.assert_same_bits(first, second)
@@ -182,7 +280,9 @@ class Counts(GraphCase):
         """Chosen by what each sends out; the mean of the picture is known, and must not depend on
         how they are grouped. (Their emission reads no state, above all no normal, which the density
         of a point on them depends on.)"""
-        self.write("Floor.rtsl", """
+        self.write(
+            "Floor.rtsl",
+            """
 class Floor : rt_Primitive {
   void intersect() {
     float t = -rt_RayOrigin.y / rt_RayDirection.y;
@@ -195,19 +295,32 @@ class Floor : rt_Primitive {
 class Under : rt_Camera {
   void generateRay() { rt_RayOrigin = vec3(0.0, 0.2, 0.0); rt_RayDirection = vec3(0.01 * rt_ScreenCoord.x, -1.0, 0.01 * rt_ScreenCoord.y); }
 };
-""")
+""",
+        )
         lamps = [[-2, 3, 0, 0.2], [2, 2, 1, 0.4], [0, 4, -2, 0.1], [1, 1.5, -1, 0.05]]
-        floor = {"primitive": {"class": "Floor"}, "material": {"class": "Lambert", "reflectance": 1}}
+        floor = {
+            "primitive": {"class": "Floor"},
+            "material": {"class": "Lambert", "reflectance": 1},
+        }
 
         def lit(nodes, children):
             nodes = {**nodes, "root": {"children": [*children, floor]}}
-            return scene(nodes, root="root", camera={"class": "Under"}, background=0, variables={},
-                         materials={"paint": {"class": "Paint", "tint": [8, 8, 8]}},
-                         render={"engine": "path", "size": [16, 16], "spp": 256, "depth": 1},
-                         **{"import": ["Graph.rtsl", "Floor.rtsl", "std.materials"]})
+            return scene(
+                nodes,
+                root="root",
+                camera={"class": "Under"},
+                background=0,
+                variables={},
+                materials={"paint": {"class": "Paint", "tint": [8, 8, 8]}},
+                render={"engine": "path", "size": [16, 16], "spp": 256, "depth": 1},
+                **{"import": ["Graph.rtsl", "Floor.rtsl", "std.materials"]},
+            )
 
         together = lit({"lamps": balls(*lamps, transform={"scale": 1.25})}, ["lamps"])
-        apart = lit({f"l{i}": balls(lamp, transform={"scale": 1.25}) for i, lamp in enumerate(lamps)}, [f"l{i}" for i in range(4)])
+        apart = lit(
+            {f"l{i}": balls(lamp, transform={"scale": 1.25}) for i, lamp in enumerate(lamps)},
+            [f"l{i}" for i in range(4)],
+        )
         # A sphere of radiance L under the angle asin(r / d) lights a white floor by L (r / d)^2
         # cos(theta).
         distances = [math.hypot(*lamp[:3]) for lamp in lamps]
@@ -230,16 +343,26 @@ class Under : rt_Camera {
         broken = one()
         broken["nodes"]["all"]["primitive"]["balls"][3][3] = -1
         path = self.write("scene.json", json.dumps(broken, indent=1))
-        self.assert_message(self.diagnose("check", path), "E0816", "primitive 3 of `all` are inverted")
+        self.assert_message(
+            self.diagnose("check", path), "E0816", "primitive 3 of `all` are inverted"
+        )
 
 
 class Ids(GraphCase):
     def test_the_nearest_one_counts(self):
-        by_child = {"one": balls(*CLUSTER), "root": {"children": [{"child": {"child": "one", "id": 3}, "id": 4}]}}
-        of_geometry = {"one": balls(*CLUSTER, id=3), "root": {"children": [{"child": "one", "id": 9}]}}
+        by_child = {
+            "one": balls(*CLUSTER),
+            "root": {"children": [{"child": {"child": "one", "id": 3}, "id": 4}]},
+        }
+        of_geometry = {
+            "one": balls(*CLUSTER, id=3),
+            "root": {"children": [{"child": "one", "id": 9}]},
+        }
         other = {"one": balls(*CLUSTER, id=4), "root": {"children": ["one"]}}
         self.assert_same_picture(scene(by_child, root="root"), scene(of_geometry, root="root"))
-        first, second = (self.render_scene(scene(nodes, root="root"))[0] for nodes in (by_child, other))
+        first, second = (
+            self.render_scene(scene(nodes, root="root"))[0] for nodes in (by_child, other)
+        )
         self.assertNotEqual(first.read_bytes(), second.read_bytes())
 
     def test_of_an_object(self):
@@ -250,9 +373,13 @@ class Ids(GraphCase):
         self.assert_same_picture(plain, listed)
 
     def test_a_32_bit_number(self):
-        for id in (2 ** 31, -2 ** 31 - 1, 2 ** 32, 0.5):
-            self.assert_message(self.mistakes(scene({"one": balls(*CLUSTER, id=id)}, root="one")), "E0805", "`id` is a whole number")
-        for id in (2 ** 31 - 1, -2 ** 31):
+        for id in (2**31, -(2**31) - 1, 2**32, 0.5):
+            self.assert_message(
+                self.mistakes(scene({"one": balls(*CLUSTER, id=id)}, root="one")),
+                "E0805",
+                "`id` is a whole number",
+            )
+        for id in (2**31 - 1, -(2**31)):
             self.render_scene(scene({"one": balls(*CLUSTER, id=id)}, root="one"))
 
 
@@ -260,27 +387,51 @@ class Selectors(GraphCase):
     def test_what_is_visited_is_seen_and_nothing_else(self):
         three = {f"b{i}": balls([2.5 * i - 2.5, 0, 0, 1], id=i) for i in range(3)}
         for mask in (0, 2, 5, 7):
-            some = {**three, "root": {"selector": {"class": "Some", "mask": mask}, "children": list(three)}}
+            some = {
+                **three,
+                "root": {"selector": {"class": "Some", "mask": mask}, "children": list(three)},
+            }
             seen = [name for i, name in enumerate(three) if mask >> i & 1]
-            plain = {**three, "root": {"children": seen or [{"child": "b0", "transform": {"translate": [0, 1e4, 0]}}]}}
+            plain = {
+                **three,
+                "root": {
+                    "children": seen or [{"child": "b0", "transform": {"translate": [0, 1e4, 0]}}]
+                },
+            }
             self.assert_same_picture(scene(some, root="root"), scene(plain, root="root"))
 
     def test_the_origin_is_in_the_space_of_the_node(self):
         """Scaled by 4, the same distance is a quarter."""
-        lod = {"near": balls([0, 0, 0, 0.25]), "away": balls([0, 0, 0, 0.5]),
-               "lod": {"selector": {"class": "Near", "limit": 3.6}, "children": ["near", "away"]},
-               "root": {"child": "lod", "transform": {"scale": 4}}}
-        plain = {"near": balls([0, 0, 0, 0.25]), "root": {"child": "near", "transform": {"scale": 4}}}
+        lod = {
+            "near": balls([0, 0, 0, 0.25]),
+            "away": balls([0, 0, 0, 0.5]),
+            "lod": {"selector": {"class": "Near", "limit": 3.6}, "children": ["near", "away"]},
+            "root": {"child": "lod", "transform": {"scale": 4}},
+        }
+        plain = {
+            "near": balls([0, 0, 0, 0.25]),
+            "root": {"child": "near", "transform": {"scale": 4}},
+        }
         # 3.58 units from the node: sqrt(3^2 + 14^2) / 4
-        self.assert_same_picture(scene(lod, root="root", variables={}), scene(plain, root="root", variables={}))
+        self.assert_same_picture(
+            scene(lod, root="root", variables={}), scene(plain, root="root", variables={})
+        )
 
     def test_chance_is_fair_and_the_same_for_every_traversal(self):
         """One child in six, one in six, and two in three: by the mean of many samples."""
-        dice = {"wall": balls([0, 0, -100, 95]), "gone": balls([0, 1e5, 0, 1]),
-                "root": {"selector": {"class": "Chance"}, "children": ["gone", "gone2", "wall"]}, "gone2": balls([0, -1e5, 0, 1])}
+        dice = {
+            "wall": balls([0, 0, -100, 95]),
+            "gone": balls([0, 1e5, 0, 1]),
+            "root": {"selector": {"class": "Chance"}, "children": ["gone", "gone2", "wall"]},
+            "gone2": balls([0, -1e5, 0, 1]),
+        }
         plain = {"root": balls([0, 0, -100, 95])}
         self.write("Graph.rtsl", SHADERS.read_text().replace("(facing + mark)", "1.0"))
-        extra = {"variables": {"shine": 0}, "background": 0, "render": {"size": [16, 16], "spp": 64, "depth": 0}}
+        extra = {
+            "variables": {"shine": 0},
+            "background": 0,
+            "render": {"size": [16, 16], "spp": 64, "depth": 0},
+        }
         means = []
         for nodes in (dice, plain):
             picture, _ = self.render_scene(scene(nodes, root="root", **extra))
@@ -292,8 +443,11 @@ class Selectors(GraphCase):
         one = {"b": balls([0, 0, 0, 1])}
         nothing = scene({"b": balls([0, 1e5, 0, 1])}, root="b")
         for outer, inner in ((1, 1), (1, 2), (2, 1)):
-            nested = {**one, "inner": {"selector": {"class": "Some", "mask": inner}, "children": ["b"]},
-                      "outer": {"selector": {"class": "Some", "mask": outer}, "children": ["inner"]}}
+            nested = {
+                **one,
+                "inner": {"selector": {"class": "Some", "mask": inner}, "children": ["b"]},
+                "outer": {"selector": {"class": "Some", "mask": outer}, "children": ["inner"]},
+            }
             plain = scene(one, root="b") if outer == inner == 1 else nothing
             self.assert_same_picture(scene(nested, root="outer"), plain)
 
@@ -301,56 +455,110 @@ class Selectors(GraphCase):
         def world(**node):
             return scene({"b": balls(*CLUSTER), "root": node}, root="root")
 
-        self.assert_message(self.mistakes(world(selector={"class": "Some", "mask": 1}, child="b")), "E0802", "chooses among `children`")
-        self.assert_message(self.mistakes(world(selector={"class": "Balls", "balls": []}, children=["b"])), "E0811", "where a selector is needed")
-        self.assert_message(self.mistakes(world(selector="paint", children=["b"])), "E0811", "where a selector is needed")
-        self.assert_message(self.mistakes(world(selector="pant", children=["b"])), "E0806", "`pant`")
+        self.assert_message(
+            self.mistakes(world(selector={"class": "Some", "mask": 1}, child="b")),
+            "E0802",
+            "chooses among `children`",
+        )
+        self.assert_message(
+            self.mistakes(world(selector={"class": "Balls", "balls": []}, children=["b"])),
+            "E0811",
+            "where a selector is needed",
+        )
+        self.assert_message(
+            self.mistakes(world(selector="paint", children=["b"])),
+            "E0811",
+            "where a selector is needed",
+        )
+        self.assert_message(
+            self.mistakes(world(selector="pant", children=["b"])), "E0806", "`pant`"
+        )
         self.assert_message(self.mistakes(world(selector=3, children=["b"])), "E0804", "`selector`")
 
 
 class Variables(GraphCase):
     def test_members_that_nothing_sets(self):
         """An error that lists the nodes whose variables could set it, unless nothing reads it or the constructor sets it."""
-        self.write("Bare.rtsl", "class Bare : rt_Material { public float glow; public rt_Texture grain; public optional rt_Texture film;\n"
-                   "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * grain.lookup(); } };\n"
-                   "class Flat : rt_Texture { public float level; public float unread; void lookup() { rt_TextureColor = color(level); } };\n"
-                   "class Made : rt_Texture { public float set; public float kept; public vec2 more; public vec3 steps[];\n"
-                   "  void constructor(float x) { set = 2.0 * x; }\n"
-                   "  void lookup() { rt_TextureColor = color(set + kept + more.x + float(steps.length())); } };\n")
+        self.write(
+            "Bare.rtsl",
+            "class Bare : rt_Material { public float glow; public rt_Texture grain; public optional rt_Texture film;\n"
+            "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * grain.lookup(); } };\n"
+            "class Flat : rt_Texture { public float level; public float unread; void lookup() { rt_TextureColor = color(level); } };\n"
+            "class Made : rt_Texture { public float set; public float kept; public vec2 more; public vec3 steps[];\n"
+            "  void constructor(float x) { set = 2.0 * x; }\n"
+            "  void lookup() { rt_TextureColor = color(set + kept + more.x + float(steps.length())); } };\n",
+        )
 
         def bare(material, **variables):
-            nodes = {"ball": {**balls([0, 0, 0, 1]), "material": "bare"}, "row": {"children": ["ball", {"child": "ball", "transform": SQUASHED}]},
-                     "root": {"child": "row", "variables": variables}, "unused": {"child": "ball"}}
-            return scene(nodes, root="root", materials={"bare": {"class": "Bare", **material}}, textures={"flat": {"class": "Flat"}}, variables={},
-                         **{"import": ["Graph.rtsl", "Bare.rtsl"]})
+            nodes = {
+                "ball": {**balls([0, 0, 0, 1]), "material": "bare"},
+                "row": {"children": ["ball", {"child": "ball", "transform": SQUASHED}]},
+                "root": {"child": "row", "variables": variables},
+                "unused": {"child": "ball"},
+            }
+            return scene(
+                nodes,
+                root="root",
+                materials={"bare": {"class": "Bare", **material}},
+                textures={"flat": {"class": "Flat"}},
+                variables={},
+                **{"import": ["Graph.rtsl", "Bare.rtsl"]},
+            )
 
         places = r"a variable of this name in `ball` \(line \d+\), `row` \(line \d+\), a node \(line \d+\), `root` \(line \d+\) or the scene"
-        for member, given in (("`glow` of `bare`", {"level": 1}), ("`level` of `flat`", {"glow": 1})):
+        for member, given in (
+            ("`glow` of `bare`", {"level": 1}),
+            ("`level` of `flat`", {"glow": 1}),
+        ):
             path = self.write("scene.json", json.dumps(bare({"grain": "flat"}, **given), indent=1))
             error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
-            self.assertRegex(error, r"error\[E0815\]: member " + member + " is read, but not set and without a default: set it, or " + places)
+            self.assertRegex(
+                error,
+                r"error\[E0815\]: member "
+                + member
+                + " is read, but not set and without a default: set it, or "
+                + places,
+            )
             self.assertEqual(error.count("E0815"), 1, error)
         _, warned = self.render_scene(bare({"grain": "flat"}, glow=0.5, level=0.25))
         self.assertNotIn("is not set", warned)
         made = bare({"glow": 1, "grain": {"class": "Made", "constructor": [1]}})
         del made["textures"]
         messages = self.diagnose("check", self.write("scene.json", json.dumps(made, indent=1)))
-        self.assert_message(messages, "E0815", "members `kept`, `more` of `Made` are read, but not set and without a default: set them")
+        self.assert_message(
+            messages,
+            "E0815",
+            "members `kept`, `more` of `Made` are read, but not set and without a default: set them",
+        )
         path = self.write("scene.json", json.dumps(bare({"glow": 1}), indent=1))
         error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
-        self.assertRegex(error, r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a `rt_Texture`, or " + places)
+        self.assertRegex(
+            error,
+            r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a `rt_Texture`, or "
+            + places,
+        )
 
     def tinted(self, material, **nodes):
-        return scene({"b": balls(*CLUSTER), "root": {"children": ["b"]}, **nodes}, root="root", materials={"paint": material},
-                     variables={})
+        return scene(
+            {"b": balls(*CLUSTER), "root": {"children": ["b"]}, **nodes},
+            root="root",
+            materials={"paint": material},
+            variables={},
+        )
 
     def test_the_nearest_definition_counts(self):
         red, green, blue = [1, 0, 0], [0, 1, 0], [0, 0, 1]
-        tinted = [self.render_scene(self.tinted({"class": "Paint", "tint": c}))[0] for c in (red, green, blue)]
+        tinted = [
+            self.render_scene(self.tinted({"class": "Paint", "tint": c}))[0]
+            for c in (red, green, blue)
+        ]
         plain = {"class": "Paint"}
         above = {**self.tinted(plain), "variables": {"tint": red}}
         self.assert_same_bits(self.render_scene(above)[0], tinted[0])
-        group = {**self.tinted(plain, root={"children": ["b"], "variables": {"tint": green}}), "variables": {"tint": red}}
+        group = {
+            **self.tinted(plain, root={"children": ["b"], "variables": {"tint": green}}),
+            "variables": {"tint": red},
+        }
         self.assert_same_bits(self.render_scene(group)[0], tinted[1])
         geometry = copy.deepcopy(group)
         geometry["nodes"]["b"]["variables"] = {"tint": blue}
@@ -363,10 +571,20 @@ class Variables(GraphCase):
 
     def test_what_an_object_refers_to_takes_them_too(self):
         inner = {"class": "Paint", "inner": {"class": "Paint"}}
-        expected = {"class": "Paint", "tint": [0.2, 0.3, 0.9], "inner": {"class": "Paint", "tint": [0.2, 0.3, 0.9]}}
+        expected = {
+            "class": "Paint",
+            "tint": [0.2, 0.3, 0.9],
+            "inner": {"class": "Paint", "tint": [0.2, 0.3, 0.9]},
+        }
         taken = {**self.tinted(inner), "variables": {"tint": [0.2, 0.3, 0.9]}}
         self.assert_same_picture(taken, self.tinted(expected))
-        named = {**taken, "materials": {"paint": {"class": "Paint", "inner": "other"}, "other": {"class": "Paint"}}}
+        named = {
+            **taken,
+            "materials": {
+                "paint": {"class": "Paint", "inner": "other"},
+                "other": {"class": "Paint"},
+            },
+        }
         self.assert_same_picture(named, self.tinted(expected))
 
     def test_a_variable_may_be_an_object(self):
@@ -375,12 +593,29 @@ class Variables(GraphCase):
         self.assert_same_picture(taken, self.tinted({"class": "Paint", "inner": other}))
 
     def test_primitives_selectors_and_cameras_take_them(self):
-        taken = scene({"b": {"primitive": {"class": "Balls"}, "count": "balls", "material": "paint"},
-                       "lod": {"selector": {"class": "Near"}, "children": ["b", {"child": "b", "transform": {"scale": 0.3}}]}},
-                      root="lod", variables={"balls": CLUSTER, "limit": 2, "distance": 9})
-        given = scene({"b": balls(*CLUSTER),
-                       "lod": {"selector": {"class": "Near", "limit": 2}, "children": ["b", {"child": "b", "transform": {"scale": 0.3}}]}},
-                      root="lod", variables={}, camera={"class": "Look", "distance": 9})
+        taken = scene(
+            {
+                "b": {"primitive": {"class": "Balls"}, "count": "balls", "material": "paint"},
+                "lod": {
+                    "selector": {"class": "Near"},
+                    "children": ["b", {"child": "b", "transform": {"scale": 0.3}}],
+                },
+            },
+            root="lod",
+            variables={"balls": CLUSTER, "limit": 2, "distance": 9},
+        )
+        given = scene(
+            {
+                "b": balls(*CLUSTER),
+                "lod": {
+                    "selector": {"class": "Near", "limit": 2},
+                    "children": ["b", {"child": "b", "transform": {"scale": 0.3}}],
+                },
+            },
+            root="lod",
+            variables={},
+            camera={"class": "Look", "distance": 9},
+        )
         self.assert_same_picture(taken, given)
 
     def test_where_all_agree_it_is_a_constant(self):
@@ -391,15 +626,29 @@ class Variables(GraphCase):
 
         same = {**self.tinted({"class": "Paint"}), "variables": {"tint": [1, 0, 0]}}
         self.assertIn("in the code", explained(same)["Paint.tint"]["reason"])
-        two = {"children": [{"child": "b", "variables": {"tint": [1, 0, 0]}}, {"child": "b", "variables": {"tint": [0, 1, 0]}}]}
-        self.assertTrue(explained(self.tinted({"class": "Paint"}, root=two))["Paint.tint"]["needed"])
+        two = {
+            "children": [
+                {"child": "b", "variables": {"tint": [1, 0, 0]}},
+                {"child": "b", "variables": {"tint": [0, 1, 0]}},
+            ]
+        }
+        self.assertTrue(
+            explained(self.tinted({"class": "Paint"}, root=two))["Paint.tint"]["needed"]
+        )
 
     def test_mistakes(self):
         wrong = {**self.tinted({"class": "Paint"}), "variables": {"tint": "red"}}
         messages = self.mistakes(wrong)
-        self.assertIn("the variable `tint`, which member `tint` of `paint` takes,", messages[0]["message"])
-        self.assert_message(self.mistakes(self.tinted({"class": "Paint"}, root={"children": ["b"], "variables": 3})), "E0804",
-                            "`variables`")
+        self.assertIn(
+            "the variable `tint`, which member `tint` of `paint` takes,", messages[0]["message"]
+        )
+        self.assert_message(
+            self.mistakes(
+                self.tinted({"class": "Paint"}, root={"children": ["b"], "variables": 3})
+            ),
+            "E0804",
+            "`variables`",
+        )
         untaken = {**self.tinted({"class": "Paint"}), "variables": {"tinte": 3}}
         self.assertIn("no object takes the variable `tinte`", self.render_scene(untaken)[1])
 

@@ -81,8 +81,16 @@ class Bindless : rt_RayGeneration {
 
 
 def numbers_of(line):
-    return [float(n) for n in line.split(": ", 1)[1].replace("vec4(", "").replace("ivec2(", "").replace("ivec3(", "")
-            .replace(")", "").replace(",", " ").split()]
+    return [
+        float(n)
+        for n in line.split(": ", 1)[1]
+        .replace("vec4(", "")
+        .replace("ivec2(", "")
+        .replace("ivec3(", "")
+        .replace(")", "")
+        .replace(",", " ")
+        .split()
+    ]
 
 
 class Images(Case):
@@ -91,8 +99,12 @@ class Images(Case):
         self.write("probes.rtsl", PROBES)
 
     def scene(self, generation, shaders="probes.rtsl", **more):
-        scene = {"rtsl": 1, "import": [shaders], "rayGeneration": generation,
-                 "render": {"engine": "programs", "size": [1, 1], "spp": 1}}
+        scene = {
+            "rtsl": 1,
+            "import": [shaders],
+            "rayGeneration": generation,
+            "render": {"engine": "programs", "size": [1, 1], "spp": 1},
+        }
         scene.update(more)
         return self.write("scene.json", json.dumps(scene))
 
@@ -107,11 +119,21 @@ class Images(Case):
         single = lambda x: struct.unpack("<f", struct.pack("<f", x))[0]
         vector = lambda low, high: [single(chance.uniform(low, high)) for _ in range(axes)]
         p = [vector(-2.5, 3.5) if i % 3 else vector(0, 1) for i in range(count)]
-        dx = [[single(c * 10 ** chance.uniform(-3, 1)) for c in vector(-1, 1)] for _ in range(count)]
-        dy = [[single(c * 10 ** chance.uniform(-3, 0)) for c in vector(-1, 1)] for _ in range(count)]
+        dx = [
+            [single(c * 10 ** chance.uniform(-3, 1)) for c in vector(-1, 1)] for _ in range(count)
+        ]
+        dy = [
+            [single(c * 10 ** chance.uniform(-3, 0)) for c in vector(-1, 1)] for _ in range(count)
+        ]
         lod = [single(chance.uniform(-1, 6)) for _ in range(count)]
         at = [[chance.randrange(-2, 12) for _ in range(axes)] for _ in range(count)]
-        generation = {"class": f"Probe{axes}D", "images": [image for _, image, _ in cases], "dx": dx, "lod": lod, "at": at}
+        generation = {
+            "class": f"Probe{axes}D",
+            "images": [image for _, image, _ in cases],
+            "dx": dx,
+            "lod": lod,
+            "at": at,
+        }
         generation["uv" if axes == 2 else "uvw"] = p
         if axes == 2:
             generation["dy"] = dy
@@ -119,20 +141,35 @@ class Images(Case):
         lines = iter(self.printed(*options))
         for oracle, image, tolerance in cases:
             one = min(1, len(oracle.sizes) - 1)
-            self.assertEqual(next(lines), [*oracle.sizes[0][:axes], len(oracle.levels), *oracle.sizes[one][:axes]])
+            self.assertEqual(
+                next(lines),
+                [*oracle.sizes[0][:axes], len(oracle.levels), *oracle.sizes[one][:axes]],
+            )
             largest = max(abs(v) for texel in oracle.levels[0].values() for v in texel)
             for i in range(count):
-                expected = [*oracle.sample(p[i]), *oracle.sample(p[i], lod[i]),
-                            *oracle.sample_grad(p[i], dx[i], dy[i] if axes == 2 else [0.0] * 3),
-                            *oracle.load(at[i]), *oracle.load(at[i], 1)]
+                expected = [
+                    *oracle.sample(p[i]),
+                    *oracle.sample(p[i], lod[i]),
+                    *oracle.sample_grad(p[i], dx[i], dy[i] if axes == 2 else [0.0] * 3),
+                    *oracle.load(at[i]),
+                    *oracle.load(at[i], 1),
+                ]
                 for j, (got, wanted) in enumerate(zip(next(lines), expected)):
-                    self.assertAlmostEqual(got, wanted, delta=tolerance * largest,
-                                           msg=(image, i, j // 4, p[i], dx[i], dy[i], lod[i]))
+                    self.assertAlmostEqual(
+                        got,
+                        wanted,
+                        delta=tolerance * largest,
+                        msg=(image, i, j // 4, p[i], dx[i], dy[i], lod[i]),
+                    )
         self.assertIsNone(next(lines, None))
 
     def integers(self, width, height, channels, most, seed=0):
         chance = random.Random(seed)
-        values = {(x, y): [chance.randrange(most + 1) for _ in range(channels)] for x in range(width) for y in range(height)}
+        values = {
+            (x, y): [chance.randrange(most + 1) for _ in range(channels)]
+            for x in range(width)
+            for y in range(height)
+        }
         return lambda x, y: values[x, y]
 
     @staticmethod
@@ -146,10 +183,14 @@ class Images(Case):
 
     def png_cases(self):
         wraps = ["repeat", "mirror", "clamp", "black"]
-        kinds = [(channels, bits, filter) for channels in (1, 2, 3, 4) for bits in (8, 16)
-                 for filter in ("nearest", "bilinear", "trilinear", "anisotropic")]
+        kinds = [
+            (channels, bits, filter)
+            for channels in (1, 2, 3, 4)
+            for bits in (8, 16)
+            for filter in ("nearest", "bilinear", "trilinear", "anisotropic")
+        ]
         for number, (channels, bits, filter) in enumerate(kinds):
-            most = 2 ** bits - 1
+            most = 2**bits - 1
             width, height = 3 + number % 6, 2 + number % 5
             pixel = self.integers(width, height, channels, most, number)
             file = f"{number}.png"
@@ -157,14 +198,19 @@ class Images(Case):
             wrap = [wraps[number % 4], wraps[number // 4 % 4]]
             space = "linear" if number % 3 == 0 else "srgb" if number % 3 == 1 else "auto"
             encoded = space != "linear"
-            yield (self.png_oracle(pixel, (width, height), channels, most, encoded, wrap, filter),
-                   {"file": file, "wrap": wrap, "filter": filter, "colorSpace": space},
-                   # a mean that is nearly halfway between two codes may be rounded the other way
-                   0.006 if bits == 8 and filter in ("trilinear", "anisotropic") else 0.00003)
+            yield (
+                self.png_oracle(pixel, (width, height), channels, most, encoded, wrap, filter),
+                {"file": file, "wrap": wrap, "filter": filter, "colorSpace": space},
+                # a mean that is nearly halfway between two codes may be rounded the other way
+                0.006 if bits == 8 and filter in ("trilinear", "anisotropic") else 0.00003,
+            )
 
     def png_oracle(self, pixel, size, channels, most, encoded, wrap, filter):
         is_alpha = lambda c: channels in (2, 4) and c == channels - 1
-        decode = lambda values: [v / most if is_alpha(c) or not encoded else decode_srgb(v / most) for c, v in enumerate(values)]
+        decode = lambda values: [
+            v / most if is_alpha(c) or not encoded else decode_srgb(v / most)
+            for c, v in enumerate(values)
+        ]
 
         def rounded(texel):
             if encoded and most == 65535:
@@ -173,8 +219,13 @@ class Images(Case):
             back = [round(c * most) / most for c in code]
             return tuple(v if not encoded or c == 3 else decode_srgb(v) for c, v in enumerate(back))
 
-        return Oracle((*size, 1), lambda x, y, z: self.as_color(decode(pixel(x, size[1] - 1 - y))), [*wrap, "clamp"], filter,
-                      round_level=rounded)
+        return Oracle(
+            (*size, 1),
+            lambda x, y, z: self.as_color(decode(pixel(x, size[1] - 1 - y))),
+            [*wrap, "clamp"],
+            filter,
+            round_level=rounded,
+        )
 
     def test_channels_bits_filters_and_wraps(self):
         self.check(list(self.png_cases()), 2)
@@ -194,35 +245,78 @@ class Images(Case):
             image = {"file": name, "filter": "bilinear", "colorSpace": "auto"}
             cases.append((Oracle((5, 4, 1), texel, ["repeat"] * 3, "bilinear"), image, tolerance))
 
-        add("radiance", hdr(5, 4, lambda x, y: (*pixel(x, y), 130)), lambda x, y, z: (*((v + 0.5) / 64 for v in pixel(x, 3 - y)), 1.0),
-            0.005)
-        add("tiff", tiff(5, 4, pixel, "H", 1), lambda x, y, z: (*(v / 65535 for v in pixel(x, 3 - y)), 1.0))
-        add("tiff of floats", tiff(5, 4, lambda x, y: [v * 1e20 for v in pixel(x, y)], "f", 3),
-            lambda x, y, z: (*(v * 1e20 for v in pixel(x, 3 - y)), 1.0))
+        add(
+            "radiance",
+            hdr(5, 4, lambda x, y: (*pixel(x, y), 130)),
+            lambda x, y, z: (*((v + 0.5) / 64 for v in pixel(x, 3 - y)), 1.0),
+            0.005,
+        )
+        add(
+            "tiff",
+            tiff(5, 4, pixel, "H", 1),
+            lambda x, y, z: (*(v / 65535 for v in pixel(x, 3 - y)), 1.0),
+        )
+        add(
+            "tiff of floats",
+            tiff(5, 4, lambda x, y: [v * 1e20 for v in pixel(x, y)], "f", 3),
+            lambda x, y, z: (*(v * 1e20 for v in pixel(x, 3 - y)), 1.0),
+        )
         self.write_exr("exr", 5, 4, 0.25)
         add("exr", None, lambda x, y, z: (0.25, 0.25, 0.25, 1.0))
         self.check(cases, 2)
 
     def test_raw_texels(self):
-        forms = {"unorm8": ("B", 255), "unorm16": ("H", 65535), "float16": ("e", 1), "float32": ("f", 1)}
+        forms = {
+            "unorm8": ("B", 255),
+            "unorm16": ("H", 65535),
+            "float16": ("e", 1),
+            "float32": ("f", 1),
+        }
         cases = []
         for number, (name, (form, one)) in enumerate(forms.items()):
             for channels in (1, 2, 4):
                 chance = random.Random(number)
-                raw = [chance.randrange(one + 1) if one > 1 else chance.randrange(-64, 64) / 16 for _ in range(4 * 3 * 5 * channels)]
+                raw = [
+                    chance.randrange(one + 1) if one > 1 else chance.randrange(-64, 64) / 16
+                    for _ in range(4 * 3 * 5 * channels)
+                ]
                 file = f"{name}{channels}.raw"
                 self.write(file, struct.pack(f"<{len(raw)}{form}", *raw))
-                texels = {(x, y, z): self.as_color([v / one for v in raw[((z * 3 + y) * 4 + x) * channels:][:channels]])
-                          for x in range(4) for y in range(3) for z in range(5)}
+                texels = {
+                    (x, y, z): self.as_color(
+                        [v / one for v in raw[((z * 3 + y) * 4 + x) * channels :][:channels]]
+                    )
+                    for x in range(4)
+                    for y in range(3)
+                    for z in range(5)
+                }
                 wrap = ["repeat", "mirror", "black"]
-                cases.append((Oracle((4, 3, 5), lambda x, y, z, texels=texels: texels[x, y, z], wrap, "bilinear"),
-                              {"raw": file, "size": [4, 3, 5], "format": name, "channels": channels, "filter": "bilinear",
-                               "wrap": wrap}, 0.00003))
+                cases.append(
+                    (
+                        Oracle(
+                            (4, 3, 5),
+                            lambda x, y, z, texels=texels: texels[x, y, z],
+                            wrap,
+                            "bilinear",
+                        ),
+                        {
+                            "raw": file,
+                            "size": [4, 3, 5],
+                            "format": name,
+                            "channels": channels,
+                            "filter": "bilinear",
+                            "wrap": wrap,
+                        },
+                        0.00003,
+                    )
+                )
         self.check(cases, 3)
 
     def test_all_numbers_of_8_and_16_bits(self):
         """Each is the quotient by the largest one, correctly rounded."""
-        self.write("all.rtsl", """
+        self.write(
+            "all.rtsl",
+            """
             class All : rt_RayGeneration {
               public sampler2D small;
               public sampler2D large;
@@ -234,15 +328,34 @@ class Images(Case):
                   wrong += large.load(ivec2(i & 255, i >> 8)) == vec4(vec3(float(i)), 65535.0) / 65535.0 ? 0 : 1;
                 print(wrong);
               }
-            };""")
+            };""",
+        )
         for channels in (1, 4):
             small = b"".join(bytes([i, i, i, 255] if channels == 4 else [i]) for i in range(256))
-            large = b"".join(struct.pack("<4H", i, i, i, 65535) if channels == 4 else struct.pack("<H", i) for i in range(65536))
+            large = b"".join(
+                struct.pack("<4H", i, i, i, 65535) if channels == 4 else struct.pack("<H", i)
+                for i in range(65536)
+            )
             self.write("small.raw", small)
             self.write("large.raw", large)
-            self.scene({"class": "All", "small": {"raw": "small.raw", "size": [256, 1], "format": "unorm8", "channels": channels},
-                        "large": {"raw": "large.raw", "size": [256, 256], "format": "unorm16", "channels": channels}},
-                       shaders="all.rtsl")
+            self.scene(
+                {
+                    "class": "All",
+                    "small": {
+                        "raw": "small.raw",
+                        "size": [256, 1],
+                        "format": "unorm8",
+                        "channels": channels,
+                    },
+                    "large": {
+                        "raw": "large.raw",
+                        "size": [256, 256],
+                        "format": "unorm16",
+                        "channels": channels,
+                    },
+                },
+                shaders="all.rtsl",
+            )
             self.assertEqual(self.printed(), [[0]])
 
     def test_slices_and_their_levels(self):
@@ -250,14 +363,37 @@ class Images(Case):
         for z in range(3):
             self.write(f"{z}.png", png(6, 5, pixels[z], 8, 1))
         rounded = lambda texel: tuple(round(v * 255) / 255 for v in texel)
-        oracle = Oracle((6, 5, 3), lambda x, y, z: self.as_color([pixels[z](x, 4 - y)[0] / 255]), ["clamp"] * 3, "trilinear",
-                        round_level=rounded)
-        self.check([(oracle, {"slices": ["0.png", "1.png", "2.png"], "wrap": "clamp", "colorSpace": "linear"}, 0.006)], 3)
+        oracle = Oracle(
+            (6, 5, 3),
+            lambda x, y, z: self.as_color([pixels[z](x, 4 - y)[0] / 255]),
+            ["clamp"] * 3,
+            "trilinear",
+            round_level=rounded,
+        )
+        self.check(
+            [
+                (
+                    oracle,
+                    {
+                        "slices": ["0.png", "1.png", "2.png"],
+                        "wrap": "clamp",
+                        "colorSpace": "linear",
+                    },
+                    0.006,
+                )
+            ],
+            3,
+        )
 
     def test_double_and_fast(self):
         pixel = self.integers(7, 6, 4, 255)
         self.write("image.png", png(7, 6, pixel, 8, 4))
-        oracle = Oracle((7, 6, 1), lambda x, y, z: tuple(v / 255 for v in pixel(x, 5 - y)), ["repeat"] * 3, "bilinear")
+        oracle = Oracle(
+            (7, 6, 1),
+            lambda x, y, z: tuple(v / 255 for v in pixel(x, 5 - y)),
+            ["repeat"] * 3,
+            "bilinear",
+        )
         image = {"file": "image.png", "filter": "bilinear", "colorSpace": "linear"}
         self.check([(oracle, image, 0.00003)], 2, options=["--fp=fast"])
         self.check([(oracle, image, 0.000003)], 2, options=["--fp=double"])
@@ -268,7 +404,17 @@ class Images(Case):
         self.write("image.png", png(8, 8, self.integers(8, 8, 3, 255)))
         self.scene({"class": "Plain", "image": {"file": "image.png"}})
         self.assertEqual(self.printed()[0][0], 1)
-        self.scene({"class": "Probe2D", "images": [{"file": "image.png"}], "uv": [], "dx": [], "dy": [], "lod": [], "at": []})
+        self.scene(
+            {
+                "class": "Probe2D",
+                "images": [{"file": "image.png"}],
+                "uv": [],
+                "dx": [],
+                "dy": [],
+                "lod": [],
+                "at": [],
+            }
+        )
         self.assertEqual(self.printed()[0][2], 4)
 
     def test_what_images_have_in_common_is_constant(self):
@@ -276,22 +422,32 @@ class Images(Case):
         image = {"file": "image.png", "filter": "bilinear"}
         self.scene({"class": "Show", "image": image})
         text, _ = self.run_rtslc("explain", "scene.json", "--json", "--no-savings")
-        left_out = {(item["item"], entry["subject"]) for item in json.loads(text)["items"] for entry in item["entries"]
-                    if not entry["needed"]}
+        left_out = {
+            (item["item"], entry["subject"])
+            for item in json.loads(text)["items"]
+            for entry in item["entries"]
+            if not entry["needed"]
+        }
         for member in ("format", "channels", "filter", "wrapU", "width"):
             self.assertIn(("parameters", f"sampler2D.{member}"), left_out)
 
     def test_equal_images_are_one_object(self):
         self.write("image.png", png(2, 2, lambda x, y: (255, 0, 0)))
         image = {"file": "image.png"}
-        self.scene({"class": "Bindless", "images": [image, dict(image), {**image, "wrap": "clamp"}]})
+        self.scene(
+            {"class": "Bindless", "images": [image, dict(image), {**image, "wrap": "clamp"}]}
+        )
         self.assertEqual(self.printed(), [[0, 1], [1, 1], [2, 1], [0]])
 
     def test_a_hundred_images_by_index(self):
         images = {}
         for i in range(100):
             self.write(f"{i}.png", png(1 + i % 3, 1 + i % 2, lambda x, y: (i, i, i)))
-            images[f"image{i}"] = {"file": f"{i}.png", "colorSpace": "linear", "filter": ["nearest", "trilinear"][i % 2]}
+            images[f"image{i}"] = {
+                "file": f"{i}.png",
+                "colorSpace": "linear",
+                "filter": ["nearest", "trilinear"][i % 2],
+            }
         self.scene({"class": "Bindless", "images": list(images)}, images=images)
         printed = self.printed()
         self.assertEqual([int(line[0]) for line in printed[:100]], list(range(100)))
@@ -307,10 +463,22 @@ class Images(Case):
         strange = [1e7, -1e7, 3.4e38, -3.4e38, 1e-45, -1e-45, 0.9999999, -0.0]
         uv = [[a, b] for a in strange for b in strange]
         same = [[0.0, 0.0]] * len(uv)
-        images = [{"file": "image.png", "wrap": wrap, "filter": filter} for wrap in ("repeat", "mirror", "clamp", "black")
-                  for filter in ("nearest", "anisotropic")]
-        self.scene({"class": "Probe2D", "images": images, "uv": uv, "dx": uv, "dy": same, "lod": [c[0] for c in uv],
-                    "at": [[2147483647, -2147483648]] * len(uv)})
+        images = [
+            {"file": "image.png", "wrap": wrap, "filter": filter}
+            for wrap in ("repeat", "mirror", "clamp", "black")
+            for filter in ("nearest", "anisotropic")
+        ]
+        self.scene(
+            {
+                "class": "Probe2D",
+                "images": images,
+                "uv": uv,
+                "dx": uv,
+                "dy": same,
+                "lod": [c[0] for c in uv],
+                "at": [[2147483647, -2147483648]] * len(uv),
+            }
+        )
         lines = [line for line in self.printed() if len(line) == 20]
         self.assertEqual(len(lines), len(images) * len(uv))
         for line in lines:
@@ -318,7 +486,9 @@ class Images(Case):
 
     def test_coordinates_that_are_no_numbers_count_as_zero(self):
         self.write("image.png", png(4, 4, self.integers(4, 4, 3, 255)))
-        self.write("nan.rtsl", """
+        self.write(
+            "nan.rtsl",
+            """
             class Strange : rt_RayGeneration {
               public sampler2D image;
               public float zero = 0.0;
@@ -331,8 +501,12 @@ class Images(Case):
                 print(image.sampleGrad(vec2(0.25), vec2(1e30), vec2(1e30)) - image.sample(vec2(0.25), 2.0));
                 print(image.sampleGrad(vec2(0.25), vec2(0.0), vec2(0.0)) - image.sample(vec2(0.25)));
               }
-            };""")
-        self.scene({"class": "Strange", "image": {"file": "image.png", "filter": "anisotropic"}}, shaders="nan.rtsl")
+            };""",
+        )
+        self.scene(
+            {"class": "Strange", "image": {"file": "image.png", "filter": "anisotropic"}},
+            shaders="nan.rtsl",
+        )
         for options in ([], ["--fp=fast"], ["--fp=double"]):
             for line in self.printed("-Wno-all", *options):
                 for value in line:
@@ -343,8 +517,17 @@ class Images(Case):
             texels = [1e30 if i == 7 % (width * height) else 0.0 for i in range(width * height)]
             self.write("image.raw", struct.pack(f"<{len(texels)}f", *texels))
             uv = [[0.5, 0.5], [7.5 / 16384, 7.5 / 16384]]
-            self.scene({"class": "Probe2D", "images": [{"raw": "image.raw", "size": [width, height]}], "uv": uv,
-                        "dx": [[1e6, 0], [0, 1e6]], "dy": [[0, 1e6]] * 2, "lod": [20, 20], "at": [[7, 7]] * 2})
+            self.scene(
+                {
+                    "class": "Probe2D",
+                    "images": [{"raw": "image.raw", "size": [width, height]}],
+                    "uv": uv,
+                    "dx": [[1e6, 0], [0, 1e6]],
+                    "dy": [[0, 1e6]] * 2,
+                    "lod": [20, 20],
+                    "at": [[7, 7]] * 2,
+                }
+            )
             lines = self.printed()
             mean = 1e30 / (width * height)
             for line in lines[1:]:
@@ -366,16 +549,33 @@ class Images(Case):
     def test_every_path_gives_the_same_bits(self):
         self.write("image.png", png(13, 9, self.integers(13, 9, 4, 255), 8, 4))
         for filter in ("nearest", "anisotropic"):  # which blends levels, and texels of each
-            self.scene({"class": "Show", "lod": 1.3, "image": {"file": "image.png", "filter": filter, "wrap": ["mirror", "black"]}},
-                       render={"engine": "programs", "size": [40, 30], "spp": 2})
+            self.scene(
+                {
+                    "class": "Show",
+                    "lod": 1.3,
+                    "image": {"file": "image.png", "filter": filter, "wrap": ["mirror", "black"]},
+                },
+                render={"engine": "programs", "size": [40, 30], "spp": 2},
+            )
             pictures = set()
-            for options in ([], ["--trace=recurse"], ["--target=host-megakernel"], ["--traversal=device"], ["--threads=1"],
-                            ["-O0"], ["--keep=all"]):
+            for options in (
+                [],
+                ["--trace=recurse"],
+                ["--target=host-megakernel"],
+                ["--traversal=device"],
+                ["--threads=1"],
+                ["-O0"],
+                ["--keep=all"],
+            ):
                 self.run_rtslc("render", "scene.json", "-q", "-o", "x.exr", *options)
                 pictures.add((self.folder / "x.exr").read_bytes())
             self.run_rtslc("pack", "scene.json", "-q", "-o", "x.rtslpkg")
-            done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-q", "-o", "x.exr"], cwd=self.folder, timeout=SECONDS,
-                                  stderr=subprocess.PIPE)
+            done = subprocess.run(
+                [RTSL_RUN, "x.rtslpkg", "--target=host", "-q", "-o", "x.exr"],
+                cwd=self.folder,
+                timeout=SECONDS,
+                stderr=subprocess.PIPE,
+            )
             self.assertEqual(done.returncode, 0, done.stderr)
             pictures.add((self.folder / "x.exr").read_bytes())
             self.assertEqual(len(pictures), 1, filter)
@@ -397,22 +597,43 @@ class Images(Case):
         self.wrong({"file": "image.png", "filter": "trilinaer"}, "E0805", "`filter` is `nearest`")
         self.wrong({"file": "image.png", "wrap": ["clamp"]}, "E0804", "`wrap` takes one name, or 2")
         self.wrong({"file": "image.png", "colour": "srgb"}, "E0802", "has no key `colour`")
-        self.wrong({"file": "image.png", "anisotropy": 0}, "E0805", "`anisotropy` must be between 1 and 256")
-        self.wrong({"size": [2, 2]}, "E0803", "is a `sampler2D`: an image needs a `file`, `slices` or `raw`")
+        self.wrong(
+            {"file": "image.png", "anisotropy": 0},
+            "E0805",
+            "`anisotropy` must be between 1 and 256",
+        )
+        self.wrong(
+            {"size": [2, 2]},
+            "E0803",
+            "is a `sampler2D`: an image needs a `file`, `slices` or `raw`",
+        )
         self.wrong({"class": "sampler2D", "file": 5}, "E0804", "`file` is a string, not a number")
         self.wrong({"raw": "image.raw"}, "E0803", "a raw image needs a `size`")
-        self.wrong({"raw": "image.raw", "size": [2, 2], "channels": 3}, "E0805", "`channels` is 1, 2 or 4")
-        self.wrong({"raw": "image.raw", "size": [2, 2]}, "E0905", "15 bytes, and 2 x 2 x 1 texels of 4 bytes take 16")
+        self.wrong(
+            {"raw": "image.raw", "size": [2, 2], "channels": 3}, "E0805", "`channels` is 1, 2 or 4"
+        )
+        self.wrong(
+            {"raw": "image.raw", "size": [2, 2]},
+            "E0905",
+            "15 bytes, and 2 x 2 x 1 texels of 4 bytes take 16",
+        )
         self.wrong({"raw": "image.raw", "size": [2147483647, 2147483647]}, "E0805", "too large")
         self.wrong({"slices": ["image.png"]}, "E0811", "takes a `sampler2D`, not a `sampler3D`")
         self.wrong({"class": "sampler3D", "slices": []}, "E0805", "at least one slice")
-        self.wrong("wood", "E0806", "no image, texture or material is named `wood`", images={"would": {"file": "image.png"}})
+        self.wrong(
+            "wood",
+            "E0806",
+            "no image, texture or material is named `wood`",
+            images={"would": {"file": "image.png"}},
+        )
         self.wrong({"class": "sampler2D"}, "E0803", "needs a `file`")
         self.write_exr("image.exr", 2, 2, 1.0)
         self.wrong({"file": "image.exr", "colorSpace": "srgb"}, "E0808", "floating point")
 
     def test_names_that_are_keys_of_images_too(self):
-        self.write("named.rtsl", """
+        self.write(
+            "named.rtsl",
+            """
             class Flat : rt_Texture { public float raw = 0.5; void lookup() { rt_TextureColor = color(raw); } };
             class Wall : rt_Material {
               public rt_Texture file;
@@ -420,12 +641,26 @@ class Images(Case):
               void constructor(rt_Texture raw) { other = raw; }
               void shade() { rt_SampleColor = file.lookup() + other.lookup(); }
             };
-            class Eye : rt_Camera { void generateRay() { rt_RayOrigin = vec3(0.0, 0.0, 5.0); rt_RayDirection = vec3(0.0, 0.0, -1.0); } };""")
+            class Eye : rt_Camera { void generateRay() { rt_RayOrigin = vec3(0.0, 0.0, 5.0); rt_RayDirection = vec3(0.0, 0.0, -1.0); } };""",
+        )
         self.write("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["named.rtsl"], "camera": {"class": "Eye"}, "textures": {"raw": {"class": "Flat"}, "slices": {"class": "Flat"}},
-            "materials": {"file": {"class": "Wall", "constructor": {"raw": "raw"}, "file": "slices"}},
-            "nodes": {"raw": {"mesh": "wall.obj", "material": "file"}}, "roots": {"file": "raw"}, "render": {"size": [2, 2], "spp": 1}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["named.rtsl"],
+                    "camera": {"class": "Eye"},
+                    "textures": {"raw": {"class": "Flat"}, "slices": {"class": "Flat"}},
+                    "materials": {
+                        "file": {"class": "Wall", "constructor": {"raw": "raw"}, "file": "slices"}
+                    },
+                    "nodes": {"raw": {"mesh": "wall.obj", "material": "file"}},
+                    "roots": {"file": "raw"},
+                    "render": {"size": [2, 2], "spp": 1},
+                }
+            ),
+        )
         self.run_rtslc("render", "scene.json", "-q", "-o", "x.exr")
 
     def test_all_mistakes_in_one_run(self):
@@ -441,15 +676,28 @@ class Images(Case):
         self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
         self.write("image.png", b"no image at all" * 100)
         self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
-        self.write("image.png", good[:len(good) // 2])
+        self.write("image.png", good[: len(good) // 2])
         self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
-        huge = good[:16] + struct.pack(">II", 2 ** 30, 2 ** 30) + good[24:29]
+        huge = good[:16] + struct.pack(">II", 2**30, 2**30) + good[24:29]
         self.write("image.png", huge + struct.pack(">I", zlib.crc32(huge[12:29])) + good[33:])
         self.assertTrue(self.diagnose_any("image.png"))
         self.write("small.png", png(2, 2, lambda x, y: (0, 0, 0)))
         self.write("large.png", good)
-        self.scene({"class": "Probe3D", "images": [{"slices": ["small.png", "large.png"]}], "uvw": [], "dx": [], "lod": [], "at": []})
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "x.exr"), "E0905", "differs from the first slice")
+        self.scene(
+            {
+                "class": "Probe3D",
+                "images": [{"slices": ["small.png", "large.png"]}],
+                "uvw": [],
+                "dx": [],
+                "lod": [],
+                "at": [],
+            }
+        )
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "x.exr"),
+            "E0905",
+            "differs from the first slice",
+        )
 
     def diagnose_any(self, file):
         self.scene({"class": "Plain", "image": {"file": file}})
@@ -464,18 +712,27 @@ class Images(Case):
 
     def test_damaged_files_never_crash(self):
         chance = random.Random(5)
-        files = [png(9, 7, self.integers(9, 7, 3, 255)), hdr(9, 7, lambda x, y: (x, y, 1, 128)),
-                 tiff(9, 7, self.integers(9, 7, 3, 255), "H", 1)]
+        files = [
+            png(9, 7, self.integers(9, 7, 3, 255)),
+            hdr(9, 7, lambda x, y: (x, y, 1, 128)),
+            tiff(9, 7, self.integers(9, 7, 3, 255), "H", 1),
+        ]
         images = {}
         for i in range(60):
             data = bytearray(files[i % len(files)])
             for _ in range(chance.randrange(1, 6)):
                 data[chance.randrange(len(data))] = chance.randrange(256)
-            self.write(f"{i}.image", bytes(data[:chance.randrange(len(data))] if i % 4 == 0 else data))
+            self.write(
+                f"{i}.image", bytes(data[: chance.randrange(len(data))] if i % 4 == 0 else data)
+            )
             images[f"image{i}"] = {"file": f"{i}.image"}
         self.scene({"class": "Bindless", "images": list(images)}, images=images)
-        done = subprocess.run([RTSLC, "render", "scene.json", "-q", "-o", "x.exr"], cwd=self.folder, timeout=SECONDS,
-                              stderr=subprocess.PIPE)
+        done = subprocess.run(
+            [RTSLC, "render", "scene.json", "-q", "-o", "x.exr"],
+            cwd=self.folder,
+            timeout=SECONDS,
+            stderr=subprocess.PIPE,
+        )
         self.assertIn(done.returncode, (0, 1), done.stderr[-2000:])
 
 

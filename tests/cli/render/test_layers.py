@@ -20,7 +20,9 @@ class Layers(Case):
         self.glass_scene()
 
     def render(self, name, *options):
-        out, _ = self.run_rtslc("render", "scene.json", "-o", name, "-Wno-depth-limit", *SMALL, *options)
+        out, _ = self.run_rtslc(
+            "render", "scene.json", "-o", name, "-Wno-depth-limit", *SMALL, *options
+        )
         return out
 
     def assert_layers(self, name, views, picture, *options):
@@ -40,14 +42,26 @@ class Layers(Case):
             self.assertEqual(found[channel], expected[channel], channel)
 
     def test_a_layer_is_what_its_view_renders(self):
-        for way in (["--spp=3"], ["--spp=2", "--engine=path"], ["--spp=2", "--target=host-megakernel"], ["--spp=2", "--trace=split"],
-                    ["--spp=2", "--color=mono"], ["--spp=2", "--color=spectral:4"], ["--spp=2", "--crop=5,6,40,30"],
-                    ["--spp=2", "--seed=9"]):
+        for way in (
+            ["--spp=3"],
+            ["--spp=2", "--engine=path"],
+            ["--spp=2", "--target=host-megakernel"],
+            ["--spp=2", "--trace=split"],
+            ["--spp=2", "--color=mono"],
+            ["--spp=2", "--color=spectral:4"],
+            ["--spp=2", "--crop=5,6,40,30"],
+            ["--spp=2", "--seed=9"],
+        ):
             with self.subTest(way=way):
                 self.render("whole.exr", *way)
                 views = VIEWS if way == ["--spp=3"] else ("normals", "depth")
                 self.render("layers.exr", "--aov=" + ",".join(views), *way)
-                self.assert_layers("layers.exr", views, "whole.exr", *[option for option in way if "engine" not in option])
+                self.assert_layers(
+                    "layers.exr",
+                    views,
+                    "whole.exr",
+                    *[option for option in way if "engine" not in option],
+                )
 
     def test_the_samples_are_those_of_the_picture(self):
         document = json.loads(self.render("layers.exr", "--time=200ms", "--aov=albedo", "--json"))
@@ -68,9 +82,22 @@ class Layers(Case):
             self.assertEqual(json.loads(out)["rmse"], 0)
 
     def test_ctrl_c_leaves_layers_out(self):
-        running = subprocess.Popen([RTSLC, "render", "scene.json", "-o", "a.exr", "--time=10m", "--aov=normals,id", *SMALL],
-                                   cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        running = subprocess.Popen(
+            [
+                RTSLC,
+                "render",
+                "scene.json",
+                "-o",
+                "a.exr",
+                "--time=10m",
+                "--aov=normals,id",
+                *SMALL,
+            ],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         for _ in range(SECONDS * 10):
             if (self.folder / "a.exr").exists():
                 break
@@ -86,7 +113,10 @@ class Layers(Case):
         self.glass_scene(render={"engine": "programs"}, rayGeneration={"class": "Flat"})
         scene = json.loads((self.folder / "scene.json").read_text())
         del scene["camera"]
-        self.write("Flat.rtsl", "class Flat : rt_RayGeneration;\nvoid generate() { rt_SampleColor = color(0.5); }\n")
+        self.write(
+            "Flat.rtsl",
+            "class Flat : rt_RayGeneration;\nvoid generate() { rt_SampleColor = color(0.5); }\n",
+        )
         scene["import"].append("Flat.rtsl")
         self.write("scene.json", json.dumps(scene))
         self.render("a.exr", "--spp=1")
@@ -95,9 +125,12 @@ class Layers(Case):
         self.assertFalse((self.folder / "b.exr").exists())
 
     def test_bad_values(self):
-        for options, part in ((["-o", "a.exr", "--aov=path"], "albedo"), (["-o", "a.exr", "--aov=normal"], "normals"),
-                              (["-o", "a.png", "--aov=normals"], "only EXR files have layers"),
-                              (["-o", "-", "--aov=normals"], "only EXR files have layers")):
+        for options, part in (
+            (["-o", "a.exr", "--aov=path"], "albedo"),
+            (["-o", "a.exr", "--aov=normal"], "normals"),
+            (["-o", "a.png", "--aov=normals"], "only EXR files have layers"),
+            (["-o", "-", "--aov=normals"], "only EXR files have layers"),
+        ):
             with self.subTest(options=options):
                 _, error = self.run_rtslc("render", "scene.json", *options, status=USAGE)
                 self.assertIn(part, error)

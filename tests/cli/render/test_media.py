@@ -18,12 +18,37 @@ class MediaCase(Case):
         """A box of a medium, seen from above (z) in parallel rays."""
         self.level = "-O0" if spp <= 64 else "-O2"
         boundary = {"class": "MediumBoundary", "interior": "medium"}
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["std.cameras", "std.primitives", "std.materials", "std.media", "std.lights", "std.backgrounds"],
-            "camera": {"class": "OrthographicCamera", "constructor": [[0, 0, 50], [0, 0, 0], [0, 1, 0]], "height": height},
-            "helpers": {"medium": medium},
-            "objects": [{"primitive": {"class": "Box", "low": box[0], "high": box[1]}, "material": boundary}, *objects],
-            "render": {"engine": "volume", "size": [16, 16], "spp": spp, "depth": depth}, **rest}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": [
+                        "std.cameras",
+                        "std.primitives",
+                        "std.materials",
+                        "std.media",
+                        "std.lights",
+                        "std.backgrounds",
+                    ],
+                    "camera": {
+                        "class": "OrthographicCamera",
+                        "constructor": [[0, 0, 50], [0, 0, 0], [0, 1, 0]],
+                        "height": height,
+                    },
+                    "helpers": {"medium": medium},
+                    "objects": [
+                        {
+                            "primitive": {"class": "Box", "low": box[0], "high": box[1]},
+                            "material": boundary,
+                        },
+                        *objects,
+                    ],
+                    "render": {"engine": "volume", "size": [16, 16], "spp": spp, "depth": depth},
+                    **rest,
+                }
+            ),
+        )
 
     def mean(self, *arguments):
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *arguments)
@@ -36,7 +61,11 @@ class MediaCase(Case):
 
     def grid(self, values, size, **more):
         self.write("grid.raw", struct.pack(f"<{len(values)}f", *values))
-        return {"class": "GridMedium", "density": {"raw": "grid.raw", "size": size, "filter": "bilinear", "wrap": "clamp"}, **more}
+        return {
+            "class": "GridMedium",
+            "density": {"raw": "grid.raw", "size": size, "filter": "bilinear", "wrap": "clamp"},
+            **more,
+        }
 
 
 class ClosedForms(MediaCase):
@@ -44,11 +73,26 @@ class ClosedForms(MediaCase):
         """Of a sky seen through a medium that only absorbs, by delta tracking; of a light on a
         floor, without noise."""
         absorption = [0.7, 0.1, 1.0]
-        self.scene({"class": "HomogeneousMedium", "scattering": 0, "absorption": absorption}, background=SKY, spp=256)
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": 0, "absorption": absorption},
+            background=SKY,
+            spp=256,
+        )
         self.assert_color([math.exp(-2 * a) for a in absorption], 0.02)
-        floor = {"primitive": {"class": "Parallelogram", "constructor": [[-9, -9, -3], [18, 0, 0], [0, 18, 0]]}, "material": CLAY}
-        self.scene({"class": "HomogeneousMedium", "scattering": 0, "absorption": absorption}, depth=3, spp=256,
-                   objects=[floor], lights=[{"class": "DistantLight", "direction": [0, 0, 1], "irradiance": 4}])
+        floor = {
+            "primitive": {
+                "class": "Parallelogram",
+                "constructor": [[-9, -9, -3], [18, 0, 0], [0, 18, 0]],
+            },
+            "material": CLAY,
+        }
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": 0, "absorption": absorption},
+            depth=3,
+            spp=256,
+            objects=[floor],
+            lights=[{"class": "DistantLight", "direction": [0, 0, 1], "irradiance": 4}],
+        )
         self.assert_color([2 * math.exp(-4 * a) for a in absorption], 0.04)
 
     def test_single_scattering_in_a_slab(self):
@@ -59,24 +103,45 @@ class ClosedForms(MediaCase):
             mu = math.sin(math.radians(elevation))
             phase = (1 - g * g) / (4 * math.pi * (1 + g * g + 2 * g * mu) ** 1.5)
             rate = (s + a) * (1 + 1 / mu)
-            self.scene({"class": "HomogeneousMedium", "scattering": s, "absorption": a, "anisotropy": g}, SLAB, depth=2, spp=1024,
-                       lights=[{"class": "DistantLight", "direction": [math.cos(math.radians(elevation)), 0, mu], "irradiance": 2}])
+            self.scene(
+                {"class": "HomogeneousMedium", "scattering": s, "absorption": a, "anisotropy": g},
+                SLAB,
+                depth=2,
+                spp=1024,
+                lights=[
+                    {
+                        "class": "DistantLight",
+                        "direction": [math.cos(math.radians(elevation)), 0, mu],
+                        "irradiance": 2,
+                    }
+                ],
+            )
             self.assert_color([s * phase * math.pi * 2 * (1 - math.exp(-rate)) / rate] * 3, 0.01)
 
     def test_a_grid(self):
         """Density that rises along z, for all rays alike: what passes depends on its integral
         alone."""
         passes = math.exp(-1.5 * 2 * (0.25 * 0.25 + 0.5 * 0.625 + 0.25 * 1))
-        self.scene(self.grid([0.25] * 4 + [1.0] * 4, [2, 2, 2], scattering=0, absorption=1.5), background=SKY, spp=1024)
+        self.scene(
+            self.grid([0.25] * 4 + [1.0] * 4, [2, 2, 2], scattering=0, absorption=1.5),
+            background=SKY,
+            spp=1024,
+        )
         self.assert_color([passes] * 3, 0.015)
         # A bound that is far too large costs time and changes nothing.
-        self.scene(self.grid([0.25] * 4 + [1.0] * 4, [2, 2, 2], scattering=0, absorption=1.5, densest=8), background=SKY, spp=1024)
+        self.scene(
+            self.grid([0.25] * 4 + [1.0] * 4, [2, 2, 2], scattering=0, absorption=1.5, densest=8),
+            background=SKY,
+            spp=1024,
+        )
         self.assert_color([passes] * 3, 0.015)
 
     def test_a_furnace(self):
         """A medium that absorbs nothing cannot be told from a sky of 1, however it scatters."""
-        for medium in ({"class": "HomogeneousMedium", "scattering": 2, "anisotropy": 0.7},
-                       self.grid([0, 1, 0.5, 0.25] * 4, [4, 2, 2], scattering=3, anisotropy=-0.5)):
+        for medium in (
+            {"class": "HomogeneousMedium", "scattering": 2, "anisotropy": 0.7},
+            self.grid([0, 1, 0.5, 0.25] * 4, [4, 2, 2], scattering=3, anisotropy=-0.5),
+        ):
             self.scene(medium, depth=200, background=SKY, spp=256)
             self.assert_color([1, 1, 1], 0.01)
 
@@ -84,41 +149,94 @@ class ClosedForms(MediaCase):
         """A lamp in the medium, found by the search and by chance; and one behind the boundary, by
         chance alone."""
         ball = {"class": "Sphere", "center": [0.5, 0.2, 0], "radius": 0.25}
-        fog = {"class": "HomogeneousMedium", "scattering": [0.5, 0.6, 0.7], "absorption": 0.2, "anisotropy": 0.3}
+        fog = {
+            "class": "HomogeneousMedium",
+            "scattering": [0.5, 0.6, 0.7],
+            "absorption": 0.2,
+            "anisotropy": 0.3,
+        }
         lamp = {"primitive": ball, "material": {"class": "Emitter", "radiance": 9}}
         self.scene(fog, ([-2, -2, -2], [2, 2, 2]), spp=1024, objects=[lamp], height=3)
         inside = self.mean()
-        self.scene(fog, ([-2, -2, -2], [2, 2, 2]), spp=1024, height=3,
-                   objects=[{"primitive": ball, "material": {"class": "Shone"}}],
-                   **{"import": ["std.cameras", "std.primitives", "std.materials", "std.media", "shone.rtsl"]})
+        self.scene(
+            fog,
+            ([-2, -2, -2], [2, 2, 2]),
+            spp=1024,
+            height=3,
+            objects=[{"primitive": ball, "material": {"class": "Shone"}}],
+            **{
+                "import": [
+                    "std.cameras",
+                    "std.primitives",
+                    "std.materials",
+                    "std.media",
+                    "shone.rtsl",
+                ]
+            },
+        )
         # The same light, which no search knows: the color of a ray.
-        self.write("shone.rtsl", "class Shone : rt_Material { void shade() { rt_SampleColor = color(9.0); } };")
+        self.write(
+            "shone.rtsl",
+            "class Shone : rt_Material { void shade() { rt_SampleColor = color(9.0); } };",
+        )
         for one, other in zip(inside, self.mean()):
             self.assertAlmostEqual(one, other, delta=0.02 * other)
 
 
 class Scenes(MediaCase):
     def test_every_path_gives_the_same_bits(self):
-        glass = {"primitive": {"class": "Sphere", "center": [0, 0, 2], "radius": 0.8},
-                 "material": {"class": "Dielectric", "interior": {"class": "HomogeneousMedium", "absorption": [1, 0.2, 0.1]}}}
-        self.scene(self.grid([0, 1, 0.5, 0.25] * 4, [4, 2, 2]), background=SKY, spp=4, objects=[glass], height=3,
-                   lights=[{"class": "PointLight", "position": [3, 1, 2], "intensity": 9}])
+        glass = {
+            "primitive": {"class": "Sphere", "center": [0, 0, 2], "radius": 0.8},
+            "material": {
+                "class": "Dielectric",
+                "interior": {"class": "HomogeneousMedium", "absorption": [1, 0.2, 0.1]},
+            },
+        }
+        self.scene(
+            self.grid([0, 1, 0.5, 0.25] * 4, [4, 2, 2]),
+            background=SKY,
+            spp=4,
+            objects=[glass],
+            height=3,
+            lights=[{"class": "PointLight", "position": [3, 1, 2], "intensity": 9}],
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
-        for way in (["--trace=split"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"], ["--threads", "1"]):
+        for way in (
+            ["--trace=split"],
+            ["--traversal=device"],
+            ["--target=host-megakernel"],
+            ["--keep=all"],
+            ["--threads", "1"],
+        ):
             self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", *way)
             self.assert_same_bits("a.exr", "b.exr", way)
 
     def test_what_the_camera_is_in(self):
         """Fog between the camera and a wall, given as the engine's `medium`."""
-        wall = {"primitive": {"class": "Box", "low": [-9, -9, 40], "high": [9, 9, 41]}, "material": {"class": "Emitter", "radiance": 3}}
-        self.scene({"class": "HomogeneousMedium", "scattering": 0, "absorption": 0.1}, objects=[wall], spp=256,
-                   rayGeneration={"class": "VolumeTracer", "medium": "medium"})
+        wall = {
+            "primitive": {"class": "Box", "low": [-9, -9, 40], "high": [9, 9, 41]},
+            "material": {"class": "Emitter", "radiance": 3},
+        }
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": 0, "absorption": 0.1},
+            objects=[wall],
+            spp=256,
+            rayGeneration={"class": "VolumeTracer", "medium": "medium"},
+        )
         self.assert_color([3 * math.exp(-0.9)] * 3, 0.02)
 
     def test_media_are_inside_each_other(self):
         """A box of nothing in a box of fog: rays are in the fog again behind it."""
-        hole = {"primitive": {"class": "Box", "low": [-0.9, -0.9, -0.5], "high": [0.9, 0.9, 0.5]}, "material": {"class": "MediumBoundary"}}
-        self.scene({"class": "HomogeneousMedium", "scattering": 0, "absorption": 0.7}, objects=[hole], background=SKY, spp=512)
+        hole = {
+            "primitive": {"class": "Box", "low": [-0.9, -0.9, -0.5], "high": [0.9, 0.9, 0.5]},
+            "material": {"class": "MediumBoundary"},
+        }
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": 0, "absorption": 0.7},
+            objects=[hole],
+            background=SKY,
+            spp=512,
+        )
         self.assert_color([math.exp(-0.7)] * 3, 0.02)
 
     def test_other_engines_see_no_medium(self):

@@ -49,8 +49,16 @@ class Mirror : rt_Material {
 DIVISION = 1 + SHADERS.split("\n").index("    return x / zero;")
 INVERSE = 1 + next(i for i, line in enumerate(SHADERS.split("\n")) if "vec3 inverse" in line)
 
-WAYS = ([], ["--trace=split"], ["--traversal=device"], ["-O", "0"], ["--threads", "1"], ["--target=host-megakernel"],
-        ["--target=host-megakernel", "--threads", "1"], ["--keep=all"])
+WAYS = (
+    [],
+    ["--trace=split"],
+    ["--traversal=device"],
+    ["-O", "0"],
+    ["--threads", "1"],
+    ["--target=host-megakernel"],
+    ["--target=host-megakernel", "--threads", "1"],
+    ["--keep=all"],
+)
 SPP = 16
 
 
@@ -60,10 +68,23 @@ class ShaderCase(Case):
         self.write("shaders.rtsl", SHADERS)
 
     def scene(self, material="Spoilt", depth=4, spp=SPP):
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")], "camera": {"class": "Eye"},
-            "objects": [{"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2}, "material": {"class": material}}],
-            "render": {"engine": "classic", "size": [8, 4], "spp": spp, "depth": depth}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["shaders.rtsl", str(EXAMPLES / "glass" / "Sphere.rtsl")],
+                    "camera": {"class": "Eye"},
+                    "objects": [
+                        {
+                            "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 2},
+                            "material": {"class": material},
+                        }
+                    ],
+                    "render": {"engine": "classic", "size": [8, 4], "spp": spp, "depth": depth},
+                }
+            ),
+        )
 
     def render(self, *arguments, picture="a.exr"):
         out, error = self.run_rtslc("render", "scene.json", "-o", picture, "--json", *arguments)
@@ -95,14 +116,28 @@ class NotFinite(ShaderCase):
         self.scene()
         first, _ = self.render("--target=host-megakernel")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "--compare", "a.exr"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "--compare", "a.exr"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=SECONDS,
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
         figures = json.loads(done.stdout)
         self.assertEqual(figures["samplesNotFinite"], first["samplesNotFinite"])
-        self.assertEqual(figures["notFinite"], [{"pixel": one["pixel"], "sample": one["sample"]} for one in first["notFinite"]])
+        self.assertEqual(
+            figures["notFinite"],
+            [{"pixel": one["pixel"], "sample": one["sample"]} for one in first["notFinite"]],
+        )
         self.assertIn("samples were infinite or not a number, and are left out", done.stderr)
-        self.assertIn("pixel {},{} sample {}".format(*first["notFinite"][0]["pixel"], first["notFinite"][0]["sample"]), done.stderr)
+        self.assertIn(
+            "pixel {},{} sample {}".format(
+                *first["notFinite"][0]["pixel"], first["notFinite"][0]["sample"]
+            ),
+            done.stderr,
+        )
 
     def test_the_first_are_named_with_the_line(self):
         self.scene()
@@ -110,16 +145,27 @@ class NotFinite(ShaderCase):
             with self.subTest(way=way):
                 figures, error = self.render(*way)
                 self.assertEqual(len(figures["notFinite"]), 8)
-                places = [(one["pixel"][1], one["pixel"][0], one["sample"]) for one in figures["notFinite"]]
+                places = [
+                    (one["pixel"][1], one["pixel"][0], one["sample"])
+                    for one in figures["notFinite"]
+                ]
                 self.assertEqual(places, sorted(places))
                 for one in figures["notFinite"]:
                     wanted = INVERSE if one["pixel"][0] == 7 else DIVISION
-                    self.assertEqual((one["place"]["line"], one["place"]["file"]), (wanted, "shaders.rtsl"))
+                    self.assertEqual(
+                        (one["place"]["line"], one["place"]["file"]), (wanted, "shaders.rtsl")
+                    )
                     self.assertEqual(one["color"][0], "nan" if wanted == INVERSE else "inf")
-                self.assertRegex(error, rf"shaders\.rtsl:{DIVISION}:\d+: warning\[W2865\]: {figures['samplesNotFinite']} of 512 samples "
-                                        "were infinite or not a number, and are left out of the means of their pixels; "
-                                        "4 pixels have no other samples and are black")
-                self.assertRegex(error, rf"\n *[=|] *note: pixel \d,0 sample \d+ is infinite, since shaders\.rtsl:{DIVISION}:")
+                self.assertRegex(
+                    error,
+                    rf"shaders\.rtsl:{DIVISION}:\d+: warning\[W2865\]: {figures['samplesNotFinite']} of 512 samples "
+                    "were infinite or not a number, and are left out of the means of their pixels; "
+                    "4 pixels have no other samples and are black",
+                )
+                self.assertRegex(
+                    error,
+                    rf"\n *[=|] *note: pixel \d,0 sample \d+ is infinite, since shaders\.rtsl:{DIVISION}:",
+                )
                 self.assertIn(f"and {figures['samplesNotFinite'] - 8} more samples", error)
 
     def test_exceptions_say_all(self):
@@ -133,17 +179,27 @@ class NotFinite(ShaderCase):
 
     def test_the_warning_is_one_like_others(self):
         self.scene()
-        out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--diagnostics=json")
+        out, error = self.run_rtslc(
+            "render", "scene.json", "-o", "a.exr", "-q", "--diagnostics=json"
+        )
         (message,) = json.loads(error)["diagnostics"]
-        self.assertEqual((message["code"], message["warning"], message["range"]["begin"]["line"]), ("W2865", "not-finite", DIVISION))
-        self.assertEqual(self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-not-finite"), ("", ""))
+        self.assertEqual(
+            (message["code"], message["warning"], message["range"]["begin"]["line"]),
+            ("W2865", "not-finite", DIVISION),
+        )
+        self.assertEqual(
+            self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-not-finite"), ("", "")
+        )
         self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "-Werror=not-finite", status=1)
         self.run_rtslc("compare", "a.exr", "b.exr")
 
     def test_a_constant_and_a_payload(self):
         """What no operation makes infinite shows where it is stored; what a payload carries goes
         back to who made it."""
-        self.write("shaders.rtsl", SHADERS + """
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
 class Constant : rt_Material {
   void shade() {
     rt_SampleColor = color(1.0 / 0.0);
@@ -163,11 +219,15 @@ class Logarithm : rt_Material {
     p.light = color(bad);
   }
 };
-""")
+""",
+        )
         text = (self.folder / "shaders.rtsl").read_text().split("\n")
         self.scene("Constant")
         figures, _ = self.render()
-        self.assertEqual(figures["notFinite"][0]["place"]["line"], 1 + text.index("    rt_SampleColor = color(1.0 / 0.0);"))
+        self.assertEqual(
+            figures["notFinite"][0]["place"]["line"],
+            1 + text.index("    rt_SampleColor = color(1.0 / 0.0);"),
+        )
         self.scene("Logarithm")
         scene = json.loads((self.folder / "scene.json").read_text())
         del scene["camera"]
@@ -176,7 +236,10 @@ class Logarithm : rt_Material {
         self.write("scene.json", json.dumps(scene))
         for way in WAYS:
             figures, _ = self.render(*way)
-            self.assertEqual(figures["notFinite"][0]["place"]["line"], 1 + text.index("    float bad = log(zero);"))
+            self.assertEqual(
+                figures["notFinite"][0]["place"]["line"],
+                1 + text.index("    float bad = log(zero);"),
+            )
             self.assertEqual(figures["notFinite"][0]["color"], ["-inf"] * 3)
 
     def test_good_pictures_say_nothing(self):
@@ -192,10 +255,19 @@ class TooDeep(ShaderCase):
             with self.subTest(way=way):
                 figures, error = self.render(*way)
                 self.assertEqual(figures["raysTooDeep"], 8 * 4 * 2, "the last ray of each sample")
-                self.assertIn("warning[W2866]: 64 rays in 64 samples were deeper than 3 and saw nothing: give a larger `--depth`", error)
+                self.assertIn(
+                    "warning[W2866]: 64 rays in 64 samples were deeper than 3 and saw nothing: give a larger `--depth`",
+                    error,
+                )
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "-q"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "-q"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=SECONDS,
+        )
         self.assertEqual(json.loads(done.stdout)["raysTooDeep"], 64)
         self.assertIn("64 rays in 64 samples were deeper than 3", done.stderr)
 

@@ -14,7 +14,11 @@ SHADERS = EXAMPLES.parent / "tests/cpp/scenes/Objects.rtsl"
 sys.path.insert(0, str(SHADERS.parent))
 from objects import objects_scene
 
-WAYS = (["--trace=recurse", "--traversal=device"], ["--trace=split", "--traversal=device"], ["--target=host-megakernel"])
+WAYS = (
+    ["--trace=recurse", "--traversal=device"],
+    ["--trace=split", "--traversal=device"],
+    ["--target=host-megakernel"],
+)
 
 
 class Objects(Case):
@@ -23,7 +27,9 @@ class Objects(Case):
         self.write("shaders.rtsl", SHADERS.read_text())
 
     def scene(self, **changes):
-        scene = objects_scene("shaders.rtsl", EXAMPLES / "glass" / "Sphere.rtsl", changes.pop("layers", 3))
+        scene = objects_scene(
+            "shaders.rtsl", EXAMPLES / "glass" / "Sphere.rtsl", changes.pop("layers", 3)
+        )
         for path, value in changes.items():
             scene[path].update(value)
         self.write("scene.json", json.dumps(scene))
@@ -36,7 +42,9 @@ class Objects(Case):
     def test_engines_agree(self):
         self.scene()
         # What is kept and what is checked is decided before machine code is optimised.
-        self.require_same_pictures(["--keep=all", "-O0"], ["--keep=parameters", "-O0", *WAYS[2]], ["--unchecked", "-O0"])
+        self.require_same_pictures(
+            ["--keep=all", "-O0"], ["--keep=parameters", "-O0", *WAYS[2]], ["--unchecked", "-O0"]
+        )
 
     def test_long_rows_of_layers(self):
         self.level = "-O0"
@@ -49,28 +57,48 @@ class Objects(Case):
         self.scene(layers=6)
         self.run_rtslc("compile", "scene.json", "--emit=ptx", "-o", "x.ptx")
         if shutil.which("ptxas"):
-            said = subprocess.run(["ptxas", "-v", "-arch=sm_75", "x.ptx", "-o", os.devnull], cwd=self.folder, capture_output=True, text=True)
+            said = subprocess.run(
+                ["ptxas", "-v", "-arch=sm_75", "x.ptx", "-o", os.devnull],
+                cwd=self.folder,
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual(said.returncode, 0, said.stderr)
             self.assertNotIn("cannot be statically determined", said.stderr)
         self.scene(layers=40)
         error = self.run_rtslc("compile", "scene.json", "--emit=ptx", "-o", "x.ptx", status=1)[1]
         self.assertIn("error[E0770]: `", error)
-        self.assertIn("calls itself on more objects in a row than a GPU program has room for: 32", error)
+        self.assertIn(
+            "calls itself on more objects in a row than a GPU program has room for: 32", error
+        )
 
     def test_a_package_holds_them(self):
         self.scene()
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
-        subprocess.run([os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"], cwd=self.folder, check=True)
+        subprocess.run(
+            [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"],
+            cwd=self.folder,
+            check=True,
+        )
         self.assert_same_bits("0.exr", "1.exr")
 
     def test_what_is_always_empty_is_left_out(self):
-        self.scene(materials={"painted": {"class": "Painted"}, "coated": {"class": "Coated"}, "tilted": {"class": "Tilted", "bump": None}})
+        self.scene(
+            materials={
+                "painted": {"class": "Painted"},
+                "coated": {"class": "Coated"},
+                "tilted": {"class": "Tilted", "bump": None},
+            }
+        )
         ir = self.run_rtslc("compile", "scene.json", "--emit=ir")[0]
         self.assertNotIn("@dispatch.rt_Texture.lookup", ir)
         self.assertNotIn("TextureUVW", ir)
         self.require_same_pictures()
-        self.assertRegex(self.run_rtslc("explain", "scene.json", "--no-savings")[0], r"Painted\.bump\b.*it is empty in all objects")
+        self.assertRegex(
+            self.run_rtslc("explain", "scene.json", "--no-savings")[0],
+            r"Painted\.bump\b.*it is empty in all objects",
+        )
         kept = self.run_rtslc("compile", "scene.json", "--emit=ir", "--keep=parameters")[0]
         self.assertIn("@dispatch.rt_Texture.lookup", kept)
         self.run_rtslc("render", "scene.json", "-o", "kept.exr", "--keep=parameters", *WAYS[0])
@@ -79,7 +107,10 @@ class Objects(Case):
     def test_a_reference_that_is_not_optional_is_set(self):
         self.scene(textures={"t0": {"class": "Layered"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
-        self.assertIn("`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`, or a variable of this name in ", error)
+        self.assertIn(
+            "`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`, or a variable of this name in ",
+            error,
+        )
         self.scene(textures={"t0": {"class": "Layered", "noise": None}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
         self.assertIn("member `noise` of `t0` cannot be null", error)

@@ -104,8 +104,14 @@ class Down : rt_Camera {
 
 BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 2}
 FLOOR = {"class": "Parallelogram", "constructor": [[-1000, 0, -1000], [0, 0, 2000], [2000, 0, 0]]}
-WAYS = (["--trace=recurse"], ["--trace=split"], ["--traversal=device"], ["--target=host-megakernel"], ["--keep=all"],
-        ["--threads", "1"])
+WAYS = (
+    ["--trace=recurse"],
+    ["--trace=split"],
+    ["--traversal=device"],
+    ["--target=host-megakernel"],
+    ["--keep=all"],
+    ["--threads", "1"],
+)
 
 
 class PathCase(Case):
@@ -118,10 +124,19 @@ class PathCase(Case):
         # time in all.
         self.level = "-O0" if spp * size[0] * size[1] <= 1 << 14 else "-O2"
         listed = [{"primitive": primitive, "material": material} for primitive, material in objects]
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["std.primitives", "std.materials", "std.lights", "shaders.rtsl"], "camera": {"class": camera},
-            "objects": listed, **rest,
-            "render": {"engine": "path", "size": size, "spp": spp, "depth": depth}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["std.primitives", "std.materials", "std.lights", "shaders.rtsl"],
+                    "camera": {"class": camera},
+                    "objects": listed,
+                    **rest,
+                    "render": {"engine": "path", "size": size, "spp": spp, "depth": depth},
+                }
+            ),
+        )
 
     def mean(self, *arguments):
         """Of red, green and blue."""
@@ -143,19 +158,26 @@ class ClosedForms(PathCase):
         """In a closed surface of albedo a that sends out e, the radiance is e / (1 - a)
         everywhere."""
         for albedo in (0.3, 0.8):
-            self.scene([(BALL, {"class": "Own", "albedo": albedo, "glow": 0.5})], depth=200, spp=256)
+            self.scene(
+                [(BALL, {"class": "Own", "albedo": albedo, "glow": 0.5})], depth=200, spp=256
+            )
             self.assert_gray(0.5 / (1 - albedo), 0.02)
 
     def test_bounces_end(self):
         """After n rays only the first n + 1 terms of the series are there."""
         for bounces in (0, 1, 2):
             self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=bounces, spp=4)
-            self.assert_gray(sum(0.5 ** i for i in range(bounces + 1)), 1e-5)
+            self.assert_gray(sum(0.5**i for i in range(bounces + 1)), 1e-5)
 
     def test_a_furnace(self):
         """A floor that reflects all light, below a sky of 1."""
-        for material in ({"class": "Mirror"}, {"class": "Own", "albedo": 1}, {"class": "Lambert", "reflectance": 1},
-                         {"class": "OrenNayar", "reflectance": 1, "sigma": 0}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}):
+        for material in (
+            {"class": "Mirror"},
+            {"class": "Own", "albedo": 1},
+            {"class": "Lambert", "reflectance": 1},
+            {"class": "OrenNayar", "reflectance": 1, "sigma": 0},
+            {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0},
+        ):
             with self.subTest(material=material):
                 self.scene([(FLOOR, material)], camera="Down", background=1.0)
                 self.assert_gray(1.0, 0.002)
@@ -165,15 +187,37 @@ class ClosedForms(PathCase):
         light, and gain none."""
         white = {"class": "Lambert", "reflectance": 1}
         mirror = {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0}
-        lossless = [{"class": "Dielectric"}, {"class": "ThinGlass"}, {"class": "Cutout", "material": white, "opacity": 0.4},
-                    {"class": "Cutout", "material": mirror, "opacity": 0.7}, {"class": "MixMaterial", "first": white, "second": mirror},
-                    {"class": "MixMaterial", "first": {"class": "Dielectric"}, "second": white, "amount": 0.3},
-                    {"class": "TwoSided", "front": white, "back": mirror}]
-        lossy = [{"class": "Gold", "alpha": 0.3}, {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0.5}, {"class": "Plastic", "reflectance": 1},
-                 {"class": "Velvet"}, {"class": "Ward"}, {"class": "Principled", "baseColor": 1}, {"class": "OrenNayar", "reflectance": 1}]
+        lossless = [
+            {"class": "Dielectric"},
+            {"class": "ThinGlass"},
+            {"class": "Cutout", "material": white, "opacity": 0.4},
+            {"class": "Cutout", "material": mirror, "opacity": 0.7},
+            {"class": "MixMaterial", "first": white, "second": mirror},
+            {
+                "class": "MixMaterial",
+                "first": {"class": "Dielectric"},
+                "second": white,
+                "amount": 0.3,
+            },
+            {"class": "TwoSided", "front": white, "back": mirror},
+        ]
+        lossy = [
+            {"class": "Gold", "alpha": 0.3},
+            {"class": "Conductor", "eta": 1, "k": 1e4, "alpha": 0.5},
+            {"class": "Plastic", "reflectance": 1},
+            {"class": "Velvet"},
+            {"class": "Ward"},
+            {"class": "Principled", "baseColor": 1},
+            {"class": "OrenNayar", "reflectance": 1},
+        ]
         for material in lossless + lossy:
             with self.subTest(material=material):
-                self.scene([({"class": "Sphere", "center": [0.1, 0.2, 5.3], "radius": 2}, material)], background=1.0, depth=200, spp=64)
+                self.scene(
+                    [({"class": "Sphere", "center": [0.1, 0.2, 5.3], "radius": 2}, material)],
+                    background=1.0,
+                    depth=200,
+                    spp=64,
+                )
                 if material in lossless:
                     self.assert_gray(1.0, 0.005)
                 else:
@@ -182,8 +226,11 @@ class ClosedForms(PathCase):
 
     def test_a_point_light(self):
         """Irradiance intensity * pi / h^2 on a floor below it, by the convention of LightColor."""
-        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down",
-                   lights=[{"class": "PointLight", "position": [0, 3, 0], "intensity": 9}])
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 0.5})],
+            camera="Down",
+            lights=[{"class": "PointLight", "position": [0, 3, 0], "intensity": 9}],
+        )
         self.assert_gray(0.5, 0.002)
 
     def test_a_square_light_however_it_is_found(self):
@@ -191,76 +238,167 @@ class ClosedForms(PathCase):
         a = 1 / math.sqrt(2)
         factor = 4 / (2 * math.pi) * 2 * a * math.atan(a)
         corner, side1, side2 = [-1, 1, -1], [2, 0, 0], [0, 0, 2]
-        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Down", spp=256,
-                   lights=[{"class": "RectangleLight", "corner": corner, "side1": side1, "side2": side2, "radiance": 2, "isTwoSided": True}])
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 0.5})],
+            camera="Down",
+            spp=256,
+            lights=[
+                {
+                    "class": "RectangleLight",
+                    "corner": corner,
+                    "side1": side1,
+                    "side2": side2,
+                    "radiance": 2,
+                    "isTwoSided": True,
+                }
+            ],
+        )
         self.assert_gray(0.5 * 2 * factor, 0.01)
         lamp = {"class": "Emitter", "radiance": 2, "isTwoSided": True}
         square = {"class": "Parallelogram", "constructor": [corner, side1, side2]}
-        self.scene([(FLOOR, {"class": "Own", "albedo": 0.5}), (square, lamp)], camera="Under", spp=256)
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 0.5}), (square, lamp)], camera="Under", spp=256
+        )
         self.assert_gray(0.5 * 2 * factor, 0.01)
         self.scene([(FLOOR, {"class": "Blind"}), (square, lamp)], camera="Under", spp=1024)
         self.assert_gray(0.5 * 2 * factor, 0.01)
         # As a mesh of two triangles of another size, and as a node with a transform that shears and
         # mirrors.
         self.write("square.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3\nf 1 3 4\n")
-        for transform in ({"scale": 2, "translate": corner}, {"matrix": [-2, 0, 0, 0, 5, 3, 7, 0, 0, 0, 2, 0, 1, 1, -1, 1]}):
-            for geometry in ({"mesh": "square.obj"}, {"primitive": {"class": "Parallelogram", "constructor": [[0, 0, 0], [0, 0, 1], [1, 0, 0]]}}):
+        for transform in (
+            {"scale": 2, "translate": corner},
+            {"matrix": [-2, 0, 0, 0, 5, 3, 7, 0, 0, 0, 2, 0, 1, 1, -1, 1]},
+        ):
+            for geometry in (
+                {"mesh": "square.obj"},
+                {
+                    "primitive": {
+                        "class": "Parallelogram",
+                        "constructor": [[0, 0, 0], [0, 0, 1], [1, 0, 0]],
+                    }
+                },
+            ):
                 with self.subTest(transform=transform, geometry=geometry):
-                    self.scene([(FLOOR, {"class": "Own", "albedo": 0.5})], camera="Under", spp=256,
-                               nodes={"lamp": {**geometry, "material": lamp, "transform": transform}}, root="lamp")
+                    self.scene(
+                        [(FLOOR, {"class": "Own", "albedo": 0.5})],
+                        camera="Under",
+                        spp=256,
+                        nodes={"lamp": {**geometry, "material": lamp, "transform": transform}},
+                        root="lamp",
+                    )
                     self.assert_gray(0.5 * 2 * factor, 0.01)
 
     def test_a_lamp_among_many(self):
         """Lamps are chosen by their power: of a thousand only the bright one matters, and it is
         found."""
-        dim = [({"class": "Sphere", "center": [x, 40, z], "radius": 0.01}, {"class": "Emitter", "radiance": 1e-4})
-               for x in range(-16, 16) for z in range(-16, 16)]
-        bright = ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.1}, {"class": "Emitter", "radiance": 900})
-        self.scene([(FLOOR, {"class": "Own", "albedo": 1}), bright, *dim], camera="Under", depth=1, spp=16)
+        dim = [
+            (
+                {"class": "Sphere", "center": [x, 40, z], "radius": 0.01},
+                {"class": "Emitter", "radiance": 1e-4},
+            )
+            for x in range(-16, 16)
+            for z in range(-16, 16)
+        ]
+        bright = (
+            {"class": "Sphere", "center": [0, 3, 0], "radius": 0.1},
+            {"class": "Emitter", "radiance": 900},
+        )
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 1}), bright, *dim], camera="Under", depth=1, spp=16
+        )
         # The irradiance of a ball of radius r at distance d: pi L (r / d)^2.
         self.assert_gray(900 * (0.1 / 3) ** 2, 0.02)
 
     def test_both_ways_find_the_same_light(self):
         """The path tracer with and without its search for surfaces that shine; the second needs
         many more samples."""
-        objects = [({"class": "Sphere", "center": [0, 0, 0], "radius": 3}, {"class": "Own", "albedo": 0.5}),
-                   ({"class": "Sphere", "center": [1, 1, 1], "radius": 0.8}, {"class": "Emitter", "radiance": 2}),
-                   ({"class": "Sphere", "center": [-1, 0, 1.5], "radius": 0.7}, {"class": "Conductor", "alpha": 0.3}),
-                   ({"class": "Sphere", "center": [0.8, -1, 1.5], "radius": 0.6}, {"class": "Plastic"})]
+        objects = [
+            (
+                {"class": "Sphere", "center": [0, 0, 0], "radius": 3},
+                {"class": "Own", "albedo": 0.5},
+            ),
+            (
+                {"class": "Sphere", "center": [1, 1, 1], "radius": 0.8},
+                {"class": "Emitter", "radiance": 2},
+            ),
+            (
+                {"class": "Sphere", "center": [-1, 0, 1.5], "radius": 0.7},
+                {"class": "Conductor", "alpha": 0.3},
+            ),
+            ({"class": "Sphere", "center": [0.8, -1, 1.5], "radius": 0.6}, {"class": "Plastic"}),
+        ]
         self.scene(objects, spp=128)
         both = self.mean()
-        source = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl").read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace("pathShare(path.density, rt_PDF)", "1.0")
+        source = (
+            pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
+        ).read_text()
+        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace(
+            "pathShare(path.density, rt_PDF)", "1.0"
+        )
         self.assertEqual(len(plain.split("if (false)")), 2)
         self.write("PathTracer.rtsl", plain)
         self.scene(objects, spp=4096, rayGeneration={"class": "PathTracer", "bounces": 64})
-        found = self.mean("--set", "render.engine=programs", "--set",
-                          'import=["std.primitives", "std.materials", "shaders.rtsl", "PathTracer.rtsl"]')
+        found = self.mean(
+            "--set",
+            "render.engine=programs",
+            "--set",
+            'import=["std.primitives", "std.materials", "shaders.rtsl", "PathTracer.rtsl"]',
+        )
         for one, other in zip(both, found):
             self.assertAlmostEqual(one, other, delta=0.01 * other)
 
     def test_a_derived_class_may_add_evaluatePDF(self):
         pictures = []
         for name in ("Own", "Whole"):
-            self.scene([(FLOOR, {"class": name}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": name, "glow": 1})],
-                       camera="Under", spp=4)
+            self.scene(
+                [
+                    (FLOOR, {"class": name}),
+                    (
+                        {"class": "Sphere", "center": [0, 3, 0], "radius": 0.5},
+                        {"class": name, "glow": 1},
+                    ),
+                ],
+                camera="Under",
+                spp=4,
+            )
             pictures.append(name + ".exr")
             self.run_rtslc("render", "scene.json", "-o", pictures[-1], "-q")
         self.assert_same_bits(*pictures)
 
     def test_many_lights(self):
         """Of more than four lights four are chosen; the mean is that of all."""
-        lights = [{"class": "PointLight", "position": [0, 1 + i, 0], "intensity": (1 + i) ** 2} for i in range(10)]
-        self.scene([(FLOOR, {"class": "Own", "albedo": 1})], camera="Down", lights=lights, depth=1, spp=256)
+        lights = [
+            {"class": "PointLight", "position": [0, 1 + i, 0], "intensity": (1 + i) ** 2}
+            for i in range(10)
+        ]
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 1})], camera="Down", lights=lights, depth=1, spp=256
+        )
         self.assert_gray(10.0, 0.01)
 
     def test_other_normals_as_in_the_classic_engine(self):
         """What lights send from a surface whose normal a texture leans, and through a cutout."""
-        lights = [{"class": "PointLight", "position": [2, 3, 1], "intensity": 9}, {"class": "DistantLight", "direction": [-1, 1, 0.5]}]
+        lights = [
+            {"class": "PointLight", "position": [2, 3, 1], "intensity": 9},
+            {"class": "DistantLight", "direction": [-1, 1, 0.5]},
+        ]
         clay = {"class": "Lambert", "reflectance": 0.5}
-        for material in ({"class": "NormalMap", "material": clay, "slopeU": {"class": "Solid", "value": 0.6}, "slopeV": {"class": "Solid", "value": -0.3}},
-                         {"class": "BumpMap", "material": clay, "height": {"class": "Noise", "scale": 0.7}, "scale": 0.3},
-                         {"class": "OrenNayar", "reflectance": 0.5, "sigma": 0.5}, {"class": "Ward"}):
+        for material in (
+            {
+                "class": "NormalMap",
+                "material": clay,
+                "slopeU": {"class": "Solid", "value": 0.6},
+                "slopeV": {"class": "Solid", "value": -0.3},
+            },
+            {
+                "class": "BumpMap",
+                "material": clay,
+                "height": {"class": "Noise", "scale": 0.7},
+                "scale": 0.3,
+            },
+            {"class": "OrenNayar", "reflectance": 0.5, "sigma": 0.5},
+            {"class": "Ward"},
+        ):
             with self.subTest(material=material):
                 self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
                 scene = json.loads((self.folder / "scene.json").read_text())
@@ -273,7 +411,10 @@ class ClosedForms(PathCase):
     def test_a_normal_of_its_own_stays_in_other_materials(self):
         """Materials made of one with a leaning normal look as it does, alone or as a part; half of
         it is half of the way."""
-        lights = [{"class": "PointLight", "position": [2, 3, 1], "intensity": 9}, {"class": "DistantLight", "direction": [-1, 1, 0.5]}]
+        lights = [
+            {"class": "PointLight", "position": [2, 3, 1], "intensity": 9},
+            {"class": "DistantLight", "direction": [-1, 1, 0.5]},
+        ]
         clay = {"class": "Lambert", "reflectance": 0.5}
 
         def means(material):
@@ -284,18 +425,42 @@ class ClosedForms(PathCase):
             return [self.mean(), self.mean("--set", "render.engine=classic")]
 
         flat = means(clay)
-        for leaning in ({"class": "NormalMap", "material": clay, "slopeU": {"class": "Solid", "value": 0.6}, "slopeV": {"class": "Solid", "value": -0.3}},
-                        {"class": "BumpMap", "material": clay, "height": {"class": "Noise", "scale": 0.7}, "scale": 0.3}):
+        for leaning in (
+            {
+                "class": "NormalMap",
+                "material": clay,
+                "slopeU": {"class": "Solid", "value": 0.6},
+                "slopeV": {"class": "Solid", "value": -0.3},
+            },
+            {
+                "class": "BumpMap",
+                "material": clay,
+                "height": {"class": "Noise", "scale": 0.7},
+                "scale": 0.3,
+            },
+        ):
             alone = means(leaning)
             if leaning["class"] == "NormalMap":  # all of it to one side
                 self.assertGreater(abs(alone[0][0] - flat[0][0]), 0.01 * flat[0][0])
             half = [[0.5 * (a + b) for a, b in zip(*both)] for both in zip(alone, flat)]
-            wrapped = (({"class": "TwoSided", "front": leaning, "back": leaning}, alone),
-                       ({"class": "Cutout", "material": leaning}, alone),
-                       ({"class": "NormalMap", "material": leaning}, alone),
-                       ({"class": "MixMaterial", "amount": 0, "first": leaning, "second": clay}, alone),
-                       ({"class": "MixMaterial", "amount": 0.3, "first": leaning, "second": leaning}, alone),
-                       ({"class": "MixMaterial", "first": clay, "second": {"class": "Cutout", "material": leaning}}, half))
+            wrapped = (
+                ({"class": "TwoSided", "front": leaning, "back": leaning}, alone),
+                ({"class": "Cutout", "material": leaning}, alone),
+                ({"class": "NormalMap", "material": leaning}, alone),
+                ({"class": "MixMaterial", "amount": 0, "first": leaning, "second": clay}, alone),
+                (
+                    {"class": "MixMaterial", "amount": 0.3, "first": leaning, "second": leaning},
+                    alone,
+                ),
+                (
+                    {
+                        "class": "MixMaterial",
+                        "first": clay,
+                        "second": {"class": "Cutout", "material": leaning},
+                    },
+                    half,
+                ),
+            )
             for material, expected in wrapped if leaning["class"] == "NormalMap" else wrapped[1:2]:
                 with self.subTest(material=material):
                     for found, wanted in zip(means(material), expected):
@@ -305,7 +470,7 @@ class ClosedForms(PathCase):
     def test_only_shade(self):
         """Its color counts, and its own rays are answered by `shade`."""
         self.scene([(BALL, {"class": "Shaded"})], depth=5, spp=1)
-        self.assert_gray(sum(0.25 * 0.5 ** i for i in range(6)), 1e-5, "-Wno-all")
+        self.assert_gray(sum(0.25 * 0.5**i for i in range(6)), 1e-5, "-Wno-all")
 
 
 class BadInput(PathCase):
@@ -314,9 +479,19 @@ class BadInput(PathCase):
         lamp = {"class": "Emitter", "radiance": 5, "isTwoSided": True}
         flat = {"class": "Parallelogram", "constructor": [[-1, 3, -1], [2, 0, 0], [4, 0, 0]]}
         self.write("flat.obj", "v 0 3 0\nv 1 3 0\nv 2 3 0\nf 1 2 3\n")
-        self.scene([(FLOOR, {"class": "Own"}), (flat, lamp), ({"class": "Disk", "constructor": [[0, 3, 0], [0, 1, 0], 0, 0]}, lamp),
-                    ({"class": "Sphere", "center": [0, 3, 0], "radius": 0}, lamp)], camera="Under", background=1.0,
-                   nodes={"sliver": {"mesh": "flat.obj", "material": lamp}}, root="sliver", spp=16)
+        self.scene(
+            [
+                (FLOOR, {"class": "Own"}),
+                (flat, lamp),
+                ({"class": "Disk", "constructor": [[0, 3, 0], [0, 1, 0], 0, 0]}, lamp),
+                ({"class": "Sphere", "center": [0, 3, 0], "radius": 0}, lamp),
+            ],
+            camera="Under",
+            background=1.0,
+            nodes={"sliver": {"mesh": "flat.obj", "material": lamp}},
+            root="sliver",
+            spp=16,
+        )
         out, _ = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json")
         self.assertEqual(json.loads(out)["samplesNotFinite"], 0)
         self.assert_gray(0.5, 0.01)
@@ -325,24 +500,45 @@ class BadInput(PathCase):
         """Its power is more than a float can hold; light is proportional to the radiance, sample by
         sample."""
         means = []
-        for glow in (1.0, 2.0 ** 125):
-            self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": glow})],
-                       camera="Under", spp=4)
+        for glow in (1.0, 2.0**125):
+            self.scene(
+                [
+                    (FLOOR, {"class": "Own"}),
+                    (
+                        {"class": "Sphere", "center": [0, 3, 0], "radius": 0.5},
+                        {"class": "Own", "glow": glow},
+                    ),
+                ],
+                camera="Under",
+                spp=4,
+            )
             means.append(self.mean()[0] / glow)
         self.assertGreater(means[0], 0.001)
         self.assertAlmostEqual(means[1], means[0], delta=1e-4 * means[0])
 
     def test_lamps_that_are_too_bright(self):
         """Samples that are not finite are left out, and counted."""
-        self.scene([(FLOOR, {"class": "Own"}), ({"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}, {"class": "Own", "glow": 3e38})],
-                   camera="Under", background=1.0, spp=64)
+        self.scene(
+            [
+                (FLOOR, {"class": "Own"}),
+                (
+                    {"class": "Sphere", "center": [0, 3, 0], "radius": 0.5},
+                    {"class": "Own", "glow": 3e38},
+                ),
+            ],
+            camera="Under",
+            background=1.0,
+            spp=64,
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-all")
         for component in self.mean("-Wno-all"):
             self.assertTrue(math.isfinite(component))
 
     def test_a_bsdf_that_is_no_number(self):
         """The samples are left out, with a warning that names the line."""
-        text = SHADERS + """
+        text = (
+            SHADERS
+            + """
 class Broken : Own {
   public float zero = 0.0;
   void BSDF() {
@@ -350,9 +546,16 @@ class Broken : Own {
   }
 };
 """
+        )
         self.write("shaders.rtsl", text)
         line = 1 + text.split("\n").index("    rt_BSDFValue = color(zero / zero);")
-        self.scene([(FLOOR, {"class": "Broken"})], camera="Under", lights=[{"class": "PointLight", "position": [0, 3, 0]}], spp=1, size=(4, 4))
+        self.scene(
+            [(FLOOR, {"class": "Broken"})],
+            camera="Under",
+            lights=[{"class": "PointLight", "position": [0, 3, 0]}],
+            spp=1,
+            size=(4, 4),
+        )
         out, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json")
         self.assertEqual(json.loads(out)["samplesNotFinite"], 16)
         self.assertIn(f"shaders.rtsl:{line}:", error)
@@ -364,45 +567,100 @@ class Views(PathCase):
         floor."""
         own = {"class": "Own", "albedo": 0.25}
         self.scene([(FLOOR, own)], camera="Down", spp=16, size=(4, 4))
-        for engine, expected in (("normals", [0.5, 1, 0.5]), ("depth", [5, 5, 5]), ("albedo", [0.25] * 3), ("occlusion", [1, 1, 1])):
+        for engine, expected in (
+            ("normals", [0.5, 1, 0.5]),
+            ("depth", [5, 5, 5]),
+            ("albedo", [0.25] * 3),
+            ("occlusion", [1, 1, 1]),
+        ):
             with self.subTest(engine=engine):
                 for one, wanted in zip(self.mean("--set", f"render.engine={engine}"), expected):
                     self.assertAlmostEqual(one, wanted, delta=1e-3)
         # Half of the directions of a floor below a half-infinite ceiling are open; with a short
         # reach all are.
-        ceiling = {"class": "Parallelogram", "constructor": [[0, 1, -1e4], [1e4, 0, 0], [0, 0, 2e4]]}
+        ceiling = {
+            "class": "Parallelogram",
+            "constructor": [[0, 1, -1e4], [1e4, 0, 0], [0, 0, 2e4]],
+        }
         self.scene([(FLOOR, own), (ceiling, own)], camera="Under", spp=4096, size=(4, 4))
         self.assert_gray(0.5, 0.02, "--set", "render.engine=occlusion")
-        self.assert_gray(1.0, 1e-6, "--set", "render.engine=occlusion", "--set",
-                         'rayGeneration={"class": "OcclusionView", "reach": 0.5}')
+        self.assert_gray(
+            1.0,
+            1e-6,
+            "--set",
+            "render.engine=occlusion",
+            "--set",
+            'rayGeneration={"class": "OcclusionView", "reach": 0.5}',
+        )
 
     def test_ids_differ(self):
         """Of seven balls, of which one after the other is in front of the camera and the rest
         behind it."""
         means = set()
         for seen in range(7):
-            self.scene([({"class": "Sphere", "center": [0, 0.1 if i == seen else 20, 0], "radius": 0.5}, {"class": "Shines"})
-                        for i in range(7)], camera="Down", spp=1, size=(4, 4))
+            self.scene(
+                [
+                    (
+                        {
+                            "class": "Sphere",
+                            "center": [0, 0.1 if i == seen else 20, 0],
+                            "radius": 0.5,
+                        },
+                        {"class": "Shines"},
+                    )
+                    for i in range(7)
+                ],
+                camera="Down",
+                spp=1,
+                size=(4, 4),
+            )
             means.add(tuple(self.mean("--set", "render.engine=id")))
         self.assertEqual(len(means), 7)
 
     def test_every_path_gives_the_same_bits(self):
-        self.scene([(FLOOR, {"class": "Lambert"}), ({"class": "Sphere", "center": [0, 1, 2], "radius": 1}, {"class": "Gold"})],
-                   camera="Inside", spp=4)
+        self.scene(
+            [
+                (FLOOR, {"class": "Lambert"}),
+                ({"class": "Sphere", "center": [0, 1, 2], "radius": 1}, {"class": "Gold"}),
+            ],
+            camera="Inside",
+            spp=4,
+        )
         for engine in ("normals", "depth", "id", "albedo", "occlusion"):
-            self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--set", f"render.engine={engine}")
+            self.run_rtslc(
+                "render", "scene.json", "-o", "a.exr", "-q", "--set", f"render.engine={engine}"
+            )
             for way in (["--trace=recurse"], ["--target=host-megakernel"]):
                 with self.subTest(engine=engine, way=way):
-                    self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "--set", f"render.engine={engine}", *way)
+                    self.run_rtslc(
+                        "render",
+                        "scene.json",
+                        "-o",
+                        "b.exr",
+                        "-q",
+                        "--set",
+                        f"render.engine={engine}",
+                        *way,
+                    )
                     self.run_rtslc("compare", "a.exr", "b.exr", "--threshold", "0")
 
 
 class Paths(PathCase):
     def test_every_path_gives_the_same_bits(self):
-        self.scene([(FLOOR, {"class": "Lambert"}), (BALL, {"class": "Dielectric"}),
-                    ({"class": "Sphere", "center": [3, 1, 0], "radius": 1}, {"class": "Gold"}),
-                    ({"class": "Sphere", "center": [0, 4, 3], "radius": 1}, {"class": "Emitter", "radiance": 4})],
-                   background=[0.2, 0.3, 0.4], spp=8, size=(32, 32))
+        self.scene(
+            [
+                (FLOOR, {"class": "Lambert"}),
+                (BALL, {"class": "Dielectric"}),
+                ({"class": "Sphere", "center": [3, 1, 0], "radius": 1}, {"class": "Gold"}),
+                (
+                    {"class": "Sphere", "center": [0, 4, 3], "radius": 1},
+                    {"class": "Emitter", "radiance": 4},
+                ),
+            ],
+            background=[0.2, 0.3, 0.4],
+            spp=8,
+            size=(32, 32),
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
         for i, way in enumerate(WAYS):
             with self.subTest(way=way):
@@ -411,53 +669,90 @@ class Paths(PathCase):
 
     def test_a_package_does_the_same(self):
         """Emitters are found when the package is made."""
-        self.scene([(FLOOR, {"class": "Lambert"}), ({"class": "Sphere", "center": [0, 4, 3], "radius": 1}, {"class": "Emitter", "radiance": 4})],
-                   camera="Under", spp=8)
+        self.scene(
+            [
+                (FLOOR, {"class": "Lambert"}),
+                (
+                    {"class": "Sphere", "center": [0, 4, 3], "radius": 1},
+                    {"class": "Emitter", "radiance": 4},
+                ),
+            ],
+            camera="Under",
+            spp=8,
+        )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"], cwd=self.folder,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=SECONDS,
+        )
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_members_of_the_engine(self):
-        self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=50, spp=1,
-                   rayGeneration={"class": "PathTracer", "bounces": 0})
+        self.scene(
+            [(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})],
+            depth=50,
+            spp=1,
+            rayGeneration={"class": "PathTracer", "bounces": 0},
+        )
         self.assert_gray(1.0, 1e-6)
 
     def test_another_ray_generation_is_not_used(self):
-        self.write("other.rtsl", "class Other : rt_RayGeneration { void generate() { rt_SampleColor = color(9.0); } };")
+        self.write(
+            "other.rtsl",
+            "class Other : rt_RayGeneration { void generate() { rt_SampleColor = color(9.0); } };",
+        )
         self.scene([(BALL, {"class": "Shines"})], spp=1, rayGeneration={"class": "Other"})
-        self.assert_gray(0.75, 1e-6, "--set", 'import=["std.primitives", "shaders.rtsl", "other.rtsl"]')
+        self.assert_gray(
+            0.75, 1e-6, "--set", 'import=["std.primitives", "shaders.rtsl", "other.rtsl"]'
+        )
 
     def test_options_of_the_command_line(self):
         """`--engine` and `--depth` do what the scene's keys do."""
         self.scene([(BALL, {"class": "Own", "albedo": 0.5, "glow": 1})], depth=9, spp=4)
         for bounces in (0, 1):
-            self.assert_gray(sum(0.5 ** i for i in range(bounces + 1)), 1e-5, "--depth", bounces)
+            self.assert_gray(sum(0.5**i for i in range(bounces + 1)), 1e-5, "--depth", bounces)
         _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--depth", "1")
         self.assertEqual(error, "")
         self.assert_gray(0.5, 0.02, "--engine", "albedo", "--spp", "256")
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "b.exr", "--engine", "fast"), "E0808", "there is no engine `fast`")
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "b.exr", "--engine", "fast"),
+            "E0808",
+            "there is no engine `fast`",
+        )
 
     def test_a_camera_is_needed(self):
         self.scene([(BALL, {"class": "Shines"})])
         scene = json.loads((self.folder / "scene.json").read_text())
         del scene["camera"]
         self.write("scene.json", json.dumps(scene))
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr"), "E0803", "the engine `path`")
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "a.exr"), "E0803", "the engine `path`"
+        )
 
     def test_unknown_engines(self):
         self.scene([(BALL, {"class": "Shines"})])
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"), "E0808",
-                            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `volume`, `occlusion`")
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"),
+            "E0808",
+            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `volume`, `occlusion`",
+        )
 
     def test_the_camera_of_an_authors_generate(self):
         """`generate` sees the camera's ray; without a camera it is zero."""
-        self.write("shaders.rtsl", SHADERS + """
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
 class Eye : rt_RayGeneration {
   void generate() { rt_SampleColor = color(rt_RayDirection.z, rt_RayOrigin.y, 0.0); }
 };
-""")
+""",
+        )
         self.scene([(BALL, {"class": "Shines"})], spp=1, rayGeneration={"class": "Eye"})
         for way in WAYS:
             red, green, _ = self.mean("--set", "render.engine=programs", *way)

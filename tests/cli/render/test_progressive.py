@@ -17,20 +17,35 @@ class Progressive(Case):
         self.glass_scene()
 
     def render(self, name, *options):
-        out, _ = self.run_rtslc("render", "scene.json", "-o", name, "--json", "-Wno-depth-limit", *SMALL, *options)
+        out, _ = self.run_rtslc(
+            "render", "scene.json", "-o", name, "--json", "-Wno-depth-limit", *SMALL, *options
+        )
         return json.loads(out)
 
     def assert_same_pixels(self, first, second):
         self.assertEqual((self.folder / first).read_bytes(), (self.folder / second).read_bytes())
 
     def test_passes_have_the_bits_of_one_rendering(self):
-        for way in ([], ["--traversal=device"], ["--trace=split"], ["--threads=1"], ["--color=spectral:4"], ["--engine=path"],
-                    ["--target=host-megakernel"]):
+        for way in (
+            [],
+            ["--traversal=device"],
+            ["--trace=split"],
+            ["--threads=1"],
+            ["--color=spectral:4"],
+            ["--engine=path"],
+            ["--target=host-megakernel"],
+        ):
             with self.subTest(way=way):
                 passes = self.render("passes.exr", "--time=300ms", "--spp=40", *way)
                 whole = self.render("whole.exr", f"--spp={passes['spp']}", *way)
                 self.assert_same_pixels("passes.exr", "whole.exr")
-                for count in ("samples", "pixels", "raysTooDeep", "samplesNotFinite", "pixelsWithoutSample"):
+                for count in (
+                    "samples",
+                    "pixels",
+                    "raysTooDeep",
+                    "samplesNotFinite",
+                    "pixelsWithoutSample",
+                ):
                     self.assertEqual(passes[count], whole[count], count)
 
     def test_the_time_is_kept(self):
@@ -55,7 +70,9 @@ class Progressive(Case):
         self.assertEqual((coarse["spp"], coarse["noise"]), (again["spp"], again["noise"]))
         self.assert_same_pixels("a.exr", "b.exr")
         fine = self.render("c.exr", "--noise=0.005")
-        self.assertAlmostEqual(fine["spp"] / coarse["spp"], 4, delta=1.5)  # halved by four times as many samples
+        self.assertAlmostEqual(
+            fine["spp"] / coarse["spp"], 4, delta=1.5
+        )  # halved by four times as many samples
 
     def test_noise_is_not_below_the_error(self):
         """Pictures with different seeds differ by the root of 2 times their error. Samples that are
@@ -67,14 +84,29 @@ class Progressive(Case):
                 out, _ = self.run_rtslc("compare", "a.exr", "b.exr", "--json", "--threshold", "10")
                 difference = json.loads(out)
                 mean = sum(difference["means"][0]) / len(difference["means"][0])
-                error = difference["rmse"] / 2 ** 0.5 / mean
+                error = difference["rmse"] / 2**0.5 / mean
                 self.assertLess(error, estimate * 1.1)
                 self.assertGreater(error, estimate / 6)
 
     def test_the_picture_so_far_is_written_at_intervals_and_after_ctrl_c(self):
-        running = subprocess.Popen([RTSLC, "render", "scene.json", "-o", "a.exr", "--time=10m", "--json", "-Wno-depth-limit", *SMALL],
-                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        running = subprocess.Popen(
+            [
+                RTSLC,
+                "render",
+                "scene.json",
+                "-o",
+                "a.exr",
+                "--time=10m",
+                "--json",
+                "-Wno-depth-limit",
+                *SMALL,
+            ],
+            cwd=self.folder,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         for _ in range(SECONDS * 10):
             if (self.folder / "a.exr").exists():
                 break
@@ -90,16 +122,25 @@ class Progressive(Case):
         self.assert_same_pixels("a.exr", "whole.exr")
 
     def test_bad_values(self):
-        for option, part in (("--time=30", "`30` is not a time; write a number and a unit: `30s`, `2m`, `500ms`"),
-                             ("--time=0s", "`0s` is not a time"), ("--time=-1s", "`-1s` is not a time"),
-                             ("--time=infs", "`infs` is not a time"), ("--time=s", "`s` is not a time"),
-                             ("--noise=0", "no picture is without error; give a number like 0.01"),
-                             ("--noise=inf", "no picture is without error"), ("--noise=-1", "`-1` is not a number of at least 0")):
+        for option, part in (
+            ("--time=30", "`30` is not a time; write a number and a unit: `30s`, `2m`, `500ms`"),
+            ("--time=0s", "`0s` is not a time"),
+            ("--time=-1s", "`-1s` is not a time"),
+            ("--time=infs", "`infs` is not a time"),
+            ("--time=s", "`s` is not a time"),
+            ("--noise=0", "no picture is without error; give a number like 0.01"),
+            ("--noise=inf", "no picture is without error"),
+            ("--noise=-1", "`-1` is not a number of at least 0"),
+        ):
             with self.subTest(option=option):
-                _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", option, status=USAGE)
+                _, error = self.run_rtslc(
+                    "render", "scene.json", "-o", "a.exr", option, status=USAGE
+                )
                 self.assertIn(part, error)
         for option in ("--time=1s", "--noise=0.1"):
-            _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", option, "--watch", status=USAGE)
+            _, error = self.run_rtslc(
+                "render", "scene.json", "-o", "a.exr", option, "--watch", status=USAGE
+            )
             self.assertIn("`--watch` renders each picture with the same number of samples", error)
         self.assertFalse((self.folder / "a.exr").exists())
 

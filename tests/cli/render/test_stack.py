@@ -70,24 +70,53 @@ class Ball : rt_Primitive {{
 """
 SMALL = {"eye": 65536, "made": 1024, "shade": 1024, "bounds": 1024, "intersect": 1024}
 FLOATS = MIB // 4
-WAYS = ([], ["--threads", "1"], ["--traversal=device"], ["-O", "0"], ["--trace=split"], ["--target=host-megakernel"])
+WAYS = (
+    [],
+    ["--threads", "1"],
+    ["--traversal=device"],
+    ["-O", "0"],
+    ["--trace=split"],
+    ["--target=host-megakernel"],
+)
 
 
 class Stack(Case):
     def scene(self, depth, **sizes):
         self.write("shaders.rtsl", SHADERS.format(**{**SMALL, **sizes}))
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["shaders.rtsl"], "camera": {"class": "Eye"},
-            "objects": [{"primitive": {"class": "Ball"}, "material": {"class": "Wide", "constructor": [3]}}],
-            "render": {"engine": "classic", "size": [3, 2], "spp": 1, "depth": depth}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["shaders.rtsl"],
+                    "camera": {"class": "Eye"},
+                    "objects": [
+                        {
+                            "primitive": {"class": "Ball"},
+                            "material": {"class": "Wide", "constructor": [3]},
+                        }
+                    ],
+                    "render": {"engine": "classic", "size": [3, 2], "spp": 1, "depth": depth},
+                }
+            ),
+        )
 
     def render(self, picture, *arguments, **more):
-        return self.run_rtslc("render", "scene.json", "-o", picture, "-q", "-Wno-all", *arguments, **more)
+        return self.run_rtslc(
+            "render", "scene.json", "-o", picture, "-q", "-Wno-all", *arguments, **more
+        )
 
     def test_large_variables_and_deep_rays(self):
-        for depth, sizes in ((8, {"shade": FLOATS}), (200, {"shade": FLOATS // 16}), (256, {"shade": FLOATS // 4}),
-                             (1, {"eye": 12 * FLOATS}), (1, {"intersect": 12 * FLOATS}), (1, {"made": 12 * FLOATS}),
-                             (1, {"bounds": 12 * FLOATS}), (3, {name: 6 * FLOATS for name in SMALL})):
+        for depth, sizes in (
+            (8, {"shade": FLOATS}),
+            (200, {"shade": FLOATS // 16}),
+            (256, {"shade": FLOATS // 4}),
+            (1, {"eye": 12 * FLOATS}),
+            (1, {"intersect": 12 * FLOATS}),
+            (1, {"made": 12 * FLOATS}),
+            (1, {"bounds": 12 * FLOATS}),
+            (3, {name: 6 * FLOATS for name in SMALL}),
+        ):
             self.scene(depth, **sizes)
             for i, way in enumerate(WAYS):
                 with self.subTest(depth=depth, sizes=sizes, way=way):
@@ -98,8 +127,13 @@ class Stack(Case):
         self.scene(8, shade=FLOATS, eye=12 * FLOATS, intersect=12 * FLOATS)
         self.render("a.exr", "--target=host-megakernel")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", "-Wno-all")
-        done = subprocess.run([RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"], cwd=self.folder,
-                              stderr=subprocess.PIPE, text=True, timeout=SECONDS)
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=SECONDS,
+        )
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_small_limit_of_the_shell_does_not_matter(self):
@@ -116,9 +150,21 @@ class Stack(Case):
             resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
 
         self.scene(256, shade=15 * FLOATS)
-        _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-all", status=DIAGNOSED, prepare=little_memory)
-        self.assertRegex(error, r"E1001\]: the rays of one sample take (38|39)\d\d\.\d MiB of stack, and there is not enough memory: "
-                                "reduce the depth limit or the local variables of shaders")
+        _, error = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "-q",
+            "-Wno-all",
+            status=DIAGNOSED,
+            prepare=little_memory,
+        )
+        self.assertRegex(
+            error,
+            r"E1001\]: the rays of one sample take (38|39)\d\d\.\d MiB of stack, and there is not enough memory: "
+            "reduce the depth limit or the local variables of shaders",
+        )
         self.assertNotIn("a.exr", self.files())
 
 

@@ -79,7 +79,16 @@ class State(Case):
                 rendered.add((way, pattern))
                 name = f"{pattern} {way}.exr"
                 with self.subTest(pattern=pattern, way=way, scene=str(scene)):
-                    self.run_rtslc("render", scene, "-o", name, "-q", f"--undefined={pattern}", *arguments, *options)
+                    self.run_rtslc(
+                        "render",
+                        scene,
+                        "-o",
+                        name,
+                        "-q",
+                        f"--undefined={pattern}",
+                        *arguments,
+                        *options,
+                    )
                     if way == "double":  # other roundings: against itself
                         reference = f"leave {way}.exr"
                     else:
@@ -90,13 +99,25 @@ class State(Case):
     def scene(self, sets):
         self.write("eye.rtsl", CAMERA)
         self.write("shaders.rtsl", SHADERS)
-        self.write("scene.json", json.dumps({
-            "rtsl": 1, "import": ["eye.rtsl", "shaders.rtsl"], "camera": {"class": "Eye"},
-            "textures": {"map": {"class": "Map"}},
-            "objects": [{"primitive": {"class": "Ball", "center": [0, 0, 0]},
-                         "material": {"class": "Coat", "below": {"class": "Base"}}}],
-            "background": {"class": "Sky", "map": "map", "sets": sets},
-            "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2}}))
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["eye.rtsl", "shaders.rtsl"],
+                    "camera": {"class": "Eye"},
+                    "textures": {"map": {"class": "Map"}},
+                    "objects": [
+                        {
+                            "primitive": {"class": "Ball", "center": [0, 0, 0]},
+                            "material": {"class": "Coat", "below": {"class": "Base"}},
+                        }
+                    ],
+                    "background": {"class": "Sky", "map": "map", "sets": sets},
+                    "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 2},
+                }
+            ),
+        )
         return "scene.json"
 
     def test_helpers_call_other_materials(self):
@@ -111,7 +132,9 @@ class State(Case):
         rendered = set()
         for turn, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json"))):
             others = tuple(IN_TURN[(2 * turn + i) % len(IN_TURN)] for i in range(2))
-            rendered |= self.pictures_are_one(scene, "--size", "48x27", "--spp", "1", ways=(*IN_EVERY_EXAMPLE, *others), turn=turn)
+            rendered |= self.pictures_are_one(
+                scene, "--size", "48x27", "--spp", "1", ways=(*IN_EVERY_EXAMPLE, *others), turn=turn
+            )
         self.assertLessEqual({(way, pattern) for way in WAYS for pattern in PATTERNS[1:]}, rendered)
 
     def test_states_are_printed(self):

@@ -38,7 +38,7 @@ class Viewer:
         at = 0
         while at < len(data):
             length, kind = struct.unpack_from("<IB", data, at)
-            self.message(kind, data[at + 5:at + length])
+            self.message(kind, data[at + 5 : at + length])
             at += length
         assert at == len(data)
 
@@ -50,7 +50,11 @@ class Viewer:
             width, height, count = struct.unpack_from("<III", rest)
             channels = rest[12:].split(b"\0")
             assert channels[-1] == b"" and len(channels) == count + 1
-            self.pictures[name.decode()] = (width, height, {c.decode(): [None] * (width * height) for c in channels[:-1]})
+            self.pictures[name.decode()] = (
+                width,
+                height,
+                {c.decode(): [None] * (width * height) for c in channels[:-1]},
+            )
         elif kind == UPDATE:
             channel, rest = rest.split(b"\0", 1)
             x, y, width, height = struct.unpack_from("<IIII", rest)
@@ -58,7 +62,9 @@ class Viewer:
             values = struct.unpack(f"<{width * height}f", rest[16:])
             for row in range(height):
                 start = (y + row) * whole_width + x
-                channels[channel.decode()][start:start + width] = values[row * width:(row + 1) * width]
+                channels[channel.decode()][start : start + width] = values[
+                    row * width : (row + 1) * width
+                ]
             self.updates += 1
         else:
             raise AssertionError(kind)
@@ -82,7 +88,16 @@ class Tev(Case):
         self.run_rtslc("render", *small, "-o", "alone.exr")
         for color in ("rgb", "spectral:4"):
             viewer = Viewer()
-            self.run_rtslc("render", *small, "--color", color, "-o", f"{color[0]}.exr", "--tev", f"127.0.0.1:{viewer.port}")
+            self.run_rtslc(
+                "render",
+                *small,
+                "--color",
+                color,
+                "-o",
+                f"{color[0]}.exr",
+                "--tev",
+                f"127.0.0.1:{viewer.port}",
+            )
             viewer.end()
             self.assertEqual(list(viewer.pictures), [f"{color[0]}.exr"])
             width, height, channels = viewer.pictures[f"{color[0]}.exr"]
@@ -92,14 +107,28 @@ class Tev(Case):
                 self.assert_same_bits("alone.exr", "r.exr")
                 read = exr_channels((self.folder / "r.exr").read_bytes())
                 for name, values in channels.items():
-                    self.assertEqual(read[name], list(struct.unpack("<800I", struct.pack("<800f", *values))))
+                    self.assertEqual(
+                        read[name], list(struct.unpack("<800I", struct.pack("<800f", *values)))
+                    )
             else:
                 self.assertTrue(all(value >= 0 for value in channels["G"]))
 
     def test_it_is_shown_while_it_is_rendered(self):
         self.glass_scene()
         viewer = Viewer()
-        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "--size", "32x18", "--time", "2500ms", "--tev", f"127.0.0.1:{viewer.port}")
+        self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "-q",
+            "--size",
+            "32x18",
+            "--time",
+            "2500ms",
+            "--tev",
+            f"127.0.0.1:{viewer.port}",
+        )
         viewer.end()
         self.assertGreater(viewer.updates, 3)  # three of a picture
         self.assertEqual(viewer.order.count(CREATE), 1)
@@ -107,18 +136,36 @@ class Tev(Case):
     def test_a_viewer_that_is_not_there(self):
         self.glass_scene()
         port = self.free_port()
-        messages = self.diagnose("render", "scene.json", "-o", "a.exr", "--tev", f"127.0.0.1:{port}")
-        self.assert_message(messages, "E0908", f"cannot reach a viewer at `127.0.0.1:{port}`: Connection refused")
+        messages = self.diagnose(
+            "render", "scene.json", "-o", "a.exr", "--tev", f"127.0.0.1:{port}"
+        )
+        self.assert_message(
+            messages, "E0908", f"cannot reach a viewer at `127.0.0.1:{port}`: Connection refused"
+        )
         self.assertIn("start tev there first", str(messages))
-        self.assert_message(self.diagnose("render", "scene.json", "-o", "a.exr", "--tev", "no.such.host.invalid"), "E0908",
-                            "cannot reach a viewer at `no.such.host.invalid:14158`")
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "a.exr", "--tev", "no.such.host.invalid"),
+            "E0908",
+            "cannot reach a viewer at `no.such.host.invalid:14158`",
+        )
         self.assertNotIn("a.exr", self.files())
 
     def test_a_viewer_that_goes_away(self):
         """The picture is written, and a warning says what the viewer shows."""
         self.glass_scene()
         viewer = Viewer(most=1)
-        _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--size", "64x36", "--time", "3s", "--tev", f"127.0.0.1:{viewer.port}")
+        _, error = self.run_rtslc(
+            "render",
+            "scene.json",
+            "-o",
+            "a.exr",
+            "--size",
+            "64x36",
+            "--time",
+            "3s",
+            "--tev",
+            f"127.0.0.1:{viewer.port}",
+        )
         viewer.end()
         self.assertIn("W2869", error)
         self.assertIn(f"the viewer at `127.0.0.1:{viewer.port}` shows an earlier picture", error)
@@ -126,8 +173,15 @@ class Tev(Case):
 
     def test_bad_values(self):
         self.glass_scene()
-        for value, message in ((":14158", "names no host"), ("localhost:0", "1 to 65535"), ("localhost:tev", "1 to 65535"), ("localhost:70000", "1 to 65535")):
-            _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--tev", value, status=USAGE)
+        for value, message in (
+            (":14158", "names no host"),
+            ("localhost:0", "1 to 65535"),
+            ("localhost:tev", "1 to 65535"),
+            ("localhost:70000", "1 to 65535"),
+        ):
+            _, error = self.run_rtslc(
+                "render", "scene.json", "-o", "a.exr", "--tev", value, status=USAGE
+            )
             self.assertIn("--tev", error)
             self.assertIn(message, error)
 

@@ -32,8 +32,12 @@ MATERIALS = {
     "marble": {"class": "Lambert", "albedo": {"class": "Marble"}},
     "tiled": {"class": "Lambert", "albedo": TILES},
     "bumpy": {"class": "BumpMap", "material": "plain", "height": SMOOTH, "scale": 0.3},
-    "stretched": {"class": "BumpMap", "material": "plain", "scale": 0.2,
-                  "height": {"class": "TransformedPattern", "pattern": SMOOTH, "spaceScale": [1, 3, 0.5]}},
+    "stretched": {
+        "class": "BumpMap",
+        "material": "plain",
+        "scale": 0.2,
+        "height": {"class": "TransformedPattern", "pattern": SMOOTH, "spaceScale": [1, 3, 0.5]},
+    },
     "leaning": {"class": "NormalMap", "material": "plain", "slopeU": SMOOTH, "slopeV": TILES},
     "brushed": {"class": "Ward", "alphaU": 0.1, "alphaV": 0.4},
 }
@@ -58,14 +62,42 @@ class TransformCase(Case):
         self.write("Egg.rtsl", EGG)
 
     def render(self, name, objects, point=list, vector=list, **more):
-        self.write(name + ".json", json.dumps({
-            "rtsl": 1,
-            "import": ["std.cameras", "std.primitives", "std.materials", "std.textures", "std.lights", "Egg.rtsl"],
-            "camera": {"class": "PerspectiveCamera", "constructor": [point([1, 3, 9]), point([0, 0, 0]), vector([0, 1, 0])]},
-            "materials": MATERIALS,
-            "lights": [{"class": "PointLight", "position": point([3, 5, 6]), "intensity": [40, 40, 40]},
-                       {"class": "PointLight", "position": point([-6, 1, 4]), "intensity": [20, 8, 8]}],
-            "render": {"size": [64, 64], "spp": 2}, **objects, **more}))
+        self.write(
+            name + ".json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": [
+                        "std.cameras",
+                        "std.primitives",
+                        "std.materials",
+                        "std.textures",
+                        "std.lights",
+                        "Egg.rtsl",
+                    ],
+                    "camera": {
+                        "class": "PerspectiveCamera",
+                        "constructor": [point([1, 3, 9]), point([0, 0, 0]), vector([0, 1, 0])],
+                    },
+                    "materials": MATERIALS,
+                    "lights": [
+                        {
+                            "class": "PointLight",
+                            "position": point([3, 5, 6]),
+                            "intensity": [40, 40, 40],
+                        },
+                        {
+                            "class": "PointLight",
+                            "position": point([-6, 1, 4]),
+                            "intensity": [20, 8, 8],
+                        },
+                    ],
+                    "render": {"size": [64, 64], "spp": 2},
+                    **objects,
+                    **more,
+                }
+            ),
+        )
         self.run_rtslc("render", name + ".json", "-o", name + ".exr")
 
     def difference(self, first, second):
@@ -83,8 +115,12 @@ class Motions(TransformCase):
         children = []
         for row, shape in enumerate(SHAPES):
             for column, material in enumerate(MATERIALS):
-                children.append({"child": {"primitive": shape, "material": material},
-                                 "transform": {"translate": [column - 3, 3 - row, 0]}})
+                children.append(
+                    {
+                        "child": {"primitive": shape, "material": material},
+                        "transform": {"translate": [column - 3, 3 - row, 0]},
+                    }
+                )
         still = {"nodes": {"all": {"children": children}}, "root": "all"}
         motion = {"rotate": {"axis": AXIS, "angle": ANGLE}, "translate": WAY}
         moving = {"nodes": {"all": {"children": children, "transform": motion}}, "root": "all"}
@@ -99,9 +135,15 @@ class Meshes(TransformCase):
         computed from points in space and from texture coordinates must agree; a mesh without such
         points would differ by 0.1."""
         anchor, e1, e2 = [-3, -2, 0], [6, 0, 0.5], [0.5, 4, -1]
-        corners = [[a + u * b + v * c for a, b, c in zip(anchor, e1, e2)] for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))]
-        self.write("mesh.obj", "".join("v {} {} {}\n".format(*corner) for corner in corners) +
-                   "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n")
+        corners = [
+            [a + u * b + v * c for a, b, c in zip(anchor, e1, e2)]
+            for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))
+        ]
+        self.write(
+            "mesh.obj",
+            "".join("v {} {} {}\n".format(*corner) for corner in corners)
+            + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n",
+        )
         squeeze = {"scale": [1, 0.5, 1.2], "rotate": [0, 20, 10]}
         primitive = {"primitive": {"class": "Parallelogram", "constructor": [anchor, e1, e2]}}
         for material in ("marble", "tiled", "bumpy", "leaning"):

@@ -29,13 +29,20 @@ class Watch(Case):
         """Starts it, and waits for the first picture."""
         # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would
         # be.
-        self.running = subprocess.Popen([RTSLC, "render", *arguments, "--watch", *small], cwd=self.folder, stderr=subprocess.PIPE,
-                                        text=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        self.running = subprocess.Popen(
+            [RTSLC, "render", *arguments, "--watch", *small],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )
         self.addCleanup(self.running.stderr.close)
         self.addCleanup(self.running.wait)
         self.addCleanup(self.running.kill)
         self.lines = queue.Queue()
-        reader = threading.Thread(target=lambda: [self.lines.put(line) for line in self.running.stderr], daemon=True)
+        reader = threading.Thread(
+            target=lambda: [self.lines.put(line) for line in self.running.stderr], daemon=True
+        )
         reader.start()
         self.addCleanup(reader.join)
         self.addCleanup(self.running.kill)
@@ -71,11 +78,19 @@ class Watch(Case):
         self.assertRegex(self.expect("watching"), r"^watching \d+ files; Ctrl-C ends\n$")
         number = 1
         for save in (self.write, self.save_by_renaming, self.save_as_vim_does):
-            for name, text in (("c.inc", SHARE), ("a.rtsl", 'import "b.rtsl";\n' + GREY), ("b.rtsl", '#include "c.inc"\n')):
+            for name, text in (
+                ("c.inc", SHARE),
+                ("a.rtsl", 'import "b.rtsl";\n' + GREY),
+                ("b.rtsl", '#include "c.inc"\n'),
+            ):
                 with self.subTest(save=save.__name__, name=name):
                     before = self.picture()
                     number += 1
-                    text = text.replace("1.0", f"0.{number}").replace("0.5", f"0.5{number}").replace("#inc", f"// {number}\n#inc")
+                    text = (
+                        text.replace("1.0", f"0.{number}")
+                        .replace("0.5", f"0.5{number}")
+                        .replace("#inc", f"// {number}\n#inc")
+                    )
                     save(name, text)
                     self.expect(NEW_PICTURE, without="error")
                     if name != "b.rtsl":
@@ -86,12 +101,22 @@ class Watch(Case):
         self.assertEqual(self.picture(), last, "-O does not change the picture")
 
     def test_a_scene_and_its_mesh(self):
-        shutil.copy(os.path.join(os.path.dirname(RTSLC), "../share/rtslc/library/preview/material.json"), self.folder / "scene.json")
+        shutil.copy(
+            os.path.join(os.path.dirname(RTSLC), "../share/rtslc/library/preview/material.json"),
+            self.folder / "scene.json",
+        )
         self.write("part.obj", TRIANGLE)
         os.mkdir(self.folder / "elsewhere")
         os.symlink("../part.obj", self.folder / "elsewhere/link.obj")
-        self.start("scene.json", "-o", "a.exr", "--set", "objects.1.primitive.radius=0.5", "--set",
-                   'objects.2={"mesh": "elsewhere/link.obj", "material": {"class": "Lambert"}}')
+        self.start(
+            "scene.json",
+            "-o",
+            "a.exr",
+            "--set",
+            "objects.1.primitive.radius=0.5",
+            "--set",
+            'objects.2={"mesh": "elsewhere/link.obj", "material": {"class": "Lambert"}}',
+        )
         self.expect("watching", without="error")
         for name, old, new in (("part.obj", "-1 -1 0", "-1 -1 1"), ("scene.json", "0.42", "0.1")):
             before = self.picture()
@@ -104,8 +129,11 @@ class Watch(Case):
         self.start("a.rtsl", "-o", "a.exr")
         self.expect("watching", without="error")
         before = self.picture()
-        for name, wrong, text in (("c.inc", "float share() { return 1.0 }\n", SHARE), ("b.rtsl", "", '#include "c.inc"\n'),
-                                  ("a.rtsl", "class", 'import "b.rtsl";\n' + GREY)):
+        for name, wrong, text in (
+            ("c.inc", "float share() { return 1.0 }\n", SHARE),
+            ("b.rtsl", "", '#include "c.inc"\n'),
+            ("a.rtsl", "class", 'import "b.rtsl";\n' + GREY),
+        ):
             self.write(name, wrong)
             self.assertIn("error", self.expect("`a.exr` is left as it was"))
             self.assertEqual(self.picture(), before)
@@ -148,7 +176,13 @@ class Watch(Case):
         self.start("a.rtsl", "-o", "a.exr")
         self.expect("watching", without="error")
         before = self.picture()
-        self.write("c.inc", SHARE.replace("return", "float x = 0.0; for (int i = 0; i < 1000000000; ++i) x += rand(); return x +"))
+        self.write(
+            "c.inc",
+            SHARE.replace(
+                "return",
+                "float x = 0.0; for (int i = 0; i < 1000000000; ++i) x += rand(); return x +",
+            ),
+        )
         time.sleep(2)
         self.write("c.inc", SHARE.replace("1.0", "0.25"))
         self.expect(NEW_PICTURE, without="error")
@@ -163,13 +197,19 @@ class Watch(Case):
         self.assertNotIn("a.exr", self.files())
 
     def test_what_no_save_can_mend_ends_it(self):
-        for arguments, words in ((("no.rtsl", "-o", "a.exr"), "cannot read `no.rtsl`"), (("a.rtsl", "-o", "no/a.exr"), "cannot write `no/a.exr`"),
-                                 (("a.rtsl", "-o", "a.rtsl", "--format=exr"), "would be overwritten")):
+        for arguments, words in (
+            (("no.rtsl", "-o", "a.exr"), "cannot read `no.rtsl`"),
+            (("a.rtsl", "-o", "no/a.exr"), "cannot write `no/a.exr`"),
+            (("a.rtsl", "-o", "a.rtsl", "--format=exr"), "would be overwritten"),
+        ):
             _, error = self.run_rtslc("render", *arguments, "--watch", *SMALL, status=DIAGNOSED)
             self.assertIn(words, error)
-        for arguments, words in ((("-", "-o", "a.exr"), "standard input is no file that changes"), (("a.rtsl", "-o", "-"), "takes one picture"),
-                                 (("a.rtsl", "-o", "a.exr", "--json"), "describes one picture"),
-                                 (("a.rtsl", "-o", "a.exr", "--diagnostics=json"), "describes one picture")):
+        for arguments, words in (
+            (("-", "-o", "a.exr"), "standard input is no file that changes"),
+            (("a.rtsl", "-o", "-"), "takes one picture"),
+            (("a.rtsl", "-o", "a.exr", "--json"), "describes one picture"),
+            (("a.rtsl", "-o", "a.exr", "--diagnostics=json"), "describes one picture"),
+        ):
             _, error = self.run_rtslc("render", *arguments, "--watch", status=USAGE)
             self.assertIn(words, error)
 

@@ -22,7 +22,7 @@ PATHS = {
     "one thread": ["--threads=1"],
     "with exceptions": ["--exceptions"],
 }
-MARKS = [0, 0xffffffff, 0, 0xffffffff, 0, 5, 0]
+MARKS = [0, 0xFFFFFFFF, 0, 0xFFFFFFFF, 0, 5, 0]
 
 
 class OutputBuffers(Case):
@@ -31,23 +31,40 @@ class OutputBuffers(Case):
         self.write("probe.rtsl", SHADERS)
 
     def scene(self, name="scene.json", start=None, size=(8, 6), **changes):
-        scene = {"rtsl": 1, "import": ["probe.rtsl"],
-                 "buffers": {"histogram": {"size": [6]}, "most": {"buffer": "initial.npy"}},
-                 "rayGeneration": start or {"class": "Probe", "histogram": "histogram", "most": "most"},
-                 "materials": {"mirror": {"class": "Mirror"}},
-                 "objects": [{"primitive": {"class": "Ball"}, "material": "mirror"},
-                             {"primitive": {"class": "Ball", "radius": 0.4}, "material": "mirror", "transform": {"translate": [1.2, 0.5, 1]}}],
-                 "render": {"engine": "programs", "size": list(size)}}
+        scene = {
+            "rtsl": 1,
+            "import": ["probe.rtsl"],
+            "buffers": {"histogram": {"size": [6]}, "most": {"buffer": "initial.npy"}},
+            "rayGeneration": start or {"class": "Probe", "histogram": "histogram", "most": "most"},
+            "materials": {"mirror": {"class": "Mirror"}},
+            "objects": [
+                {"primitive": {"class": "Ball"}, "material": "mirror"},
+                {
+                    "primitive": {"class": "Ball", "radius": 0.4},
+                    "material": "mirror",
+                    "transform": {"translate": [1.2, 0.5, 1]},
+                },
+            ],
+            "render": {"engine": "programs", "size": list(size)},
+        }
         scene.update(changes)
         self.write("initial.npy", npy("I", [len(MARKS)], MARKS))
-        return self.write(name, json.dumps({key: value for key, value in scene.items() if value is not None}))
+        return self.write(
+            name, json.dumps({key: value for key, value in scene.items() if value is not None})
+        )
 
     def one(self, body, members, size=(1, 1), values="", **changes):
         """Runs one class; gives the buffers that were written, by name."""
-        self.write("one.rtsl", f"class One : rt_RayGeneration {{ {members} void generate() {{ {body} }} }};")
+        self.write(
+            "one.rtsl",
+            f"class One : rt_RayGeneration {{ {members} void generate() {{ {body} }} }};",
+        )
         names = re.findall(r"(?:out|inout) \w+ (\w+)", members)
-        self.scene(start={"class": "One", **json.loads(values or "{}")}, size=size,
-                   **{"import": ["one.rtsl"], "objects": [], "materials": {}, **changes})
+        self.scene(
+            start={"class": "One", **json.loads(values or "{}")},
+            size=size,
+            **{"import": ["one.rtsl"], "objects": [], "materials": {}, **changes},
+        )
         self.run_rtslc("run", "scene.json", "-q", *(f"--out={name}={name}.npy" for name in names))
         return {name: read_npy(self.folder / f"{name}.npy") for name in names}
 
@@ -56,9 +73,21 @@ class OutputBuffers(Case):
         first = None
         outputs = ["distance", "normal", "path", "histogram", "most"]
         for way, options in PATHS.items():
-            self.run_rtslc("run", "scene.json", "-q", "-o", "picture.exr", "--out=cells=cells.raw", *options,
-                           *(f"--out={name}={name}.npy" for name in outputs))
-            files = {path.name: path.read_bytes() for path in self.folder.iterdir() if path.suffix in (".npy", ".raw", ".exr")}
+            self.run_rtslc(
+                "run",
+                "scene.json",
+                "-q",
+                "-o",
+                "picture.exr",
+                "--out=cells=cells.raw",
+                *options,
+                *(f"--out={name}={name}.npy" for name in outputs),
+            )
+            files = {
+                path.name: path.read_bytes()
+                for path in self.folder.iterdir()
+                if path.suffix in (".npy", ".raw", ".exr")
+            }
             first = first or files
             for name in files:
                 self.assertEqual(files[name], first[name], f"{name}: {way}")
@@ -73,10 +102,13 @@ class OutputBuffers(Case):
         xor = 0
         for x, y in every:
             xor ^= 1 << (x + y)
-        self.assertEqual(most, (7 * 7 + 5, 0, 0xff, 0xffffffff & ~0x3f, xor, 9, 77))
+        self.assertEqual(most, (7 * 7 + 5, 0, 0xFF, 0xFFFFFFFF & ~0x3F, xor, 9, 77))
         cells = struct.unpack("<" + 48 * "fi2i", (self.folder / "cells.raw").read_bytes())
         self.assertEqual(cells[0::4], distance)
-        self.assertEqual([(cells[4 * i + 2], cells[4 * i + 3]) for i in range(48)], [(i % 8, i // 8) for i in range(48)])
+        self.assertEqual(
+            [(cells[4 * i + 2], cells[4 * i + 3]) for i in range(48)],
+            [(i % 8, i // 8) for i in range(48)],
+        )
 
     def test_printed_cpp_writes_the_same(self):
         """As rtslc prints it: elements are assigned where they lie, and the state machine keeps
@@ -88,14 +120,17 @@ class OutputBuffers(Case):
             self.assertIn("rtsl::atomicAdd(histogram.at(rt, bin(x)), n);", text)
 
     def test_elements_of_every_type(self):
-        found = self.one("""
+        found = self.one(
+            """
             uint i = rt_LaunchIndex.x;
             f[i] = 0.1 + float(i); n[i] = -3 + int(i); u[i] = 4000000000u + i; b[i] = i == 1u;
             v[i] = vec3(1.5, float(i), -0.0); m[i] = mat2(1.0, 2.0, 3.0, float(i)); c[i] = color(0.25, 0.5, float(i));
             pair[i][0] = 7.0; pair[i][1] = float(i); bv[i] = bvec2(i == 0u, true); deep[1][i][0] = int(i) + 1;""",
             "public out float f[]; public out int n[]; public out uint u[]; public out bool b[]; public out vec3 v[]; public out mat2 m[]; "
-            "public out color c[]; public out float pair[][2]; public out bvec2 bv[]; public inout int deep[][][];", size=(3, 1),
-            values='{"deep": {"size": [2, 3, 1]}}')
+            "public out color c[]; public out float pair[][2]; public out bvec2 bv[]; public inout int deep[][][];",
+            size=(3, 1),
+            values='{"deep": {"size": [2, 3, 1]}}',
+        )
         single = lambda x: struct.unpack("f", struct.pack("f", x))[0]
         self.assertEqual(found["f"], ((3,), tuple(single(single(0.1) + i) for i in range(3))))
         self.assertEqual(found["n"], ((3,), (-3, -2, -1)))
@@ -110,15 +145,24 @@ class OutputBuffers(Case):
         self.assertEqual(found["deep"], ((2, 3, 1), (0, 0, 0, 1, 2, 3)))
 
     def test_indices_are_clamped_and_empty_buffers_ignored(self):
-        found = self.one("int i = -5 - int(rt_LaunchIndex.x); a[i] = 1; a[100] = 2; none[0] = 3; none[1] += none[0] + 1; atomicAdd(none[0], 4);"
-                         "a[1] = none.length() + none[7] + atomicAdd(none[3], 1);",
-                         "public inout int a[]; public inout int none[];", values='{"a": [9, 9, 9], "none": []}')
+        found = self.one(
+            "int i = -5 - int(rt_LaunchIndex.x); a[i] = 1; a[100] = 2; none[0] = 3; none[1] += none[0] + 1; atomicAdd(none[0], 4);"
+            "a[1] = none.length() + none[7] + atomicAdd(none[3], 1);",
+            "public inout int a[]; public inout int none[];",
+            values='{"a": [9, 9, 9], "none": []}',
+        )
         self.assertEqual(found["a"], ((3,), (1, 0, 2)))
         self.assertEqual(found["none"], ((0,), ()))
 
     def test_nothing_is_written_after_an_exception(self):
-        self.scene(start={"class": "Late", "a": [0, 0], "n": [0]}, size=(2, 1), **{"import": ["late.rtsl"], "objects": [], "materials": {}})
-        self.write("late.rtsl", """class Late : rt_RayGeneration {
+        self.scene(
+            start={"class": "Late", "a": [0, 0], "n": [0]},
+            size=(2, 1),
+            **{"import": ["late.rtsl"], "objects": [], "materials": {}},
+        )
+        self.write(
+            "late.rtsl",
+            """class Late : rt_RayGeneration {
   public inout int a[]; public inout int n[];
   void generate() {
     int i = int(rt_LaunchIndex.x);
@@ -128,43 +172,68 @@ class OutputBuffers(Case):
     a[i] += 10;
     atomicAdd(n[0], 100);
   }
-};""")
+};""",
+        )
         for way, options in PATHS.items():
             self.run_rtslc("run", "scene.json", "-q", "--out=a=a.csv", "--out=n=n.csv", *options)
             ended = "--exceptions" in options
             self.assertEqual((self.folder / "a.csv").read_text().split()[1], "11", way)
-            self.assertEqual((self.folder / "n.csv").read_text(), "102\n" if ended else "202\n", way)
-            self.assertEqual((self.folder / "a.csv").read_text().split()[0], "1" if ended else "14", way)
+            self.assertEqual(
+                (self.folder / "n.csv").read_text(), "102\n" if ended else "202\n", way
+            )
+            self.assertEqual(
+                (self.folder / "a.csv").read_text().split()[0], "1" if ended else "14", way
+            )
         for options in (["--trace=recurse"], ["--target=host-megakernel"], ["-O0"]):
             self.run_rtslc("run", "scene.json", "-q", "--exceptions", "--out=n=n.csv", *options)
             self.assertEqual((self.folder / "n.csv").read_text(), "102\n", options)
 
     def test_samples_come_one_after_the_other(self):
-        found = self.one("last[rt_LaunchIndex.x] = last[rt_LaunchIndex.x] * 2 + 1;", "public inout int last[];", size=(3, 1),
-                         render={"engine": "programs", "size": [3], "spp": 4})
+        found = self.one(
+            "last[rt_LaunchIndex.x] = last[rt_LaunchIndex.x] * 2 + 1;",
+            "public inout int last[];",
+            size=(3, 1),
+            render={"engine": "programs", "size": [3], "spp": 4},
+        )
         self.assertEqual(found["last"], ((3,), (15, 15, 15)))
 
     def test_a_launch_that_is_repeated_gives_what_it_gave_first(self):
-        self.scene(start={"class": "Counts", "n": [0]}, size=(3, 1), **{"import": ["counts.rtsl"], "objects": [], "materials": {}})
-        self.write("counts.rtsl", """class Counts : rt_RayGeneration {
+        self.scene(
+            start={"class": "Counts", "n": [0]},
+            size=(3, 1),
+            **{"import": ["counts.rtsl"], "objects": [], "materials": {}},
+        )
+        self.write(
+            "counts.rtsl",
+            """class Counts : rt_RayGeneration {
   public inout int n[];
   void generate() { atomicAdd(n[0], 1); print("once"); }
-};""")
+};""",
+        )
         for way, options in PATHS.items():
-            out, _ = self.run_rtslc("run", "scene.json", "--repeat=5", "--json", "--print", "--out=n=n.csv", *options)
+            out, _ = self.run_rtslc(
+                "run", "scene.json", "--repeat=5", "--json", "--print", "--out=n=n.csv", *options
+            )
             self.assertEqual((self.folder / "n.csv").read_text(), "3\n", way)
             figures = json.loads(out)
             repeats = figures["launches"][0]["repeats"]
             self.assertEqual((len(repeats), sorted(repeats)), (5, repeats), way)
-            self.assertEqual([text.split(": ")[1] for text in figures["printed"]], ["once"] * 3, way)
+            self.assertEqual(
+                [text.split(": ")[1] for text in figures["printed"]], ["once"] * 3, way
+            )
         _, error = self.run_rtslc("run", "scene.json", "--repeat=2")
         self.assertRegex(error, r"repeated 2 times: \d+\.\d{3} ms in the median")
         self.assertNotIn("repeats", self.run_rtslc("run", "scene.json", "--json")[0])
         for value in ("-1", "x", "1.5", "1000001"):
-            self.assertIn("--repeat", self.run_rtslc("run", "scene.json", f"--repeat={value}", status=USAGE)[1])
+            self.assertIn(
+                "--repeat",
+                self.run_rtslc("run", "scene.json", f"--repeat={value}", status=USAGE)[1],
+            )
 
     def test_passes_share_buffers(self):
-        self.write("passes.rtsl", """
+        self.write(
+            "passes.rtsl",
+            """
 class Scatter : rt_RayGeneration {
   public inout int counts[];
   public out float seen[];
@@ -183,28 +252,69 @@ class Sum : rt_RayGeneration {
   }
 };
 class Double : rt_RayGeneration { public inout int below[]; void generate() { below[rt_LaunchIndex.x] *= 2; } };
-""")
-        self.scene(start=None, **{"import": ["passes.rtsl"], "rayGeneration": None, "objects": [], "materials": {},
-                                  "buffers": {"counts": {"size": [7]}, "seen": {"size": [100]}, "below": {"size": [7]}},
-                                  "passes": [{"rayGeneration": {"class": "Scatter", "counts": "counts", "seen": "seen"}, "size": [100]},
-                                             {"rayGeneration": {"class": "Sum", "counts": "counts", "seen": "seen", "below": "below"}, "size": [7]},
-                                             {"rayGeneration": {"class": "Double", "below": "below"}, "size": [7]}], "render": {"seed": 5}})
+""",
+        )
+        self.scene(
+            start=None,
+            **{
+                "import": ["passes.rtsl"],
+                "rayGeneration": None,
+                "objects": [],
+                "materials": {},
+                "buffers": {
+                    "counts": {"size": [7]},
+                    "seen": {"size": [100]},
+                    "below": {"size": [7]},
+                },
+                "passes": [
+                    {
+                        "rayGeneration": {"class": "Scatter", "counts": "counts", "seen": "seen"},
+                        "size": [100],
+                    },
+                    {
+                        "rayGeneration": {
+                            "class": "Sum",
+                            "counts": "counts",
+                            "seen": "seen",
+                            "below": "below",
+                        },
+                        "size": [7],
+                    },
+                    {"rayGeneration": {"class": "Double", "below": "below"}, "size": [7]},
+                ],
+                "render": {"seed": 5},
+            },
+        )
         counts = [0] * 7
         for i in range(100):
             counts[i * i % 7] += 1
-        sums = [2 * sum(counts[:i + 1]) for i in range(7)]
+        sums = [2 * sum(counts[: i + 1]) for i in range(7)]
         first = None
         for way, options in PATHS.items():
-            text, _ = self.run_rtslc("run", "scene.json", "--json", "--out=below=below.npy", "--out=seen=seen.npy", *options)
+            text, _ = self.run_rtslc(
+                "run",
+                "scene.json",
+                "--json",
+                "--out=below=below.npy",
+                "--out=seen=seen.npy",
+                *options,
+            )
             shape, below = read_npy(self.folder / "below.npy")
             _, seen = read_npy(self.folder / "seen.npy")
             first = first or seen
             self.assertEqual(seen, first, way)
             self.assertEqual(list(below), [2 * sum(x < 0.5 for x in seen)] + sums[1:], way)
         report = json.loads(text)
-        self.assertEqual([launch["rayGeneration"] for launch in report["launches"]], ["Scatter", "Sum", "Double"])
-        self.assertEqual([buffer["name"] for buffer in report["buffers"]], ["below", "counts", "seen"])
-        self.assertEqual(report["buffers"][0], {"name": "below", "type": "int[]", "size": [7], "file": "below.npy"})
+        self.assertEqual(
+            [launch["rayGeneration"] for launch in report["launches"]], ["Scatter", "Sum", "Double"]
+        )
+        self.assertEqual(
+            [buffer["name"] for buffer in report["buffers"]], ["below", "counts", "seen"]
+        )
+        self.assertEqual(
+            report["buffers"][0],
+            {"name": "below", "type": "int[]", "size": [7], "file": "below.npy"},
+        )
         message = self.diagnose("render", "scene.json", "-o", "x.png")[0]["message"]
         self.assertIn("passes", message)
         self.run_rtslc("check", "scene.json")
@@ -213,7 +323,14 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.scene()
         self.write("start.npy", npy("i", [6], [100, 0, 0, 0, 0, 0]))
         self.write("path.npy", npy("f", [6, 8, 4], [1.0] * 192))
-        self.run_rtslc("run", "scene.json", "-q", "--in=histogram=start.npy", "--in=path=path.npy", "--out=histogram=h.csv")
+        self.run_rtslc(
+            "run",
+            "scene.json",
+            "-q",
+            "--in=histogram=start.npy",
+            "--in=path=path.npy",
+            "--out=histogram=h.csv",
+        )
         added = [int(line) for line in (self.folder / "h.csv").read_text().split()]
         self.run_rtslc("run", "scene.json", "-q", "--out=histogram=h.csv")
         plain = [int(line) for line in (self.folder / "h.csv").read_text().split()]
@@ -230,26 +347,51 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.assertIn("int[] histogram, 6: not written, `--out histogram=FILE` does", error)
 
     def test_a_launch_of_one_dimension_may_be_long(self):
-        found = self.one("if (rt_LaunchIndex.x % 50000u == 0u) marks[rt_LaunchIndex.x / 50000u] = rt_LaunchIndex.x + rt_LaunchSize.x;",
-                         "public out uint marks[];", values='{"marks": {"size": [4]}}',
-                         render={"engine": "programs", "size": [200000]})
+        found = self.one(
+            "if (rt_LaunchIndex.x % 50000u == 0u) marks[rt_LaunchIndex.x / 50000u] = rt_LaunchIndex.x + rt_LaunchSize.x;",
+            "public out uint marks[];",
+            values='{"marks": {"size": [4]}}',
+            render={"engine": "programs", "size": [200000]},
+        )
         self.assertEqual(found["marks"], ((4,), tuple(200000 + 50000 * i for i in range(4))))
 
     def test_a_launch_has_the_size_of_a_buffer(self):
-        self.write("one.rtsl", "class One : rt_RayGeneration { public float a[]; public out float twice[];"
-                               "  void generate() { twice[rt_LaunchIndex.x] = 2.0 * a[rt_LaunchIndex.x]; } };")
+        self.write(
+            "one.rtsl",
+            "class One : rt_RayGeneration { public float a[]; public out float twice[];"
+            "  void generate() { twice[rt_LaunchIndex.x] = 2.0 * a[rt_LaunchIndex.x]; } };",
+        )
         self.write("a.npy", npy("f", [5], [1, 2, 3, 4, 5.5]))
         self.write("a.csv", "1\n2\n3\n")
-        changes = {"import": ["one.rtsl"], "objects": [], "materials": {}, "render": {"engine": "programs", "size": "a"}}
-        for start, buffers, option, count in (([1, 2, 3, 4], {}, [], 4), ({"buffer": "a.npy"}, {}, [], 5), ("b", {"b": {"buffer": "a.csv"}}, [], 3),
-                                              (None, {}, ["--in=a=a.npy"], 5), ("b", {"b": {"size": [7]}}, ["--in=b=a.csv"], 3)):
-            self.scene(start={"class": "One", **({"a": start} if start else {})}, **{**changes, "buffers": buffers})
+        changes = {
+            "import": ["one.rtsl"],
+            "objects": [],
+            "materials": {},
+            "render": {"engine": "programs", "size": "a"},
+        }
+        for start, buffers, option, count in (
+            ([1, 2, 3, 4], {}, [], 4),
+            ({"buffer": "a.npy"}, {}, [], 5),
+            ("b", {"b": {"buffer": "a.csv"}}, [], 3),
+            (None, {}, ["--in=a=a.npy"], 5),
+            ("b", {"b": {"size": [7]}}, ["--in=b=a.csv"], 3),
+        ):
+            self.scene(
+                start={"class": "One", **({"a": start} if start else {})},
+                **{**changes, "buffers": buffers},
+            )
             self.run_rtslc("run", "scene.json", "-q", *option, "--out=twice=t.npy")
             self.assertEqual(read_npy(self.folder / "t.npy")[0], (count,))
         self.scene(start={"class": "One"}, **changes)
-        self.assert_message(self.diagnose("run", "scene.json", "--out=twice=t.npy"), "E0806", "`size` is two numbers, one, or the name of a buffer")
+        self.assert_message(
+            self.diagnose("run", "scene.json", "--out=twice=t.npy"),
+            "E0806",
+            "`size` is two numbers, one, or the name of a buffer",
+        )
         self.scene(start={"class": "One", "a": {"size": [0]}}, **changes)
-        self.assert_message(self.diagnose("run", "scene.json", "--out=twice=t.npy"), "E0805", "has 0 indices")
+        self.assert_message(
+            self.diagnose("run", "scene.json", "--out=twice=t.npy"), "E0805", "has 0 indices"
+        )
 
     def test_what_is_wrong_in_a_scene(self):
         def refused(containing, code, **changes):
@@ -257,33 +399,86 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
             self.assert_message(self.diagnose("run", "scene.json"), code, containing)
 
         start = {"class": "Probe", "histogram": "histogram", "most": "most"}
-        refused("no buffer is named `histogrom`", "E0806", start={**start, "histogram": "histogrom"})
-        refused("a `uint[]`, and the buffer `most` a `int[]`", "E0804", start={**start, "histogram": "most"}, buffers={"most": {"size": [7]}})
-        refused("`size` takes 2 numbers, not 1", "E0804", start={**start, "distance": {"size": [4]}})
+        refused(
+            "no buffer is named `histogrom`", "E0806", start={**start, "histogram": "histogrom"}
+        )
+        refused(
+            "a `uint[]`, and the buffer `most` a `int[]`",
+            "E0804",
+            start={**start, "histogram": "most"},
+            buffers={"most": {"size": [7]}},
+        )
+        refused(
+            "`size` takes 2 numbers, not 1", "E0804", start={**start, "distance": {"size": [4]}}
+        )
         refused("`size` takes 1 to 3 numbers", "E0805", start={**start, "distance": {"size": []}})
-        refused("needs a `size`, or a file", "E0803", buffers={"histogram": {"shape": [6]}, "most": {"buffer": "initial.npy"}})
+        refused(
+            "needs a `size`, or a file",
+            "E0803",
+            buffers={"histogram": {"shape": [6]}, "most": {"buffer": "initial.npy"}},
+        )
         refused("`rayGeneration` or `passes`", "E0802", passes=[{"rayGeneration": start}])
-        refused("`width`", "E0802", rayGeneration=None, passes=[{"rayGeneration": start, "width": 3}])
+        refused(
+            "`width`", "E0802", rayGeneration=None, passes=[{"rayGeneration": start, "width": 3}]
+        )
         refused("needs a `rayGeneration`", "E0803", rayGeneration=None, passes=[{"size": [3]}])
-        self.write("more.rtsl", "class Two : Probe { public inout int again[]; };"
-                                "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { cube[0][0][0] = 1.0; } };")
+        self.write(
+            "more.rtsl",
+            "class Two : Probe { public inout int again[]; };"
+            "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { cube[0][0][0] = 1.0; } };",
+        )
         more = {"import": ["probe.rtsl", "more.rtsl"]}
-        refused("one of them is an output buffer", "E0804", start={**start, "class": "Two", "again": "histogram"}, **more)
+        refused(
+            "one of them is an output buffer",
+            "E0804",
+            start={**start, "class": "Two", "again": "histogram"},
+            **more,
+        )
         refused('needs a size: {"size": [...]}', "E0815", start={"class": "Cube"}, **more)
 
     def test_more_memory_than_there_is(self):
         for size in ([4000000000, 4000000000], [4000000000, 100000]):
-            self.scene(start={"class": "Probe", "histogram": "histogram", "most": "most", "distance": {"size": size}})
-            self.assertIn("not enough memory for member `distance`", self.diagnose("run", "scene.json")[0]["message"])
+            self.scene(
+                start={
+                    "class": "Probe",
+                    "histogram": "histogram",
+                    "most": "most",
+                    "distance": {"size": size},
+                }
+            )
+            self.assertIn(
+                "not enough memory for member `distance`",
+                self.diagnose("run", "scene.json")[0]["message"],
+            )
 
     def test_what_is_wrong_on_the_command_line(self):
         self.scene()
-        self.assert_message(self.diagnose("run", "scene.json", "--out=distanse=d.npy"), "E0806", "no output buffer of this name")
-        self.assert_message(self.diagnose("run", "scene.json", "--out=distance=no/d.npy"), "E0902", "cannot write `no/d.npy`")
-        self.assertIn("is an input", self.diagnose("run", "scene.json", "--out=distance=initial.npy")[0]["message"])
-        self.assert_message(self.diagnose("run", "scene.json", "--out=cells=c.csv"), "E0808", "its elements are structs")
-        for arguments in (["--out=distance"], ["--out==x"], ["--out=distance=x.npy", "--out=normal=x.npy"],
-                          ["--out=distance=x.npy", "--out=distance=y.npy"], ["--target=gpu", "--print"]):
+        self.assert_message(
+            self.diagnose("run", "scene.json", "--out=distanse=d.npy"),
+            "E0806",
+            "no output buffer of this name",
+        )
+        self.assert_message(
+            self.diagnose("run", "scene.json", "--out=distance=no/d.npy"),
+            "E0902",
+            "cannot write `no/d.npy`",
+        )
+        self.assertIn(
+            "is an input",
+            self.diagnose("run", "scene.json", "--out=distance=initial.npy")[0]["message"],
+        )
+        self.assert_message(
+            self.diagnose("run", "scene.json", "--out=cells=c.csv"),
+            "E0808",
+            "its elements are structs",
+        )
+        for arguments in (
+            ["--out=distance"],
+            ["--out==x"],
+            ["--out=distance=x.npy", "--out=normal=x.npy"],
+            ["--out=distance=x.npy", "--out=distance=y.npy"],
+            ["--target=gpu", "--print"],
+        ):
             self.run_rtslc("run", "scene.json", *arguments, status=USAGE)
         self.assertFalse((self.folder / "d.npy").exists())
 

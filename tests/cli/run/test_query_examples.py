@@ -18,9 +18,22 @@ class QueryExamples(Case):
         self.copy("line-of-sight")
         first = None
         for way, options in PATHS.items():
-            self.run_rtslc("run", "city.json", "-q", "--set", "render.size=[97, 89]", "-o", "map.exr", "--out=visible=v.npy",
-                           "--out=nearest=n.npy", "--out=places=p.csv", *options)
-            files = [(self.folder / name).read_bytes() for name in ("map.exr", "v.npy", "n.npy", "p.csv")]
+            self.run_rtslc(
+                "run",
+                "city.json",
+                "-q",
+                "--set",
+                "render.size=[97, 89]",
+                "-o",
+                "map.exr",
+                "--out=visible=v.npy",
+                "--out=nearest=n.npy",
+                "--out=places=p.csv",
+                *options,
+            )
+            files = [
+                (self.folder / name).read_bytes() for name in ("map.exr", "v.npy", "n.npy", "p.csv")
+            ]
             first = first or files
             self.assertEqual(files, first, way)
         shape, visible = read_npy(self.folder / "v.npy")
@@ -29,8 +42,12 @@ class QueryExamples(Case):
         self.assertEqual(shape, (89, 97))
         self.assertEqual(sum(visible), sum(places))
         self.assertGreater(max(visible), 3)
-        self.assertTrue(all((count == 0) == (distance == -1) for count, distance in zip(visible, nearest)))
-        self.assertTrue(all(0 < distance <= 400 for count, distance in zip(visible, nearest) if count))
+        self.assertTrue(
+            all((count == 0) == (distance == -1) for count, distance in zip(visible, nearest))
+        )
+        self.assertTrue(
+            all(0 < distance <= 400 for count, distance in zip(visible, nearest) if count)
+        )
 
     def test_line_of_sight_of_other_masts(self):
         self.copy("line-of-sight")
@@ -38,8 +55,18 @@ class QueryExamples(Case):
         house = json.loads((self.folder / "city.json").read_text())["objects"][0]["primitive"]
         x, height, z = (0.5 * (a + b) for a, b in zip(house["low"], house["high"]))
         self.write("others.csv", f"x,height,z\n217,300,217\n{x},{height},{z}\n")
-        self.run_rtslc("run", "city.json", "-q", "--set", "render.size=[60, 60]", "--set", "rayGeneration.reach=1000", "--in=masts=others.csv",
-                       "--out=places=p.csv", "--out=visible=v.npy")
+        self.run_rtslc(
+            "run",
+            "city.json",
+            "-q",
+            "--set",
+            "render.size=[60, 60]",
+            "--set",
+            "rayGeneration.reach=1000",
+            "--in=masts=others.csv",
+            "--out=places=p.csv",
+            "--out=visible=v.npy",
+        )
         places = [int(line) for line in (self.folder / "p.csv").read_text().split()]
         self.assertGreater(places[0], 800)
         self.assertEqual(places[1:], [0] * 7)
@@ -48,15 +75,34 @@ class QueryExamples(Case):
         """The lists of the grid depend on the threads; the picture does not."""
         self.copy("photons")
         count = 30000
-        small = [f"--set=buffers.{name}={json.dumps({'size': [3 * count]})}" for name in ("places", "channels", "next")]
-        small += [f"--set=passes.0.size=[{count}]", "--set=passes.2.size=[80, 56]", "--set=passes.2.spp=1",
-                  "--set=passes.2.rayGeneration.radius=0.2", "--set=passes.2.rayGeneration.cells=64", "--set=passes.1.rayGeneration.cells=64",
-                  '--set=buffers.first={"size": [4096]}']
+        small = [
+            f"--set=buffers.{name}={json.dumps({'size': [3 * count]})}"
+            for name in ("places", "channels", "next")
+        ]
+        small += [
+            f"--set=passes.0.size=[{count}]",
+            "--set=passes.2.size=[80, 56]",
+            "--set=passes.2.spp=1",
+            "--set=passes.2.rayGeneration.radius=0.2",
+            "--set=passes.2.rayGeneration.cells=64",
+            "--set=passes.1.rayGeneration.cells=64",
+            '--set=buffers.first={"size": [4096]}',
+        ]
         first = None
         for way, options in PATHS.items():
             if "--exceptions" in options:
                 continue  # paths deeper than the limit end there with another color
-            self.run_rtslc("run", "photons.json", "-q", "-Wno-all", *small, "-o", "p.exr", "--out=places=places.npy", *options)
+            self.run_rtslc(
+                "run",
+                "photons.json",
+                "-q",
+                "-Wno-all",
+                *small,
+                "-o",
+                "p.exr",
+                "--out=places=places.npy",
+                *options,
+            )
             files = [(self.folder / name).read_bytes() for name in ("p.exr", "places.npy")]
             first = first or files
             self.assertEqual(files, first, way)

@@ -20,7 +20,10 @@ FLAGS = ["-shared", *COMPILED, *linked_with(library)]
 
 
 def sphere(center, radius, material):
-    return {"primitive": {"class": "Sphere", "center": center, "radius": radius}, "material": material}
+    return {
+        "primitive": {"class": "Sphere", "center": center, "radius": radius},
+        "material": material,
+    }
 
 
 def example(name):
@@ -34,18 +37,28 @@ def example(name):
 def answers(engine):
     scene = {
         "rtsl": 1,
-        "import": [str(here / "Answers.rtsl"), str(glass / "Sphere.rtsl"), str(glass / "PinholeCamera.rtsl")],
+        "import": [
+            str(here / "Answers.rtsl"),
+            str(glass / "Sphere.rtsl"),
+            str(glass / "PinholeCamera.rtsl"),
+        ],
         "materials": {"sieve": {"class": "Sieve"}, "solid": {"class": "Solid", "scale": 3}},
-        "objects": [sphere([0, 0, 0], 1, "sieve"), sphere([0.9, 0.4, -1], 0.8, "solid"), sphere([0.5, -0.7, 0.6], 0.6, "sieve"),
-                    sphere([-1, 0.5, 0.2], 0.5, "solid")],
+        "objects": [
+            sphere([0, 0, 0], 1, "sieve"),
+            sphere([0.9, 0.4, -1], 0.8, "solid"),
+            sphere([0.5, -0.7, 0.6], 0.6, "sieve"),
+            sphere([-1, 0.5, 0.2], 0.5, "solid"),
+        ],
         "background": {"class": "Sky"},
         "render": {"engine": engine, "size": [48, 48], "spp": 4, "depth": 4},
     }
     if engine == "programs":
         scene["rayGeneration"] = {"class": "Eye"}
     else:
-        scene["camera"] = {"class": "PinholeCamera",
-                           "constructor": [[0, 0, 4], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]}
+        scene["camera"] = {
+            "class": "PinholeCamera",
+            "constructor": [[0, 0, 4], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1],
+        }
     return scene
 
 
@@ -66,17 +79,36 @@ def chains(length, depth, branches=True):
     """Objects that call each other, in a chain of this length (Chains.rtsl)."""
     textures = {"t0": {"class": "Filter"}, "s0": {"class": "Scale"}}
     for i in range(1, length + 1):
-        textures[f"t{i}"] = {"class": "Tint", "inner": f"t{i - 1}", "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],
-                             "rounds": 2 if branches else 1}
-        textures[f"s{i}"] = {"class": "Twice" if i % 3 == 2 else "Ask", "inner": f"s{i - 1}", "filter": f"t{min(i, 1)}"}
+        textures[f"t{i}"] = {
+            "class": "Tint",
+            "inner": f"t{i - 1}",
+            "others": [f"t{max(i - 2, 0)}" if branches else "t0", "t0"],
+            "rounds": 2 if branches else 1,
+        }
+        textures[f"s{i}"] = {
+            "class": "Twice" if i % 3 == 2 else "Ask",
+            "inner": f"s{i - 1}",
+            "filter": f"t{min(i, 1)}",
+        }
     return {
         "rtsl": 1,
         "import": [str(here / "Chains.rtsl"), str(glass / "Sphere.rtsl")],
-        "camera": {"class": "Eye"}, "textures": textures,
-        "materials": {"mirror": {"class": "Mirror", "filter": f"t{length}"},
-                      "marked": {"class": "Marked", "scale": f"s{length}", "others": [f"s{length // 2}", "s0"]}},
-        "objects": [sphere([0, 0, 4], 2, "mirror"), sphere([3, 2, 0], 1, "mirror"), sphere([-2, 1, 3], 1, "marked"),
-                    sphere([0, -3, 2], 1.5, "marked")],
+        "camera": {"class": "Eye"},
+        "textures": textures,
+        "materials": {
+            "mirror": {"class": "Mirror", "filter": f"t{length}"},
+            "marked": {
+                "class": "Marked",
+                "scale": f"s{length}",
+                "others": [f"s{length // 2}", "s0"],
+            },
+        },
+        "objects": [
+            sphere([0, 0, 4], 2, "mirror"),
+            sphere([3, 2, 0], 1, "mirror"),
+            sphere([-2, 1, 3], 1, "marked"),
+            sphere([0, -3, 2], 1.5, "marked"),
+        ],
         "background": {"class": "Sky", "filter": "t0"},
         "render": {"engine": "classic", "size": [16, 16], "spp": 2, "depth": depth},
     }
@@ -86,10 +118,23 @@ def nothing():
     """References to no object (Nothing.rtsl)."""
     return {
         "rtsl": 1,
-        "import": [str(here / "Nothing.rtsl"), str(glass / "Sphere.rtsl"), str(glass / "PinholeCamera.rtsl")],
-        "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 6], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
-        "textures": {"filter": {"class": "Filter"}, "half": {"class": "Scale"}, "twice": {"class": "Twice"}},
-        "materials": {"mirror": {"class": "Mirror", "filter": "filter", "scales": ["half", "twice"]}},
+        "import": [
+            str(here / "Nothing.rtsl"),
+            str(glass / "Sphere.rtsl"),
+            str(glass / "PinholeCamera.rtsl"),
+        ],
+        "camera": {
+            "class": "PinholeCamera",
+            "constructor": [[0, 0, 6], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1],
+        },
+        "textures": {
+            "filter": {"class": "Filter"},
+            "half": {"class": "Scale"},
+            "twice": {"class": "Twice"},
+        },
+        "materials": {
+            "mirror": {"class": "Mirror", "filter": "filter", "scales": ["half", "twice"]}
+        },
         "objects": [sphere([0, 0, 0], 1.5, "mirror"), sphere([1, 1.5, -1], 1, "mirror")],
         "background": {"class": "Sky"},
         "render": {"engine": "classic", "size": [32, 32], "spp": 2, "depth": 3},
@@ -101,12 +146,23 @@ def names():
     return {
         "rtsl": 1,
         "import": [str(here / "Names.rtsl"), str(glass / "PinholeCamera.rtsl")],
-        "camera": {"class": "PinholeCamera", "constructor": [[0, 0, 4], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1]},
-        "textures": {"t0": {"class": "glm_", "memory": 0.5}, "t1": {"class": "FilterRef", "inner": "t0"},
-                     "s": {"class": "State", "double": 0.5, "NULL": 0.25}},
-        "materials": {"a": {"class": "program", "filter": "t1", "slots": "s"}, "b": {"class": "lookup", "frame": 0.75}},
-        "objects": [{"primitive": {"class": "intersect", "center": [-0.6, 0, 0]}, "material": "a"},
-                    {"primitive": {"class": "intersect", "center": [0.6, 0.2, 0.3]}, "material": "b"}],
+        "camera": {
+            "class": "PinholeCamera",
+            "constructor": [[0, 0, 4], [0, 1, 0], [0, 0, -1], [-0.5, -0.5], [0.5, 0.5], 1],
+        },
+        "textures": {
+            "t0": {"class": "glm_", "memory": 0.5},
+            "t1": {"class": "FilterRef", "inner": "t0"},
+            "s": {"class": "State", "double": 0.5, "NULL": 0.25},
+        },
+        "materials": {
+            "a": {"class": "program", "filter": "t1", "slots": "s"},
+            "b": {"class": "lookup", "frame": 0.75},
+        },
+        "objects": [
+            {"primitive": {"class": "intersect", "center": [-0.6, 0, 0]}, "material": "a"},
+            {"primitive": {"class": "intersect", "center": [0.6, 0.2, 0.3]}, "material": "b"},
+        ],
         "background": {"class": "miss"},
         "render": {"engine": "classic", "size": [32, 32], "spp": 2, "depth": 3},
     }
@@ -124,19 +180,62 @@ def paths():
     library = pathlib.Path(source, "library/std")
     return {
         "rtsl": 1,
-        "import": [str(library / file) for file in ("engines/PathTracer.rtsl", "cameras/PerspectiveCamera.rtsl", "primitives/Parallelogram.rtsl",
-                                                    "primitives/Sphere.rtsl", "materials/Lambert.rtsl", "materials/Dielectric.rtsl",
-                                                    "materials/Gold.rtsl", "materials/Emitter.rtsl", "lights/PointLight.rtsl",
-                                                    "backgrounds/UniformSky.rtsl")],
-        "camera": {"class": "PerspectiveCamera", "constructor": [[0, 1, 6], [0, 0.5, 0], [0, 1, 0]]},
+        "import": [
+            str(library / file)
+            for file in (
+                "engines/PathTracer.rtsl",
+                "cameras/PerspectiveCamera.rtsl",
+                "primitives/Parallelogram.rtsl",
+                "primitives/Sphere.rtsl",
+                "materials/Lambert.rtsl",
+                "materials/Dielectric.rtsl",
+                "materials/Gold.rtsl",
+                "materials/Emitter.rtsl",
+                "lights/PointLight.rtsl",
+                "backgrounds/UniformSky.rtsl",
+            )
+        ],
+        "camera": {
+            "class": "PerspectiveCamera",
+            "constructor": [[0, 1, 6], [0, 0.5, 0], [0, 1, 0]],
+        },
         "rayGeneration": {"class": "PathTracer"},
-        "objects": [{"primitive": {"class": "Parallelogram", "constructor": [[-4, -1, -4], [0, 0, 8], [8, 0, 0]]}, "material": {"class": "Lambert"}},
-                    sphere([-1.2, 0, 0], 1, {"class": "Dielectric"}), sphere([1.2, 0, 0], 1, {"class": "Gold"}),
-                    sphere([0, 3, 1], 0.5, {"class": "Emitter", "radiance": 20})],
-        "nodes": {"lamp": {"primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.3}, "material": {"class": "Emitter", "radiance": 30}},
-                  "both": {"children": [{"child": "lamp", "transform": {"scale": [1, 2, 0.5], "translate": [3, 2, 1]}},
-                                        {"child": "lamp", "transform": {"keys": [
-                                            {"translate": [-3, 2, 1]}, {"scale": [1, 1.5, 1], "rotate": [0, 0, 50], "translate": [-3, 1, 1]}]}}]}},
+        "objects": [
+            {
+                "primitive": {
+                    "class": "Parallelogram",
+                    "constructor": [[-4, -1, -4], [0, 0, 8], [8, 0, 0]],
+                },
+                "material": {"class": "Lambert"},
+            },
+            sphere([-1.2, 0, 0], 1, {"class": "Dielectric"}),
+            sphere([1.2, 0, 0], 1, {"class": "Gold"}),
+            sphere([0, 3, 1], 0.5, {"class": "Emitter", "radiance": 20}),
+        ],
+        "nodes": {
+            "lamp": {
+                "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 0.3},
+                "material": {"class": "Emitter", "radiance": 30},
+            },
+            "both": {
+                "children": [
+                    {"child": "lamp", "transform": {"scale": [1, 2, 0.5], "translate": [3, 2, 1]}},
+                    {
+                        "child": "lamp",
+                        "transform": {
+                            "keys": [
+                                {"translate": [-3, 2, 1]},
+                                {
+                                    "scale": [1, 1.5, 1],
+                                    "rotate": [0, 0, 50],
+                                    "translate": [-3, 1, 1],
+                                },
+                            ]
+                        },
+                    },
+                ]
+            },
+        },
         "root": "both",
         "lights": [{"class": "PointLight", "position": [2, 4, 4], "intensity": 5}],
         "background": {"class": "UniformSky", "radiance": [0.2, 0.3, 0.4]},
@@ -147,14 +246,25 @@ def paths():
 def images():
     """Images with every filter and wrap, in sRGB and not, and a volume."""
     picture = str(pathlib.Path(source, "examples/cornell/picture.png"))
-    kinds = [("nearest", "repeat", "srgb"), ("bilinear", "mirror", "linear"), ("trilinear", "clamp", "srgb"),
-             ("anisotropic", ["black", "repeat"], "linear")]
+    kinds = [
+        ("nearest", "repeat", "srgb"),
+        ("bilinear", "mirror", "linear"),
+        ("trilinear", "clamp", "srgb"),
+        ("anisotropic", ["black", "repeat"], "linear"),
+    ]
     return {
         "rtsl": 1,
         "import": [str(here / "Images.rtsl")],
         "images": {"alone": {"file": picture}},
-        "rayGeneration": {"class": "Lookups", "alone": "alone", "volume": {"slices": [picture, picture, picture], "wrap": "mirror"},
-                          "images": [{"file": picture, "filter": filter, "wrap": wrap, "colorSpace": space} for filter, wrap, space in kinds]},
+        "rayGeneration": {
+            "class": "Lookups",
+            "alone": "alone",
+            "volume": {"slices": [picture, picture, picture], "wrap": "mirror"},
+            "images": [
+                {"file": picture, "filter": filter, "wrap": wrap, "colorSpace": space}
+                for filter, wrap, space in kinds
+            ],
+        },
         "render": {"engine": "programs", "size": [40, 30], "spp": 2},
     }
 
@@ -166,8 +276,14 @@ def outputs():
         "import": [str(here / "Outputs.rtsl")],
         "rayGeneration": {"class": "Probe", "histogram": {"size": [6]}, "most": {"size": [7]}},
         "materials": {"mirror": {"class": "Mirror"}},
-        "objects": [{"primitive": {"class": "Ball"}, "material": "mirror"},
-                    {"primitive": {"class": "Ball", "radius": 0.4}, "material": "mirror", "transform": {"translate": [1.2, 0.5, 1]}}],
+        "objects": [
+            {"primitive": {"class": "Ball"}, "material": "mirror"},
+            {
+                "primitive": {"class": "Ball", "radius": 0.4},
+                "material": "mirror",
+                "transform": {"translate": [1.2, 0.5, 1]},
+            },
+        ],
         "render": {"engine": "programs", "size": [8, 6], "spp": 2},
     }
 
@@ -181,12 +297,39 @@ def graph():
         "camera": {"class": "Look"},
         "variables": {"tint": [0.3, 0.6, 0.8]},
         "nodes": {
-            "many": {"primitive": {"class": "Balls", "balls": balls}, "count": "balls", "material": {"class": "Paint"}, "id": 5},
-            "one": {"primitive": {"class": "Balls", "balls": [[0, 0, 0, 1.3]]}, "material": {"class": "Paint"}},
+            "many": {
+                "primitive": {"class": "Balls", "balls": balls},
+                "count": "balls",
+                "material": {"class": "Paint"},
+                "id": 5,
+            },
+            "one": {
+                "primitive": {"class": "Balls", "balls": [[0, 0, 0, 1.3]]},
+                "material": {"class": "Paint"},
+            },
             "lod": {"selector": {"class": "Near", "limit": 14.6}, "children": ["many", "one"]},
-            "dice": {"selector": {"class": "Chance"}, "children": ["many", "one", {"child": "one", "transform": {"scale": 0.5}}]},
-            "world": {"children": ["many", {"child": "lod", "transform": {"translate": [-4, 0, -6]}, "variables": {"tint": [1, 0, 0]}},
-                                   {"child": "dice", "transform": {"scale": [0.5, 1.5, 1], "rotate": [20, 30, 0], "translate": [3, 0, 0]}}]},
+            "dice": {
+                "selector": {"class": "Chance"},
+                "children": ["many", "one", {"child": "one", "transform": {"scale": 0.5}}],
+            },
+            "world": {
+                "children": [
+                    "many",
+                    {
+                        "child": "lod",
+                        "transform": {"translate": [-4, 0, -6]},
+                        "variables": {"tint": [1, 0, 0]},
+                    },
+                    {
+                        "child": "dice",
+                        "transform": {
+                            "scale": [0.5, 1.5, 1],
+                            "rotate": [20, 30, 0],
+                            "translate": [3, 0, 0],
+                        },
+                    },
+                ]
+            },
         },
         "root": "world",
         "render": {"size": [40, 30], "spp": 4, "depth": 3},
@@ -201,7 +344,12 @@ CASES = [
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True)]),
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
-    ("g++", ["-O1"], ["--undefined=nan"], [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)]),
+    (
+        "g++",
+        ["-O1"],
+        ["--undefined=nan"],
+        [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)],
+    ),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
     ("g++", ["-O1"], ["--undefined=nan"], [objects(3), objects(9)]),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
@@ -227,21 +375,46 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
             sys.exit(f"{compiler} is not installed: make dependencies installs it")
         imports = list(dict.fromkeys(file for scene in scenes for file in scene["import"]))
         run(rtslc, "compile", *imports, "--emit=cpp", *options, "-o", folder / "shaders.cpp")
-        header = [] if "--unchecked" in options else precompiled_header(compiler, *flags, COMPILED, folder)
+        header = (
+            []
+            if "--unchecked" in options
+            else precompiled_header(compiler, *flags, COMPILED, folder)
+        )
         run(compiler, *header, folder / "shaders.cpp", "-o", folder / "shaders.so", *flags, *FLAGS)
         for scene in scenes:
             (folder / "scene.json").write_text(json.dumps(scene))
             events_of = [option for option in options if option in ("--print", "--exceptions")]
-            theirs = json.loads(run(rtslc, "render", folder / "scene.json", "-o", folder / "jit.exr", "--json", *events_of))
-            ours = json.loads(run(render, folder / "shaders.so", folder / "scene.json", folder / "cpp.exr"))
+            theirs = json.loads(
+                run(
+                    rtslc,
+                    "render",
+                    folder / "scene.json",
+                    "-o",
+                    folder / "jit.exr",
+                    "--json",
+                    *events_of,
+                )
+            )
+            ours = json.loads(
+                run(render, folder / "shaders.so", folder / "scene.json", folder / "cpp.exr")
+            )
             same_picture(rtslc, folder / "cpp.exr", folder / "jit.exr")
             assert ours["printed"] == theirs.get("printed", []), (ours, theirs)
             assert ours.get("exceptions") == theirs.get("exceptions"), (ours, theirs)
             for name, elements in (ours.get("outputs") or {}).items():
-                run(rtslc, "run", folder / "scene.json", "-q", f"--out={name}={folder / 'buffer'}", *events_of)
+                run(
+                    rtslc,
+                    "run",
+                    folder / "scene.json",
+                    "-q",
+                    f"--out={name}={folder / 'buffer'}",
+                    *events_of,
+                )
                 assert bytes(elements) == (folder / "buffer").read_bytes(), name
             if "--print" in options:
                 assert len(ours["printed"]) > 10, ours
             if scene["render"]["size"] == [4, 4] and "--exceptions" in options:
                 assert len(ours["exceptions"]) == 3, ours
-        assert ("#define RTSL_UNCHECKED" in (folder / "shaders.cpp").read_text()) == ("--unchecked" in options)
+        assert ("#define RTSL_UNCHECKED" in (folder / "shaders.cpp").read_text()) == (
+            "--unchecked" in options
+        )

@@ -12,29 +12,77 @@ from programs import run, same_picture
 
 rtslc, glass, *programs = sys.argv[1:]
 here = pathlib.Path(__file__).parent
-names = ["Many", "Nested", "Middle", "Choices", "Endless", "Mirror", "Base", "Derived",
-         "Table", "Bundle", "Turned", "Outputs", "Component", "Lit", "Tangled", "Loud", "Quiet",
-         "Columns", "Flags", "Scattered", "Replaced", "Arms", "Late"]
+names = [
+    "Many",
+    "Nested",
+    "Middle",
+    "Choices",
+    "Endless",
+    "Mirror",
+    "Base",
+    "Derived",
+    "Table",
+    "Bundle",
+    "Turned",
+    "Outputs",
+    "Component",
+    "Lit",
+    "Tangled",
+    "Loud",
+    "Quiet",
+    "Columns",
+    "Flags",
+    "Scattered",
+    "Replaced",
+    "Arms",
+    "Late",
+]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
     "rtsl": 1,
     "import": [f"{glass}/{name}.rtsl" for name in shaders] + [str(here / "Shapes.rtsl")],
-    "camera": {"class": "PinholeCamera", "constructor": [[0, 2, 9], [0, 1, 0], [0, -0.12, -1], [-1.6, -0.9], [1.6, 0.9], 2.7]},
-    "textures": {"checks": {"class": "Checker", "scale": 8, "even": [0.85, 0.83, 0.78], "odd": [0.12, 0.14, 0.2]}},
-    "materials": {"floor": {"class": "Glossy", "albedo": "checks"}, **{name: {"class": name} for name in names}},
-    "objects": [{"primitive": {"class": "Parallelogram", "constructor": [[-8, 0, 6], [16, 0, 0], [0, 0, -16]]},
-                 "material": "floor"}],
-    "lights": [{"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]},
-               {"class": "BallLight", "position": [-5, 5, 3], "radius": 0.2, "intensity": [18, 20, 25]}],
+    "camera": {
+        "class": "PinholeCamera",
+        "constructor": [[0, 2, 9], [0, 1, 0], [0, -0.12, -1], [-1.6, -0.9], [1.6, 0.9], 2.7],
+    },
+    "textures": {
+        "checks": {
+            "class": "Checker",
+            "scale": 8,
+            "even": [0.85, 0.83, 0.78],
+            "odd": [0.12, 0.14, 0.2],
+        }
+    },
+    "materials": {
+        "floor": {"class": "Glossy", "albedo": "checks"},
+        **{name: {"class": name} for name in names},
+    },
+    "objects": [
+        {
+            "primitive": {
+                "class": "Parallelogram",
+                "constructor": [[-8, 0, 6], [16, 0, 0], [0, 0, -16]],
+            },
+            "material": "floor",
+        }
+    ],
+    "lights": [
+        {"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]},
+        {"class": "BallLight", "position": [-5, 5, 3], "radius": 0.2, "intensity": [18, 20, 25]},
+    ],
     "ambient": [0.12, 0.13, 0.16],
     "background": {"class": "Sky"},
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
 }
 for i, name in enumerate(names):
     center = [-4.1 + 1.2 * (i % 8), 0.7 + 1.3 * (i // 8), 0]
-    scene["objects"].append({"primitive": {"class": "Sphere", "center": center, "radius": 0.7}, "material": name})
+    scene["objects"].append(
+        {"primitive": {"class": "Sphere", "center": center, "radius": 0.7}, "material": name}
+    )
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as folder:
-    file, ours, theirs = (str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr"))
+    file, ours, theirs = (
+        str(pathlib.Path(folder) / name) for name in ("scene.json", "cpp.exr", "jit.exr")
+    )
     pathlib.Path(file).write_text(json.dumps(scene))
 
     def render(picture, *how):
