@@ -115,15 +115,18 @@ def show(report):
         print(scene["scene"])
         for trace in scene["traces"]:
             print(
-                f"  {trace['function'] + ', ' + trace['location']:62}{trace['live']:7}{trace['saved']:7}"
+                f"  {trace['function'] + ', ' + trace['location']:62}"
+                f"{trace['live']:7}{trace['saved']:7}"
             )
     print(
-        f"median share of {report['tracesCounted']} different traces: {report['medianShareSaved']:.2f} (limit 0.50)"
+        f"median share of {report['tracesCounted']} different traces: "
+        f"{report['medianShareSaved']:.2f} (limit 0.50)"
     )
     measured = [scene for scene in report["scenes"] if "instructions" in scene]
     if measured:
         print(
-            f"\n{'instructions a sample, host megakernel':40}{'all live saved':>15}{'as it is':>10}{'more':>9}"
+            f"\n{'instructions a sample, host megakernel':40}"
+            f"{'all live saved':>15}{'as it is':>10}{'more':>9}"
         )
     for scene in measured:
         counts = scene["instructions"]

@@ -80,7 +80,8 @@ def write_hall(mesh, grid, path):
     with open(path, "wb") as file:
         file.write(
             (
-                "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
+                "ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\n"
+                "property float y\nproperty float z\n"
                 "element face %d\nproperty list uchar int vertex_indices\nend_header\n"
                 % (len(positions) // 3, count)
             ).encode()
@@ -206,7 +207,8 @@ def markdown(report):
     for hall in report["halls"]:
         rates = " | ".join(f"{hall['raysPerSecond'][rays] * 1e-6:.0f}" for rays in SETS)
         lines.append(
-            f"| {hall['mesh']} {hall['grid']} | {hall['triangles']:,} | {rates} | {hall.get('bytesPerTriangle', 0):.1f} | "
+            f"| {hall['mesh']} {hall['grid']} | {hall['triangles']:,} | {rates} | "
+            f"{hall.get('bytesPerTriangle', 0):.1f} | "
             f"{hall.get('treeSeconds', 0) * 1e3:.0f} |"
         )
     lines += [
@@ -216,13 +218,13 @@ def markdown(report):
     ]
     for name, picture in report["pictures"].items():
         lines.append(
-            f"| {name} | {picture['samplesPerSecond'] * 1e-6:.1f} | {picture['registers']} | {picture['localBytes']} |"
+            f"| {name} | {picture['samplesPerSecond'] * 1e-6:.1f} | {picture['registers']} | "
+            f"{picture['localBytes']} |"
         )
     devices = {hall["device"] for hall in report["halls"] if "device" in hall}
     return (
-        f"Target {report['target']}{', ' + ', '.join(devices) if devices else ''}; halls in million rays/s.\n\n"
-        + "\n".join(lines)
-        + "\n"
+        f"Target {report['target']}{', ' + ', '.join(devices) if devices else ''}; halls in "
+        "million rays/s.\n\n" + "\n".join(lines) + "\n"
     )
 
 
@@ -256,7 +258,7 @@ def add(subcommands, common):
         nargs="*",
         type=hall,
         metavar="MESH:N",
-        help="a hall of N x N copies of a mesh, an OBJ file; nefertiti.obj:6 has 3.6 million triangles",
+        help="a hall of N x N copies of an OBJ file; nefertiti.obj:6 has 3.6 million triangles",
     )
     parser.add_argument(
         "--target",

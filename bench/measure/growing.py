@@ -96,7 +96,8 @@ def traces(folder, n):
     body = (
         "    vec3 d = rt_RayDirection;\n    float w = 1.0;\n    color sum = color(0.0);\n"
         + "".join(
-            f"    if (d.x * {i + 1}.5 > w) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
+            f"    if (d.x * {i + 1}.5 > w) {{\n      sum += w * trace(rt_HitPoint, d);\n"
+            "      w *= 0.75;\n"
             f"      d = normalize(d + vec3(0.1, {i}.0, 0.2));\n    }}\n"
             for i in range(n)
         )
@@ -199,7 +200,8 @@ def textures(folder, n):
     """Classes of textures, behind one reference."""
     text = "".join(
         f"class T{i} : rt_Texture {{\n  public float scale = {i + 1}.0;\n"
-        f"  void lookup() {{ rt_TextureColor = color(fract(rt_TextureUV.x * scale + {i}.25)); }}\n}};\n"
+        f"  void lookup() {{ rt_TextureColor = color(fract(rt_TextureUV.x * scale + {i}.25)); }}\n"
+        f"}};\n"
         for i in range(n)
     )
     path = write(folder, "Textures.rtsl", text)
@@ -216,8 +218,10 @@ def lights(folder, n):
     """Classes of lights."""
     text = "".join(
         f"class L{i} : rt_Light {{\n  public vec3 place = vec3({i % 10}.0, 4.0, 2.0);\n"
-        f"  void illumination() {{\n    vec3 path = place - rt_HitPoint;\n    rt_LightDistance = length(path);\n"
-        f"    rt_LightDirection = path / rt_LightDistance;\n    rt_LightColor = color({i % 7}.5) / dot(path, path);\n"
+        f"  void illumination() {{\n    vec3 path = place - rt_HitPoint;\n"
+        "    rt_LightDistance = length(path);\n"
+        f"    rt_LightDirection = path / rt_LightDistance;\n    rt_LightColor = color({i % 7}.5) / "
+        "dot(path, path);\n"
         f"  }}\n}};\n"
         for i in range(n)
     )
@@ -254,7 +258,8 @@ def bulbs(folder, n):
 def derived(folder, n):
     """A hierarchy: each class derives from one of eight, and overrides a method."""
     text = (
-        "class Base : rt_Material {\n  public color tint = color(0.5);\n  color surface() { return tint; }\n"
+        "class Base : rt_Material {\n  public color tint = color(0.5);\n"
+        "  color surface() { return tint; }\n"
         "  void shade() { rt_SampleColor = surface() * ambient(); }\n};\n"
     )
     text += "".join(

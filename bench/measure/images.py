@@ -125,14 +125,16 @@ def measure(build, rounds):
 
 def show(report):
     print(
-        f"a bilinear lookup in an image of {SIZE} x {SIZE} texels, 8 bits in sRGB; nanoseconds on one core, medians of "
+        f"a bilinear lookup in an image of {SIZE} x {SIZE} texels, 8 bits in sRGB; nanoseconds on "
+        "one core, medians of "
         f"{report['rounds']} rounds"
     )
     ours = report["results"]["rtslc, strict"]["median"]
     for program, times in report["results"].items():
         low, high = times["interval"]
         print(
-            f"  {program:32}{times['median']:8.1f}  {f'{low:.1f} to {high:.1f}':16}{times['median'] / ours:6.2f} of the time of strict"
+            f"  {program:32}{times['median']:8.1f}  "
+            f"{f'{low:.1f} to {high:.1f}':16}{times['median'] / ours:6.2f} of the time of strict"
         )
 
 

@@ -157,20 +157,24 @@ def measure(build, pairs, spp, size):
 
 def show(report):
     print(
-        f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} samples a pixel on one thread"
+        f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} "
+        "samples a pixel on one thread"
     )
     for program in report["samples"]:
         print(
-            f"  {program['program']:14} {program['seconds']['median']:7.3f} s, reading {program['scene']['median']:.3f} s"
+            f"  {program['program']:14} {program['seconds']['median']:7.3f} s, reading "
+            f"{program['scene']['median']:.3f} s"
         )
     print("rtslc's speed over that of the program by hand, round by round")
     for ratio in report["ratios"]:
         speed, pictures = ratio["speed"], ratio["pictures"]
         low, high = speed["interval"]
         print(
-            f"  {ratio['program']:14} {speed['median']:.3f}   {low:.3f} to {high:.3f} ({speed['confidence']:.1%});"
+            f"  {ratio['program']:14} {speed['median']:.3f}   {low:.3f} to {high:.3f} "
+            f"({speed['confidence']:.1%});"
             f" the pictures {'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
-            f" (means within {pictures['largestMeanDifference']:.1e}, root mean square {pictures['rmse']:.1e})"
+            f" (means within {pictures['largestMeanDifference']:.1e}, root mean square "
+            f"{pictures['rmse']:.1e})"
         )
 
 

@@ -1,4 +1,4 @@
-"""What motion costs: rays per second through instances that rest, and through the same that move."""
+"""What motion costs: rays per second through instances at rest, and through the same in motion."""
 
 import json
 import random
@@ -127,7 +127,8 @@ def measure(build, rounds, spp, size):
 
 def show(report):
     print(
-        f"millions of camera rays per second on one core: {report['instances']} instances of a mesh of 686 triangles, and one such "
+        f"millions of camera rays per second on one core: {report['instances']} instances of a "
+        "mesh of 686 triangles, and one such "
         f"mesh; medians of {report['rounds']} rounds"
     )
     for names in (TRANSFORMS, MESHES):
@@ -136,7 +137,8 @@ def show(report):
             rates = report["results"][scene]
             low, high = rates["interval"]
             print(
-                f"  {scene:30}{rates['median']:8.2f}  {f'{low:.2f} to {high:.2f}':16}{rates['median'] / rest:6.2f} of that at rest"
+                f"  {scene:30}{rates['median']:8.2f}  "
+                f"{f'{low:.2f} to {high:.2f}':16}{rates['median'] / rest:6.2f} of that at rest"
             )
 
 

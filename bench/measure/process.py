@@ -15,7 +15,8 @@ class Run:
     wall: float  # seconds from before it is spawned until it is reaped
     user: float  # seconds of processor time, over all threads
     system: float
-    memory: int  # largest resident set, bytes; not less than that of this script, which Linux counts in
+    # The largest resident set, in bytes; at least that of this script, which Linux includes.
+    memory: int
     output: str
 
 

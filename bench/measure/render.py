@@ -161,8 +161,10 @@ def show(report):
     for ratio in report["ratios"]:
         pictures = ratio["pictures"]
         print(
-            f"{ratio['against']}: the pictures {'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
-            f" (means within {pictures['largestMeanDifference']:.1e}, root mean square {pictures['rmse']:.1e},"
+            f"{ratio['against']}: the pictures "
+            f"{'agree' if pictures['agree'] else 'DIFFER: the ratio means nothing'}"
+            f" (means within {pictures['largestMeanDifference']:.1e}, root mean square "
+            f"{pictures['rmse']:.1e},"
             f" largest {pictures['largest']:.2g})"
         )
 

@@ -117,7 +117,8 @@ def measure(build, names, jobs, runs):
 
 def show(report):
     print(
-        "processor time in seconds, beside that of a program of size 1, and the exponent of the size with which it grows"
+        "processor time in seconds, beside that of a program of size 1, and the exponent of the "
+        "size with which it grows"
     )
     print(f"{'':24}{'':8}{'sizes':>20}{'of size 1':>11}{'seconds':>26}{'exponent':>14}")
     for name, jobs in report["series"].items():
@@ -132,10 +133,12 @@ def show(report):
                 else ""
             )
             print(
-                f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}{times:>26}{exponent:>14}{mark}"
+                f"{name:24}{job:8}{sizes:>20}{one['constant']:>11.2f}"
+                f"{times:>26}{exponent:>14}{mark}"
             )
     print(
-        f"the limit of exponents is {report['limit']}; none is given where time hardly grows; +-: one standard error, if times "
+        f"the limit of exponents is {report['limit']}; none is given where time hardly grows; +-: "
+        "one standard error, if times "
         f"vary by {report['spread']:.0%} and {report['resolution'] * 1000:.0f} ms"
     )
 

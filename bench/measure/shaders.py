@@ -129,7 +129,8 @@ def measure(build, rounds):
 
 def show(report):
     print(
-        f"printed C++ beside C++ by hand, {report['flags']}; nanoseconds of processor time a call, medians of "
+        f"printed C++ beside C++ by hand, {report['flags']}; nanoseconds of processor time a call, "
+        "medians of "
         f"{report['rounds']} rounds"
     )
     title = None
@@ -139,12 +140,15 @@ def show(report):
             continue
         if title != (title := f"{result['compiler']}: {result['pairing']}"):
             print(
-                f"\n{title:48}{'by hand':>9}{'printed':>9}{'speed':>8}  {'interval':14}{'answers differ by':>18}"
+                f"\n{title:48}{'by hand':>9}{'printed':>9}{'speed':>8}  "
+                f"{'interval':14}{'answers differ by':>18}"
             )
         low, high = result["ratio"]["interval"]
         print(
-            f"  {result['shader']:46}{result['byHand']['median']:9.1f}{result['generated']['median']:9.1f}"
-            f"{result['ratio']['median']:8.2f}  {f'{low:.2f} to {high:.2f}':14}{result['difference']:18.1e}"
+            f"  {result['shader']:46}{result['byHand']['median']:9.1f}"
+            f"{result['generated']['median']:9.1f}"
+            f"{result['ratio']['median']:8.2f}  "
+            f"{f'{low:.2f} to {high:.2f}':14}{result['difference']:18.1e}"
         )
 
 

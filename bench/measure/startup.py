@@ -32,7 +32,8 @@ def long_material():
         ]
         for step in range(43):
             lines.append(
-                f"  t{coat} = t{coat} * 0.75 + vec3(a{coat}, w, {step}.25) * sin(a{coat} + {step}.0);"
+                f"  t{coat} = t{coat} * 0.75 + vec3(a{coat}, w, {step}.25) * sin(a{coat} + "
+                f"{step}.0);"
                 if step % 4 == 0
                 else f"  a{coat} = a{coat} * w + {step}.125;"
             )

@@ -475,7 +475,8 @@ def main():
             if difference > 25:
                 failed.append(name)
                 print(
-                    f"{name}: part of the picture differs by {difference:.0f} of 255 from docs/library/{name}.png"
+                    f"{name}: part of the picture differs by {difference:.0f} of 255 from "
+                    f"docs/library/{name}.png"
                 )
     return 1 if failed else 0
 

@@ -22,7 +22,8 @@ def prose(comment):
 def class_section(path):
     text = path.read_text()
     head = re.search(
-        r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import .*\n)*class )",
+        r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import "
+        r".*\n)*class )",
         text,
         re.M,
     )

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the headers in math/tables/.
 
-Every number is computed with 80 decimal digits from its definition and then rounded to double, so that the tables can
-be checked by reading this file. Needs nothing but Python 3:
+Every number is computed with 80 decimal digits from its definition and then rounded to double, so
+that the tables can be checked by reading this file. Needs nothing but Python 3:
 
     python3 math/tools/generateTables.py            write the tables
     python3 math/tools/generateTables.py --check    exit with status 1 if they are not up to date
@@ -17,11 +17,11 @@ getcontext().prec = 80
 FOLDER = Path(__file__).resolve().parent.parent / "tables"
 
 
-# ---- exact values -----------------------------------------------------------------------------------------------------
+# ---- exact values --------------------------------------------------------------------------------
 
 
 def arctan(value):
-    """The Taylor series, for an argument whose tangent was halved until the series converges fast."""
+    """The Taylor series, for an argument that was halved until the series converges fast."""
     value, halvings = Decimal(value), 0
     while abs(value) > Decimal("0.01"):
         value = value / (1 + (1 + value * value).sqrt())  # tan(a / 2) from tan(a)
@@ -38,7 +38,7 @@ PI = 4 * arctan(1)
 LN2 = Decimal(2).ln()
 
 
-# ---- rounding ---------------------------------------------------------------------------------------------------------
+# ---- rounding ------------------------------------------------------------------------------------
 
 
 def toDouble(value):
@@ -62,7 +62,7 @@ def split(value, parts, unit=None):
     return result
 
 
-# ---- printing ---------------------------------------------------------------------------------------------------------
+# ---- printing ------------------------------------------------------------------------------------
 
 
 def hexDouble(value):
@@ -92,7 +92,7 @@ def write(name, body):
         sys.exit(f"error: {name} is not what generateTables.py writes")
 
 
-# ---- the tables -------------------------------------------------------------------------------------------------------
+# ---- the tables ----------------------------------------------------------------------------------
 
 
 def exponentialTable():
@@ -123,9 +123,9 @@ inline constexpr ExponentialEntry exponentialTable[exponentialTableSize] = {{
 
 
 def logarithmTable():
-    # The doubles from 11/16 to 11/8 fall into 128 cells of equally many numbers: cells 0..79 are 2^-8 wide and lie
-    # below 1, cells 80..127 are 2^-7 wide. The two cells next to 1 use 1 itself, so that the logarithm keeps its
-    # relative accuracy.
+    # The doubles from 11/16 to 11/8 fall into 128 cells of equally many numbers: cells 0..79 are
+    # 2^-8 wide and lie below 1, cells 80..127 are 2^-7 wide. The two cells next to 1 use 1 itself,
+    # so that the logarithm keeps its relative accuracy.
     rows = []
     for cell in range(128):
         width = Fraction(1, 256) if cell < 80 else Fraction(1, 128)
@@ -189,7 +189,8 @@ def constants():
 
     def pair(name, value, text):
         high, low = split(value, 2)
-        return f"/// {text}\ninline constexpr Double2 {name} = {{{hexDouble(high)}, {hexDouble(low)}}};\n"
+        value = f"{hexDouble(high)}, {hexDouble(low)}"
+        return f"/// {text}\ninline constexpr Double2 {name} = {{{value}}};\n"
 
     ln2 = split(LN2, 3, Fraction(1, 2**42))
     write(

@@ -94,8 +94,8 @@ class Case(unittest.TestCase):
         return (done.stdout or b"").decode("utf-8", "replace"), error
 
     def render_scene(self, scene, *options):
-        """Renders a scene that is given as a document. The file of the picture, a new one each time,
-        and what was said."""
+        """Renders a scene that is given as a document. Returns the file of the picture, a new one
+        each time, and the messages."""
         self.pictures += 1
         path = self.write(f"scene{self.pictures}.json", json.dumps(scene, indent=1))
         picture = self.folder / f"{self.pictures}.exr"

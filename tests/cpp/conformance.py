@@ -129,7 +129,8 @@ def write_program(path, programs, folder):
         texts.append((folder / f"{name}.cpp").read_text().replace("#include <rtsl/shader.h>\n", ""))
         for call in calls:
             checks.append(
-                f'  failures += check("{name}", {name}::run, calls[{len(tables)}][0], calls[{len(tables)}][1]);'
+                f'  failures += check("{name}", {name}::run, calls[{len(tables)}][0], '
+                f"calls[{len(tables)}][1]);"
             )
             tables.append("{" + table(call, "before") + ", " + table(call, "after") + "}")
     path.write_text(
@@ -198,7 +199,8 @@ def main():
                 sys.exit(f"{compiler} {flags} refuses the C++:\n{built.stderr[:6000]}")
             ran = subprocess.run([str(program)], capture_output=True, text=True)
             print(
-                f"{compiler} {flags}: {len(chosen)} programs, {count} calls, {ran.stdout.strip()[-2000:]}",
+                f"{compiler} {flags}: {len(chosen)} programs, {count} calls, "
+                f"{ran.stdout.strip()[-2000:]}",
                 flush=True,
             )
             if ran.returncode:

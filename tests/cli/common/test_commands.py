@@ -178,7 +178,8 @@ class Commands(Case):
         _, error = self.run_rtslc("check", "sums.rtsl", "-Wlive-state")
         self.assertRegex(
             error,
-            "bytes are live across this `trace`, more than 128; the value computed in line 4 takes the most: 4 bytes",
+            "bytes are live across this `trace`, more than 128; the value computed in line 4 takes "
+            "the most: 4 bytes",
         )
         self.assertRegex(error, r"also saved: the value computed in line 4 \(4\), ")
         self.assertNotIn("rand.2", error)

@@ -7,7 +7,10 @@ import unittest
 from harness import EXAMPLES, FINE, USAGE, Case
 
 ROOT = EXAMPLES.parent
-FOLDERS = "bench|codegen|docs|examples|frontend|include|language|library|math|runtime|scenefile|scripts|sema|support|tests|tools"
+FOLDERS = (
+    "bench|codegen|docs|examples|frontend|include|language|library|math|runtime|scenefile|scripts"
+    "|sema|support|tests|tools"
+)
 
 
 def read(path):
@@ -104,7 +107,8 @@ class Documents(Case):
     def test_packages(self):
         page = read("docs/packages.md")
         self.assertIn(
-            f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} |",
+            f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} "
+            "|",
             page,
         )
         depth = constant("runtime/render/RenderOptions.h", "maxRayDepth")

@@ -74,7 +74,8 @@ class Interruptions(Case):
                     )
                     self.assertRegex(
                         error,
-                        rf"W2867\]: stopped by {by.name} after 0\.0 % of the samples: 0 of 4096 pixels are done",
+                        rf"W2867\]: stopped by {by.name} after 0\.0 % of the samples: 0 of 4096 "
+                        r"pixels are done",
                     )
                     self.assert_partly_black("a.exr")
                     (self.folder / "a.exr").unlink()

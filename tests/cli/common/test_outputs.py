@@ -14,7 +14,8 @@ SMALL = ("--size", "8x8", "--spp", "1")
 QUIET = ("-q", "-Wno-depth-limit", "-O0")  # where files go does not depend on how code is optimised
 MATERIAL = (
     '#include "part.inc"\nimport "other.rtsl";\nclass Grey : rt_Material {\n'
-    "  void shade() { rt_SampleColor = shared() * other() * trace(rt_HitPoint, vec3(0.0, 1.0, 0.0)); }\n};\n"
+    "  void shade() { rt_SampleColor = shared() * other() * trace(rt_HitPoint, vec3(0.0, 1.0, "
+    "0.0)); }\n};\n"
 )
 
 
@@ -194,7 +195,8 @@ class Outputs(Case):
         self.run_rtslc("render", "scene.json", *QUIET, "-o", "b.exr", "--seed", "7", *SMALL)
         self.write(
             "print.rtsl",
-            'class Grey : rt_Material { void shade() { print("here"); rt_SampleColor = color(0.5); } };',
+            'class Grey : rt_Material { void shade() { print("here"); rt_SampleColor = color(0.5); '
+            "} };",
         )
         prints = ["--set", "import.9=print.rtsl", "--set", 'materials.clay={"class":"Grey"}']
         render = ["render", "scene.json", *QUIET, *SMALL]

@@ -148,7 +148,8 @@ class Preprocessor(Case):
             "a b#$.rtsl", 'import "grey.rtsl";\n#include <fine.rtsl>\nconst float a = ROUGHNESS;\n'
         )
         rule = (
-            "out\\ file.ir: \\\n  a\\ b\\#$$.rtsl \\\n  more\\ folders/fine.rtsl \\\n  grey.rtsl \\\n  lib/grey.rtsl \\\n"
+            "out\\ file.ir: \\\n  a\\ b\\#$$.rtsl \\\n  more\\ folders/fine.rtsl \\\n"
+            "  grey.rtsl \\\n  lib/grey.rtsl \\\n"
             "  lib/shared.rtsl\n"
         )
         self.run_rtslc(

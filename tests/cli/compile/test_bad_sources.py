@@ -197,7 +197,8 @@ class BoundedSources(Case):
             "class C0 : rt_Light { public float power; };\n"
             + "".join(f"class C{i + 1} : C{i} {{ }};\n" for i in range(10_000))
             + (
-                "class Last : C10000 {\n  void illumination() { rt_LightColor = color(powr); }\n};\n"
+                "class Last : C10000 {\n  void illumination() { rt_LightColor = color(powr); }\n"
+                "};\n"
             )
         )
         self.write("bad.rtsl", text)

@@ -18,12 +18,14 @@ def traces(count):
     """A material with so many traces, each in an `if`: after each of them all later ones can be
     reached."""
     steps = "".join(
-        f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n      w *= 0.75;\n"
+        f"    if (d.x * {i + 1}.5 > w - {i % 3}.0) {{\n      sum += w * trace(rt_HitPoint, d);\n"
+        "      w *= 0.75;\n"
         f"      d = normalize(d + vec3(0.1, {i % 5}.0, 0.2));\n    }}\n"
         for i in range(count)
     )
     return (
-        "class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, rt_ShadingNormal);\n"
+        "class Many : rt_Material {\n  void shade() {\n    vec3 d = reflect(rt_RayDirection, "
+        "rt_ShadingNormal);\n"
         "    float w = 0.5;\n    color sum = color(0.1);\n"
         + steps
         + "    rt_SampleColor = sum;\n  }\n};\n"
@@ -34,7 +36,8 @@ def classes(count):
     return "".join(
         f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
         f"    rt_SampleColor = color(gloss * 0.01);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
-        f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+        "      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, "
+        f"rt_ShadingNormal));\n  }}\n}};\n"
         for i in range(count)
     )
 
@@ -45,9 +48,11 @@ def large_classes(count):
         f"    x = x * 0.{k % 9 + 1}5 + rt_HitPoint.{'xyz'[k % 3]};\n" for k in range(80)
     )
     return "".join(
-        f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n    float x = gloss;\n{lines}"
+        f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
+        f"    float x = gloss;\n{lines}"
         f"    rt_SampleColor = color(abs(x) * 0.1);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
-        f"      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_ShadingNormal));\n  }}\n}};\n"
+        "      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, "
+        f"rt_ShadingNormal));\n  }}\n}};\n"
         for i in range(count)
     )
 

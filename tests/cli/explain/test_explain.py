@@ -142,7 +142,7 @@ class Explain(Case):
         self.assertEqual(saved["meshes"]["memoryBytes"], 0)
 
     def test_what_only_code_reads_that_never_runs(self):
-        """A member is read where another one's number says that the code runs; else it is left out."""
+        """A member is left out if the number of another member shows that nothing reads it."""
         self.write(
             "more.rtsl",
             """
@@ -469,8 +469,8 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
         def shade(index):
             return SHADERS.replace(
                 "void shade() { rt_SampleColor = tint * rt_TextureUV.x; }",
-                "void shade() { float a[4] = float[4](1.0, 2.0, 3.0, 4.0); rt_SampleColor = tint * a[%s]; }"
-                % index,
+                "void shade() { float a[4] = float[4](1.0, 2.0, 3.0, 4.0); rt_SampleColor = tint * "
+                "a[%s]; }" % index,
             )
 
         for index, isNeeded in (

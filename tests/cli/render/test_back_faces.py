@@ -193,7 +193,8 @@ class BackFaces(Case):
         )
 
     def test_surfaces_shine_to_the_front_alone(self):
-        """The floor below a lamp that faces down is as bright as without the option, and below one that faces up it is black."""
+        """The floor below a lamp that faces down is as bright as without the option, and below one
+        that faces up it is black."""
         for name, shines in (("down.obj", True), ("up.obj", False)):
             means = [
                 self.means(self.render(self.lit(name, back_faces, "glow", "path")))[0]

@@ -114,8 +114,10 @@ class BadScenes(Case):
 
     def test_truncated_mesh(self):
         header = (
-            b"ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\nproperty float y\n"
-            b"property float z\nelement face 50\nproperty list uchar int vertex_indices\nend_header\n"
+            b"ply\nformat binary_little_endian 1.0\nelement vertex 100\nproperty float x\n"
+            b"property float y\n"
+            b"property float z\nelement face 50\nproperty list uchar int vertex_indices\n"
+            b"end_header\n"
         )
         self.write("half.ply", header + b"\0" * 300)
         self.glass_scene()

@@ -43,8 +43,10 @@ class Objects : rt_RayGeneration { public rt_Texture textures[]; void generate()
 
 class Buffers(Case):
     PLY = (
-        "ply\nformat %s 1.0\nelement cone 1\nproperty list uchar float heights\nproperty double tilt\nelement vertex 2\nproperty float x\n"
-        "property float y\nproperty double z\nproperty uchar shade\nproperty int id\nelement face 1\nproperty list uchar int corners\n"
+        "ply\nformat %s 1.0\nelement cone 1\nproperty list uchar float heights\n"
+        "property double tilt\nelement vertex 2\nproperty float x\n"
+        "property float y\nproperty double z\nproperty uchar shade\nproperty int id\n"
+        "element face 1\nproperty list uchar int corners\n"
         "end_header\n"
     )
 
@@ -258,7 +260,8 @@ class Buffers(Case):
     def test_launch_of_the_size_of_a_ply(self):
         self.write(
             "count.rtsl",
-            "class Count : rt_RayGeneration { public float xs[]; void generate() { uint i = rt_LaunchIndex.x; print(i, xs[i]); } };",
+            "class Count : rt_RayGeneration { public float xs[]; void generate() { uint i = "
+            "rt_LaunchIndex.x; print(i, xs[i]); } };",
         )
         self.write(
             "xs.ply",

@@ -131,7 +131,8 @@ class CallFrames(Case):
         self.assertIn("call of dispatch.Filter.follow at shaders.rtsl:", text)
         self.assertRegex(
             text,
-            r"stack: \d+ more bytes for each level and each object in the scene's longest chain of references",
+            r"stack: \d+ more bytes for each level and each object in the scene's longest chain of "
+            r"references",
         )
         report = json.loads(self.run_rtslc("explain", "--states", "--json", "scene.json")[0])
         [filter_] = [
@@ -151,7 +152,8 @@ class CallFrames(Case):
         self.assertIn("struct FollowFrame : FilterRef::Follow {", text)
         self.assertRegex(
             text,
-            r"return rtsl::callThen\(rt, frame, Step::Tint_followAfterCall1, inner,\s+FilterRef::Follow\{frame.o,",
+            r"return rtsl::callThen\(rt, frame, Step::Tint_followAfterCall1, "
+            r"inner,\s+FilterRef::Follow\{frame.o,",
         )
         self.assertNotIn("rtsl::trace(", text)
         self.assertEqual(text, self.run_rtslc("compile", "shaders.rtsl", "--emit=cpp")[0])

@@ -116,7 +116,8 @@ class Curves(CurvedCase):
         return [0.1 + 0.8 * (i + 0.5) / count for i in range(count)]
 
     def test_refraction_in_a_gradient_of_any_thickness(self):
-        """Along the gradient only: the other component of the velocity stays, and the index gives the last one."""
+        """Along the gradient only: the other component of the velocity stays constant, and the
+        index determines the last one."""
         steps = []
         for width in (0.1, 1e-2, 1e-4):
             results = self.run_rays("Snell", {"class": "Step", "width": width})
@@ -143,7 +144,7 @@ class Curves(CurvedCase):
                     self.assertAlmostEqual(y, exact, delta=2e-3, msg=(width, x))
 
     def test_a_lens(self):
-        """All rays meet in a point, within the error that is allowed; a smaller tolerance gives a smaller one."""
+        """All rays meet in a point, within the allowed error; a smaller tolerance reduces it."""
         largest = []
         for tolerance in (1e-2, 1e-4):
             results = self.run_rays("Focus", {"class": "Lens"}, tolerance=tolerance)
@@ -153,7 +154,8 @@ class Curves(CurvedCase):
         self.assertLess(largest[1], 0.5 * largest[0] + 1e-5)
 
     def test_where_a_ray_over_hot_ground_turns(self):
-        """Where the index is the cosine of the first angle: thickness * log(2 |difference| / slope^2)."""
+        """At an index equal to the cosine of the first angle:
+        thickness * log(2 |difference| / slope^2)."""
         results = self.run_rays(
             "Turning", {"class": "LayeredAir", "thickness": 0.2, "difference": -3e-5}
         )

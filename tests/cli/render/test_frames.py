@@ -105,7 +105,8 @@ class Crop(Parts):
     def test_samples_that_are_not_finite_are_named_by_their_place_in_the_whole(self):
         self.write(
             "Bad.rtsl",
-            "class Bad : rt_Miss;\nvoid miss() { rt_SampleColor = color(1.0 / (rt_RayDirection.x * 0.0)); }\n",
+            "class Bad : rt_Miss;\nvoid miss() { rt_SampleColor = color(1.0 / (rt_RayDirection.x * "
+            "0.0)); }\n",
         )
         scene = self.change(background={"class": "Bad"}, objects=[])
         self.change(**{"import": scene["import"] + ["Bad.rtsl"]})
@@ -168,7 +169,8 @@ class Cameras(Parts):
     def test_others_are_not_in_the_program(self):
         self.write(
             "Odd.rtsl",
-            "class Odd : rt_Camera;\nvoid generateRay() { rt_RayOrigin = vec3(123.456); rt_RayDirection = vec3(0.0, 0.0, 1.0); }\n",
+            "class Odd : rt_Camera;\nvoid generateRay() { rt_RayOrigin = vec3(123.456); "
+            "rt_RayDirection = vec3(0.0, 0.0, 1.0); }\n",
         )
         scene = json.loads((self.folder / "scene.json").read_text())
         self.change(

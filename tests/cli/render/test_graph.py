@@ -478,15 +478,21 @@ class Selectors(GraphCase):
 
 class Variables(GraphCase):
     def test_members_that_nothing_sets(self):
-        """An error that lists the nodes whose variables could set it, unless nothing reads it or the constructor sets it."""
+        """An error that lists the nodes whose variables could set it, unless nothing reads it or
+        the constructor sets it."""
         self.write(
             "Bare.rtsl",
-            "class Bare : rt_Material { public float glow; public rt_Texture grain; public optional rt_Texture film;\n"
-            "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * grain.lookup(); } };\n"
-            "class Flat : rt_Texture { public float level; public float unread; void lookup() { rt_TextureColor = color(level); } };\n"
-            "class Made : rt_Texture { public float set; public float kept; public vec2 more; public vec3 steps[];\n"
+            "class Bare : rt_Material { public float glow; public rt_Texture grain; public "
+            "optional rt_Texture film;\n"
+            "  public float dim = 2.0; void shade() { rt_SampleColor = color(glow * dim) * "
+            "grain.lookup(); } };\n"
+            "class Flat : rt_Texture { public float level; public float unread; void lookup() { "
+            "rt_TextureColor = color(level); } };\n"
+            "class Made : rt_Texture { public float set; public float kept; public vec2 more; "
+            "public vec3 steps[];\n"
             "  void constructor(float x) { set = 2.0 * x; }\n"
-            "  void lookup() { rt_TextureColor = color(set + kept + more.x + float(steps.length())); } };\n",
+            "  void lookup() { rt_TextureColor = color(set + kept + more.x + "
+            "float(steps.length())); } };\n",
         )
 
         def bare(material, **variables):
@@ -505,7 +511,10 @@ class Variables(GraphCase):
                 **{"import": ["Graph.rtsl", "Bare.rtsl"]},
             )
 
-        places = r"a variable of this name in `ball` \(line \d+\), `row` \(line \d+\), a node \(line \d+\), `root` \(line \d+\) or the scene"
+        places = (
+            r"a variable of this name in `ball` \(line \d+\), `row` \(line \d+\), "
+            r"a node \(line \d+\), `root` \(line \d+\) or the scene"
+        )
         for member, given in (
             ("`glow` of `bare`", {"level": 1}),
             ("`level` of `flat`", {"glow": 1}),
@@ -528,14 +537,15 @@ class Variables(GraphCase):
         self.assert_message(
             messages,
             "E0815",
-            "members `kept`, `more` of `Made` are read, but not set and without a default: set them",
+            "members `kept`, `more` of `Made` are read, but not set and without a default: set "
+            "them",
         )
         path = self.write("scene.json", json.dumps(bare({"glow": 1}), indent=1))
         error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
         self.assertRegex(
             error,
-            r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a `rt_Texture`, or "
-            + places,
+            r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a "
+            r"`rt_Texture`, or " + places,
         )
 
     def tinted(self, material, **nodes):

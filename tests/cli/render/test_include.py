@@ -119,7 +119,8 @@ class Include(Case):
             "-o",
             "a.exr",
             "--set",
-            'import=["std.cameras","std.primitives","std.lights","std.materials","models/gray.rtsl"]',
+            'import=["std.cameras","std.primitives","std.lights","std.materials",'
+            '"models/gray.rtsl"]',
         )
         self.assertTrue(messages[0]["range"]["file"].endswith("lights.json"), messages)
         self.assertIn("anglee", messages[0]["message"])

@@ -158,13 +158,15 @@ class NotFinite(ShaderCase):
                     self.assertEqual(one["color"][0], "nan" if wanted == INVERSE else "inf")
                 self.assertRegex(
                     error,
-                    rf"shaders\.rtsl:{DIVISION}:\d+: warning\[W2865\]: {figures['samplesNotFinite']} of 512 samples "
+                    rf"shaders\.rtsl:{DIVISION}:\d+: warning\[W2865\]: "
+                    rf"{figures['samplesNotFinite']} of 512 samples "
                     "were infinite or not a number, and are left out of the means of their pixels; "
                     "4 pixels have no other samples and are black",
                 )
                 self.assertRegex(
                     error,
-                    rf"\n *[=|] *note: pixel \d,0 sample \d+ is infinite, since shaders\.rtsl:{DIVISION}:",
+                    r"\n *[=|] *note: pixel \d,0 sample \d+ is infinite, since "
+                    rf"shaders\.rtsl:{DIVISION}:",
                 )
                 self.assertIn(f"and {figures['samplesNotFinite'] - 8} more samples", error)
 
@@ -256,7 +258,8 @@ class TooDeep(ShaderCase):
                 figures, error = self.render(*way)
                 self.assertEqual(figures["raysTooDeep"], 8 * 4 * 2, "the last ray of each sample")
                 self.assertIn(
-                    "warning[W2866]: 64 rays in 64 samples were deeper than 3 and saw nothing: give a larger `--depth`",
+                    "warning[W2866]: 64 rays in 64 samples were deeper than 3 and saw nothing: "
+                    "give a larger `--depth`",
                     error,
                 )
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")

@@ -108,7 +108,8 @@ class Objects(Case):
         self.scene(textures={"t0": {"class": "Layered"}})
         error = self.run_rtslc("render", "scene.json", "-o", "x.exr", status=1)[1]
         self.assertIn(
-            "`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`, or a variable of this name in ",
+            "`t0` refers to nothing: set member `noise` of class `Layered`, a `Noise`, or a "
+            "variable of this name in ",
             error,
         )
         self.scene(textures={"t0": {"class": "Layered", "noise": None}})

@@ -739,7 +739,8 @@ class Paths(PathCase):
         self.assert_message(
             self.diagnose("render", "scene.json", "-o", "a.exr", "--set", "render.engine=bdpt"),
             "E0808",
-            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `volume`, `occlusion`",
+            "there is no engine `bdpt`; there are `classic`, `programs`, `path`, `volume`, "
+            "`occlusion`",
         )
 
     def test_the_camera_of_an_authors_generate(self):

@@ -177,7 +177,8 @@ class Preview(Case):
     def test_materials_that_only_sample_are_shown_by_the_path_tracer(self):
         self.write(
             "a.rtsl",
-            "class Mirror : rt_Material {\n  void sampleBSDF() {\n    rt_LightDirection = reflect(rt_RayDirection, rt_ShadingNormal);\n"
+            "class Mirror : rt_Material {\n  void sampleBSDF() {\n"
+            "    rt_LightDirection = reflect(rt_RayDirection, rt_ShadingNormal);\n"
             "    rt_BSDFValue = color(0.9);\n    rt_PDF = -1.0;\n  }\n};\n",
         )
         self.render("a.rtsl")
@@ -185,7 +186,8 @@ class Preview(Case):
         self.same("a.exr", "path.exr")
         self.write(
             "b.rtsl",
-            "class Glow : rt_Material { void emission() { rt_EmissionColor = color(1.0, 0.5, 0.2); } };\n",
+            "class Glow : rt_Material { void emission() { rt_EmissionColor = color(1.0, 0.5, 0.2); "
+            "} };\n",
         )
         self.render("b.rtsl", output="b.exr")
         self.differ("a.exr", "b.exr", "0.01")
@@ -193,25 +195,29 @@ class Preview(Case):
     def test_a_ray_generation_has_its_own_engine(self):
         self.write(
             "a.rtsl",
-            "class Flat : rt_RayGeneration { void generate() { rt_SampleColor = color(0.25) + 0.0 * trace(rt_RayOrigin, rt_RayDirection); } };\n",
+            "class Flat : rt_RayGeneration { void generate() { rt_SampleColor = color(0.25) + 0.0 "
+            "* trace(rt_RayOrigin, rt_RayDirection); } };\n",
         )
         self.render("a.rtsl")
         self.write_exr("flat.exr", 32, 24, 0.25)
         self.run_rtslc("compare", "flat.exr", "a.exr")
 
     def test_members_that_must_be_set(self):
-        """References are to objects of the library, or of the file; numbers are 0, with a warning."""
+        """References are to objects of the library or the file; numbers are 0, with a warning."""
         self.write(
             "a.rtsl",
-            "class Tinted : rt_Material {\n  public rt_Texture tint;\n  public rt_Material below;\n  public float share;\n  public float weights[2];\n  public mat2 turn;\n"
+            "class Tinted : rt_Material {\n  public rt_Texture tint;\n  public rt_Material below;\n"
+            "  public float share;\n  public float weights[2];\n  public mat2 turn;\n"
             "  public optional rt_Texture none;\n"
-            "  void shade() { rt_SampleColor = none ? color(0.0) : (0.5 + share + weights[1] + turn[1].x) * tint.lookup(); }\n};\n",
+            "  void shade() { rt_SampleColor = none ? color(0.0) : (0.5 + share + weights[1] + "
+            "turn[1].x) * tint.lookup(); }\n};\n",
         )
         error = self.render("a.rtsl")
         for member, line in (("share", 4), ("weights", 5), ("turn", 6)):
             self.assertRegex(
                 error,
-                rf"a.rtsl:{line}:\d+: warning\[W2800\]: member `{member}` of `Tinted` has no default: here it is 0",
+                rf"a.rtsl:{line}:\d+: warning\[W2800\]: member `{member}` of `Tinted` has no "
+                r"default: here it is 0",
             )
         self.render(
             "a.rtsl",
@@ -228,7 +234,8 @@ class Preview(Case):
         self.render(LIBRARY / "std/materials/BumpMap.rtsl", "-Werror")  # a Pattern and a Scatterer
         self.write(
             "b.rtsl",
-            "class Onion : rt_Material { public Onion inner; void shade() { rt_SampleColor = color(0.5); } };\n",
+            "class Onion : rt_Material { public Onion inner; void shade() { rt_SampleColor = "
+            "color(0.5); } };\n",
         )
         self.assert_message(
             [self.refused("b.rtsl")],
@@ -239,7 +246,8 @@ class Preview(Case):
         )
         self.write(
             "c.rtsl",
-            "class Way : rt_Material { public rt_Light lamp; void shade() { rt_SampleColor = color(0.5); } };\n",
+            "class Way : rt_Material { public rt_Light lamp; void shade() { rt_SampleColor = "
+            "color(0.5); } };\n",
         )
         self.assert_message([self.refused("c.rtsl")], "E0815", "its member `lamp`, a `rt_Light`")
 
@@ -332,7 +340,8 @@ class Preview(Case):
         # replaces.
         self.write(
             "a.rtsl",
-            "import std.cameras;\nclass Close : ViewCamera { void generateRay() { rt_RayOrigin = position; "
+            "import std.cameras;\nclass Close : ViewCamera { void generateRay() { rt_RayOrigin = "
+            "position; "
             "rt_RayDirection = toWorld(vec3(0.1 * pictureCoord(), 1.0)); } };\n",
         )
         self.render("a.rtsl", "-Werror")
@@ -346,7 +355,8 @@ class Preview(Case):
             self.render("a.rtsl", "--class", name, "-Werror")
         self.write(
             "b.rtsl",
-            "import std.materials;\nclass Checker : Lambert { color diffuseColor() { return color(0.2); } };\n",
+            "import std.materials;\nclass Checker : Lambert { color diffuseColor() { return "
+            "color(0.2); } };\n",
         )
         self.render("b.rtsl", "-Werror")
 

@@ -162,7 +162,8 @@ class Stack(Case):
         )
         self.assertRegex(
             error,
-            r"E1001\]: the rays of one sample take (38|39)\d\d\.\d MiB of stack, and there is not enough memory: "
+            r"E1001\]: the rays of one sample take (38|39)\d\d\.\d MiB of stack, and there is not "
+            r"enough memory: "
             "reduce the depth limit or the local variables of shaders",
         )
         self.assertNotIn("a.exr", self.files())

@@ -139,7 +139,10 @@ class State(Case):
 
     def test_states_are_printed(self):
         self.write("shaders.rtsl", SHADERS)
-        mirror = "class Mirror : Coat { void shade() { rt_SampleColor = trace(rt_HitPoint, rt_GeometricNormal) + twice(); } };"
+        mirror = (
+            "class Mirror : Coat { void shade() {"
+            " rt_SampleColor = trace(rt_HitPoint, rt_GeometricNormal) + twice(); } };"
+        )
         self.write("mirror.rtsl", 'import "shaders.rtsl";\n' + mirror)
         out, _ = self.run_rtslc("compile", "mirror.rtsl", "--emit=cpp", "--trace=split")
         self.assertIn("enum class Step", out)

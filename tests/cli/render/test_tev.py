@@ -1,4 +1,4 @@
-"""rtslc render --tev: what a viewer is sent, and what is said if it is not there. A small server stands in for the viewer."""
+"""rtslc render --tev: what it sends to a viewer, here a small server, and what it reports."""
 
 import socket
 import struct
@@ -12,7 +12,8 @@ CREATE, UPDATE = 4, 3
 
 
 class Viewer:
-    """Takes one connection, and keeps the pictures that messages make. With `most`, hangs up after so many bytes."""
+    """Takes one connection, and keeps the pictures that its messages make. With `most`, hangs up
+    after that many bytes."""
 
     def __init__(self, most=None):
         self.most = most

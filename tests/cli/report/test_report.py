@@ -69,7 +69,10 @@ class Report(Case):
 
     # Of 24x16 pixels with some 32 000 samples each in the reference an eighth meets one that is ten
     # thousand times as bright.
-    HOT = "class Hot : rt_Miss { void miss() { rt_SampleColor = color(rand() < 0.00004 ? 1000000.0 : 0.05); } };"
+    HOT = (
+        "class Hot : rt_Miss { void miss() {"
+        " rt_SampleColor = color(rand() < 0.00004 ? 1000000.0 : 0.05); } };"
+    )
 
     def test_rare_hot_samples_have_no_interval(self):
         self.glass_scene()
@@ -105,7 +108,8 @@ class Report(Case):
         self.glass_scene()
         self.write(
             "bright.rtsl",
-            "class Bright : rt_Miss { void miss() { rt_SampleColor = color(300.0 * (0.1 + rt_RayDirection.y * rt_RayDirection.y)); } };",
+            "class Bright : rt_Miss { void miss() { rt_SampleColor = color(300.0 * (0.1 + "
+            "rt_RayDirection.y * rt_RayDirection.y)); } };",
         )
         scene = json.loads((self.folder / "scene.json").read_text())
         scene["import"] = (

@@ -126,8 +126,10 @@ class OutputBuffers(Case):
             f[i] = 0.1 + float(i); n[i] = -3 + int(i); u[i] = 4000000000u + i; b[i] = i == 1u;
             v[i] = vec3(1.5, float(i), -0.0); m[i] = mat2(1.0, 2.0, 3.0, float(i)); c[i] = color(0.25, 0.5, float(i));
             pair[i][0] = 7.0; pair[i][1] = float(i); bv[i] = bvec2(i == 0u, true); deep[1][i][0] = int(i) + 1;""",
-            "public out float f[]; public out int n[]; public out uint u[]; public out bool b[]; public out vec3 v[]; public out mat2 m[]; "
-            "public out color c[]; public out float pair[][2]; public out bvec2 bv[]; public inout int deep[][][];",
+            "public out float f[]; public out int n[]; public out uint u[]; public out bool b[]; "
+            "public out vec3 v[]; public out mat2 m[]; "
+            "public out color c[]; public out float pair[][2]; public out bvec2 bv[]; public inout "
+            "int deep[][][];",
             size=(3, 1),
             values='{"deep": {"size": [2, 3, 1]}}',
         )
@@ -146,7 +148,8 @@ class OutputBuffers(Case):
 
     def test_indices_are_clamped_and_empty_buffers_ignored(self):
         found = self.one(
-            "int i = -5 - int(rt_LaunchIndex.x); a[i] = 1; a[100] = 2; none[0] = 3; none[1] += none[0] + 1; atomicAdd(none[0], 4);"
+            "int i = -5 - int(rt_LaunchIndex.x); a[i] = 1; a[100] = 2; none[0] = 3; none[1] += "
+            "none[0] + 1; atomicAdd(none[0], 4);"
             "a[1] = none.length() + none[7] + atomicAdd(none[3], 1);",
             "public inout int a[]; public inout int none[];",
             values='{"a": [9, 9, 9], "none": []}',
@@ -348,7 +351,8 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
 
     def test_a_launch_of_one_dimension_may_be_long(self):
         found = self.one(
-            "if (rt_LaunchIndex.x % 50000u == 0u) marks[rt_LaunchIndex.x / 50000u] = rt_LaunchIndex.x + rt_LaunchSize.x;",
+            "if (rt_LaunchIndex.x % 50000u == 0u) marks[rt_LaunchIndex.x / 50000u] = "
+            "rt_LaunchIndex.x + rt_LaunchSize.x;",
             "public out uint marks[];",
             values='{"marks": {"size": [4]}}',
             render={"engine": "programs", "size": [200000]},
@@ -425,7 +429,8 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.write(
             "more.rtsl",
             "class Two : Probe { public inout int again[]; };"
-            "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { cube[0][0][0] = 1.0; } };",
+            "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { "
+            "cube[0][0][0] = 1.0; } };",
         )
         more = {"import": ["probe.rtsl", "more.rtsl"]}
         refused(

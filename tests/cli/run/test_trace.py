@@ -175,12 +175,14 @@ class Trace(Case):
         rows = "".join(" ".join(map(repr, (*line[3:], *line[:3]))) + "\n" for line in lines)
         self.write(
             "points.ply",
-            f"ply\nformat ascii 1.0\nelement vertex 200\n{header}element face 1\nproperty list uchar int vertex_indices\n"
+            f"ply\nformat ascii 1.0\nelement vertex 200\n{header}element face 1\n"
+            "property list uchar int vertex_indices\n"
             f"end_header\n{rows}3 0 1 2\n",
         )
         self.write(
             "rays.ply",
-            f"ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nelement ray 200\n{header}end_header\n{rows}",
+            "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nelement ray 200\n"
+            f"{header}end_header\n{rows}",
         )
         in_order = "x,y,z,nx,ny,nz"
         for options in (
