@@ -3,6 +3,7 @@
 find_package(fmt REQUIRED)
 find_package(glm REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(TBB REQUIRED)
 find_package(Threads REQUIRED)
 
 # Debian's MLIR accepts only its exact version, so none is required here. Its targets carry the

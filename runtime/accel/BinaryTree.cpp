@@ -1,6 +1,7 @@
 #include "runtime/accel/BinaryTree.h"
 
 #include "runtime/device/traverse/Bvh.h"
+#include "runtime/device/trees/Bounds.h"
 #include "support/WorkerThreads.h"
 
 #include <algorithm>
@@ -8,6 +9,10 @@
 #include <limits>
 
 namespace rtsl::runtime {
+
+using device::build::emptyBox;
+using device::build::extend;
+using device::build::halfArea;
 
 namespace {
 
@@ -72,7 +77,7 @@ struct Bins {
   Bounds bounds[3][binCount];
   std::size_t counts[3][binCount] = {};
 
-  Bins() { std::fill_n(&bounds[0][0], 3 * binCount, emptyBounds()); }
+  Bins() { std::fill_n(&bounds[0][0], 3 * binCount, emptyBox()); }
   void add(const NumberedBox &box, const Centres &all, const float scale[3]) {
     for (int axis = 0; axis < 3; ++axis) {
       if (scale[axis] == 0)
@@ -114,14 +119,14 @@ Sum collectAll(Iterator begin, Iterator end, unsigned threads, Collect collect) 
 /// The cheapest of the divisions between two bins of an axis, if it is below that of `best`.
 void chooseBin(const Bins &bins, int axis, float rootArea, Split &best) {
   float costRight[binCount];
-  Bounds sweep = emptyBounds();
+  Bounds sweep = emptyBox();
   std::size_t count = 0;
   for (unsigned i = binCount; i-- > 1;) {
     extend(sweep, bins.bounds[axis][i]);
     count += bins.counts[axis][i];
     costRight[i] = count ? float(count) * halfArea(sweep) : std::numeric_limits<float>::infinity();
   }
-  sweep = emptyBounds();
+  sweep = emptyBox();
   count = 0;
   for (unsigned i = 1; i < binCount; ++i) {
     extend(sweep, bins.bounds[axis][i - 1]);
@@ -185,7 +190,7 @@ public:
       return index;
     }
     struct All : Bounds {
-      All() : Bounds(emptyBounds()) {}
+      All() : Bounds(emptyBox()) {}
       void add(const Bounds &box) { extend(*this, box); }
     };
     const Bounds all =

@@ -7,13 +7,11 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/scene/SceneData.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -44,26 +42,6 @@ BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads);
 /// the number of threads.
 inline std::size_t largestForOneThread(std::size_t boxes) {
   return std::max<std::size_t>(4096, boxes / 256);
-}
-
-/// Bounds of nothing, to be extended.
-inline Bounds emptyBounds() {
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  return {{inf, inf, inf}, {-inf, -inf, -inf}};
-}
-
-inline void extend(Bounds &bounds, const Bounds &by) {
-  for (int i = 0; i < 3; ++i) {
-    bounds.lower[i] = std::min(bounds.lower[i], by.lower[i]);
-    bounds.upper[i] = std::max(bounds.upper[i], by.upper[i]);
-  }
-}
-
-/// Half the area of the box's surface.
-inline float halfArea(const Bounds &bounds) {
-  const float x = bounds.upper[0] - bounds.lower[0], y = bounds.upper[1] - bounds.lower[1],
-              z = bounds.upper[2] - bounds.lower[2];
-  return x < 0 ? 0 : x * y + y * z + z * x;
 }
 
 } // namespace rtsl::runtime

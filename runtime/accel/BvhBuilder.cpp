@@ -1,13 +1,13 @@
 #include "runtime/accel/BvhBuilder.h"
 
 #include "runtime/accel/BinaryTree.h"
+#include "runtime/accel/HostBuildDevice.h"
+#include "runtime/accel/TreeItems.h"
 #include "runtime/accel/WideTree.h"
-#include "runtime/device/ray/Box.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "support/WorkerThreads.h"
 
 #include <algorithm>
-#include <map>
 
 namespace rtsl::runtime {
 
@@ -47,21 +47,86 @@ unsigned Bvh::depth() const {
   return deepest;
 }
 
-Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads) {
-  std::vector<NumberedBox> boxes;
+namespace {
+
+/// Calls work(i) for all i below count, on threads.
+template <typename Work>
+void forAll(unsigned threads, std::size_t count, Work work) {
+  constexpr std::size_t atOnce = 1 << 14;
+  forEachOnThreads(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
+    const std::size_t end = std::min(count, (part + 1) * atOnce);
+    for (std::size_t i = part * atOnce; i < end; ++i)
+      work(i);
+  });
+}
+
+/// A tree of so many boxes. `boxOf(i)` is called by several threads.
+template <typename BoxOf>
+WideTree goodTree(std::size_t count, unsigned threads, BoxOf boxOf) {
+  std::vector<NumberedBox> boxes(count);
+  forAll(threads, count,
+         [&](std::size_t i) { boxes[i] = {boxOf(std::uint32_t(i)), std::uint32_t(i)}; });
+  return widen(buildBinaryTree(std::move(boxes), threads), threads);
+}
+
+/// Copies an array of a device of this process, and frees it.
+template <typename Element>
+std::vector<Element> take(HostBuildDevice &device, BuildDevice::Address address,
+                          std::size_t count) {
+  const auto *const elements = reinterpret_cast<const Element *>(address);
+  std::vector<Element> taken(elements, elements + count);
+  device.release(address);
+  return taken;
+}
+
+/// The tree of one thing.
+Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind) {
+  Bvh bvh;
+  if (kind == TreeKind::Fast && items.count != 0) {
+    HostBuildDevice device(threads);
+    const ClusterTree tree = buildClusterTree(device, items);
+    bvh.nodes = take<RtslBvhNode>(device, tree.nodes, tree.nodeCount);
+    bvh.items = take<RtslTreeItem>(device, tree.items, tree.itemCount);
+    bvh.cost = tree.cost;
+    return bvh;
+  }
+  WideTree tree = goodTree(items.count, threads,
+                           [&](std::uint32_t i) { return device::build::boxOfItem(items, i); });
+  bvh.nodes = std::move(tree.nodes);
+  bvh.cost = tree.cost;
+  bvh.items.resize(items.count);
+  forAll(threads, items.count,
+         [&](std::size_t i) { bvh.items[i] = device::build::treeItem(items, tree.contents[i]); });
+  return bvh;
+}
+
+/// The tree of boxes by joining neighbours.
+WideTree fastTree(const std::vector<BvhItem> &items, unsigned threads) {
+  std::vector<RtslBox> boxes;
   boxes.reserve(items.size());
   for (const BvhItem &item : items)
-    boxes.push_back({item.bounds, std::uint32_t(boxes.size())});
-  WideTree tree = widen(buildBinaryTree(std::move(boxes), threads), threads);
+    boxes.push_back(item.bounds);
+  HostBuildDevice device(threads);
+  const ClusterTree tree =
+      buildClusterTree(device, {nullptr, nullptr, 0, std::uint32_t(items.size())}, boxes.data());
+  return {take<RtslBvhNode>(device, tree.nodes, tree.nodeCount),
+          take<std::uint32_t>(device, tree.contents, tree.itemCount), tree.cost};
+}
+
+} // namespace
+
+Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads, TreeKind kind) {
+  WideTree tree = kind == TreeKind::Fast && !items.empty()
+                      ? fastTree(items, threads)
+                      : goodTree(items.size(), threads, [&](std::uint32_t i) -> const Bounds & {
+                          return items[i].bounds;
+                        });
   Bvh bvh;
   bvh.nodes = std::move(tree.nodes);
+  bvh.cost = tree.cost;
   bvh.items.resize(items.size());
-  constexpr std::size_t atOnce = 1 << 14;
-  forEachOnThreads(threads, (items.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
-    const std::size_t end = std::min(items.size(), (part + 1) * atOnce);
-    for (std::size_t i = part * atOnce; i < end; ++i)
-      bvh.items[i] = treeItem(items[tree.contents[i]]);
-  });
+  forAll(threads, items.size(),
+         [&](std::size_t i) { bvh.items[i] = treeItem(items[tree.contents[i]]); });
   return bvh;
 }
 
@@ -78,54 +143,16 @@ void Bvh::addMeshTree(std::size_t number, const Bvh &tree) {
   items.insert(items.end(), tree.items.begin(), tree.items.end());
 }
 
-static void addTriangles(const RtslLaunch &launch, const RtslMesh &mesh, std::uint32_t instance,
-                         std::vector<BvhItem> &items) {
-  for (std::uint32_t t = 0; t < mesh.triangleCount; ++t) {
-    const Bounds bounds = boundsOf(device::boxOfTriangle(launch, mesh, t));
-    items.push_back({bounds, {instance, t}, device::moves(launch, mesh) ? nullptr : &mesh});
-  }
-}
-
-/// The primitives of an object with several.
-static void addPrimitives(const RtslLaunch &launch, const RtslInstance &instance,
-                          std::uint32_t number, std::vector<BvhItem> &items) {
-  for (std::uint32_t i = 0; i < instance.boxCount; ++i) {
-    const RtslBox box = device::enlarged(launch.boxes[instance.firstBox + i]);
-    items.push_back({boundsOf(box), {number, i}, nullptr});
-  }
-}
-
-/// The triangles of a mesh, or the primitives of an object with several, as items of instance
-/// `number`.
-static void addContents(const RtslLaunch &launch, const RtslInstance &instance,
-                        std::uint32_t number, std::vector<BvhItem> &items) {
-  if (instance.primitive == 0)
-    addTriangles(launch, launch.meshes[instance.mesh], number, items);
-  else
-    addPrimitives(launch, instance, number, items);
-}
-
-Bvh buildBvh(const Scene &scene, unsigned threads) {
-  RtslLaunch launch = scene.launch();
-  std::vector<BvhItem> items;
-  std::map<std::size_t, const RtslInstance *> withTree; // by number of the tree
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
-    const RtslInstance &instance = launch.instances[i];
-    const bool isOnePrimitive = instance.primitive != 0 && instance.boxCount == 0;
-    if (device::hasOwnSpace(launch, instance))
-      withTree.emplace(device::treeNumber(launch, instance), &instance);
-    if (isOnePrimitive || instance.transform != 0)
-      items.push_back({scene.instanceBounds(i), {i, 0}, nullptr});
-    else
-      addContents(launch, instance, i, items);
-  }
-  Bvh bvh = buildBvh(items, threads);
-  for (const auto &[number, instance] : withTree) {
-    std::vector<BvhItem> inside;
-    addContents(launch, *instance, RTSL_NO_HIT, inside);
-    bvh.addMeshTree(number, buildBvh(inside, threads));
-  }
+Bvh buildBvh(const RtslLaunch &launch, unsigned threads, TreeKind kind) {
+  const SceneTrees trees = treesOf(launch);
+  Bvh bvh = buildTree(trees.world.of(launch), threads, kind);
+  for (const auto &[number, items] : trees.ofMeshes)
+    bvh.addMeshTree(number, buildTree(items.of(launch), threads, kind));
   return bvh;
+}
+
+Bvh buildBvh(const Scene &scene, unsigned threads, TreeKind kind) {
+  return buildBvh(scene.launch(), threads, kind);
 }
 
 } // namespace rtsl::runtime

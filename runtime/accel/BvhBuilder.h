@@ -18,6 +18,7 @@ struct Bvh {
   // by mesh, then by object with several primitives: the root of its tree; empty if no instance has
   // a transform
   std::vector<std::uint32_t> meshTrees;
+  float cost = 0; // of the tree of the world (WideTree::cost)
 
   /// Installs the tree in a launch, which must not outlive it.
   void install(RtslLaunch &launch) const;
@@ -34,12 +35,18 @@ struct BvhItem {
   const RtslMesh *mesh = nullptr; // of a triangle, which does not move
 };
 
-/// `threads` 0: one per core.
-Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads = 0);
+/// How trees are built.
+enum class TreeKind : std::uint8_t {
+  Good, // top down by the surface area heuristic (BinaryTree.h): the fewest nodes for a ray
+  Fast, // by joining neighbours (ClusterTree.h), as on a GPU: built sooner
+};
 
-/// The tree of a scene: of triangles and RTSL primitives, and of instances with transforms of
-/// meshes and of objects with several primitives, each of which has another tree. Their items have
-/// no instance.
-Bvh buildBvh(const Scene &scene, unsigned threads = 0);
+/// `threads` 0: one per core.
+Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads = 0,
+             TreeKind kind = TreeKind::Good);
+
+/// The trees of a scene whose pointers are valid here (TreeItems.h).
+Bvh buildBvh(const RtslLaunch &launch, unsigned threads = 0, TreeKind kind = TreeKind::Good);
+Bvh buildBvh(const Scene &scene, unsigned threads = 0, TreeKind kind = TreeKind::Good);
 
 } // namespace rtsl::runtime

@@ -1,9 +1,8 @@
 //===- WideTree.h - the tree of the device traversal ----------------------===//
 //
-// A binary tree whose nodes are joined to nodes of up to eight children, for the least cost by the
-// surface area heuristic, by dynamic programming; and their boxes, rounded outwards to the grid of
-// their node (Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed
-// Wide BVHs", HPG 2017, sections 3 and 4).
+// A binary tree whose nodes are joined to nodes of up to eight children
+// (runtime/device/trees/Children.h); and their boxes, rounded outwards to the grid of their node
+// (runtime/device/trees/Grid.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -19,14 +18,12 @@ namespace rtsl::runtime {
 struct WideTree {
   std::vector<RtslBvhNode> nodes;      // the root first; there always is one
   std::vector<std::uint32_t> contents; // NumberedBox::number of the items
+  // By the surface area heuristic: the nodes and items that a ray is expected to be tested with, of
+  // the rays that enter the box of the root.
+  float cost = 0;
 };
 
 /// `threads` 0: one per core; the result does not depend on their number.
 WideTree widen(const BinaryTree &tree, unsigned threads);
-
-/// Sets the grid of a node for boxes within `all`.
-void setGrid(RtslBvhNode &node, const Bounds &all);
-/// Sets the box of the child in a slot, within those bounds.
-void setBox(RtslBvhNode &node, unsigned slot, const Bounds &box);
 
 } // namespace rtsl::runtime

@@ -64,7 +64,7 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
                                     isPoint ? "a single point" : "a line without width"),
                         info.place});
   }
-  return boundsOf(box);
+  return box;
 }
 
 } // namespace

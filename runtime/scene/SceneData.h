@@ -37,12 +37,7 @@ struct Placement {
 };
 
 /// A box. A side may be infinite.
-struct Bounds {
-  float lower[3], upper[3];
-};
-inline Bounds boundsOf(const RtslBox &box) {
-  return {{box.lower[0], box.lower[1], box.lower[2]}, {box.upper[0], box.upper[1], box.upper[2]}};
-}
+using Bounds = RtslBox;
 
 /// Normals or texture coordinates of a mesh, and whether the program reads them.
 struct MeshAttribute {

@@ -2,8 +2,8 @@
 #include "TraversalRays.h"
 
 #include "runtime/accel/BvhBuilder.h"
-#include "runtime/accel/WideTree.h"
 #include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/trees/Grid.h"
 #include "runtime/embree/HostScene.h"
 
 #include <gtest/gtest.h>
@@ -47,10 +47,10 @@ struct RandomNode {
   RtslBvhNode node{};
 
   explicit RandomNode(std::mt19937 &random) : all(randomBox(random)) {
-    setGrid(node, all);
+    device::build::setGrid(node, all);
     for (unsigned slot = 0; slot < 8; ++slot) {
       boxes[slot] = randomBox(random, &all);
-      setBox(node, slot, boxes[slot]);
+      device::build::setBox(node, slot, boxes[slot]);
       node.child[slot] = RTSL_LEAF(slot, 1);
     }
   }

@@ -1,0 +1,112 @@
+//===- Clusters.h - a binary tree by joining neighbours -------------------===//
+//
+// Parallel locally-ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering
+// for Bounding Volume Hierarchy Construction", 2018): in each round every cluster finds, among its
+// neighbours on the curve, the one with which its box would be the smallest, and those that find
+// each other become one. A round adds one level at most, so when no more rounds are left than
+// halving needs, clusters are joined in pairs.
+//
+// The functions are steps, as in Sort.h.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/trees/TreeBuild.h"
+
+namespace rtsl::device::build {
+
+/// How far along the curve clusters look for others.
+constexpr uint32_t searchRadius = 8;
+
+/// What a step knows of its round.
+struct Round {
+  uint32_t number;
+  uint32_t clusters;
+
+  uint32_t from() const { return number & 1; }
+  uint32_t to() const { return from() ^ 1; }
+  bool mustHalve() const {
+    uint32_t needed = 0; // rounds
+    while ((uint64_t(1) << needed) < clusters)
+      ++needed;
+    return number + needed >= mostRounds;
+  }
+};
+
+inline void makeLeaf(const TreeBuild &build, uint32_t i) {
+  build.boxes[i] = build.boxes[build.count + build.itemOf(i)];
+  build.clusters[0][i] = i;
+}
+
+/// Of equal ones, the neighbour whose number differs in lower bits: so that in a row of equal boxes
+/// all find each other in pairs. Some always do.
+inline void findNearest(const TreeBuild &build, uint32_t i, Round round) {
+  if (round.mustHalve()) {
+    build.nearest[i] = (i ^ 1) < round.clusters ? i ^ 1 : i;
+    return;
+  }
+  const uint32_t *const clusters = build.clustersOf(round.from());
+  const RtslBox box = build.boxes[clusters[i]];
+  const uint32_t first = i < searchRadius ? 0 : i - searchRadius;
+  const uint32_t last = i + searchRadius < round.clusters ? i + searchRadius : round.clusters - 1;
+  float least = infinity;
+  uint32_t nearest = i, difference = ~0u;
+  for (uint32_t other = first; other <= last; ++other) {
+    if (other == i)
+      continue;
+    RtslBox joined = build.boxes[clusters[other]];
+    extend(joined, box);
+    const float area = halfArea(joined);
+    const float size = area < infinity ? area : infinity; // not NaN
+    if (size < least || (size == least && (other ^ i) < difference)) {
+      least = size;
+      nearest = other;
+      difference = other ^ i;
+    }
+  }
+  build.nearest[i] = nearest;
+}
+
+inline bool isJoined(const TreeBuild &build, uint32_t i) {
+  return build.nearest[i] != i && build.nearest[build.nearest[i]] == i;
+}
+
+/// Which clusters are left: 1 in the lower half of the sum. The first of two that are joined makes
+/// a node: 1 in the upper half.
+inline void countCluster(const TreeBuild &build, uint32_t i) {
+  const bool isSecond = isJoined(build, i) && build.nearest[i] < i;
+  build.sums[i] = isSecond ? 0 : isJoined(build, i) ? uint64_t(1) << 32 | 1 : 1;
+}
+
+inline Costs costsOf(const TreeBuild &build, uint32_t node) {
+  return build.isItem(node) ? costsOfLeaf(halfArea(build.boxes[node]), 1)
+                            : build.costs[node - build.count];
+}
+
+inline void joinNodes(const TreeBuild &build, uint32_t node, uint32_t left, uint32_t right) {
+  RtslBox box = build.boxes[left];
+  extend(box, build.boxes[right]);
+  build.boxes[node] = box;
+  const uint32_t i = node - build.count;
+  build.children[i] = {left, right};
+  build.costs[i] =
+      choose(build.choices[i], halfArea(box), build.choice(left).items + build.choice(right).items,
+             costsOf(build, left), costsOf(build, right));
+}
+
+/// Each round with m clusters begins with n - m nodes that are no leaves.
+inline void moveCluster(const TreeBuild &build, uint32_t i, Round round) {
+  const uint32_t other = build.nearest[i];
+  const bool joins = isJoined(build, i);
+  if (joins && other < i)
+    return;
+  const uint32_t *const clusters = build.clustersOf(round.from());
+  uint32_t node = clusters[i];
+  if (joins) {
+    node = build.count + (build.count - round.clusters) + uint32_t(build.sums[i] >> 32);
+    joinNodes(build, node, clusters[i], clusters[other]);
+  }
+  build.clustersOf(round.to())[uint32_t(build.sums[i])] = node;
+}
+
+} // namespace rtsl::device::build

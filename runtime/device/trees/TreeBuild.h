@@ -1,0 +1,74 @@
+//===- TreeBuild.h - the memory of a build --------------------------------===//
+#pragma once
+
+#include "runtime/device/trees/Children.h"
+#include "runtime/device/trees/Items.h"
+#include "runtime/device/trees/Lanes.h"
+
+namespace rtsl::device::build {
+
+/// No path from the root of the binary tree is longer, and so none of the wide one.
+constexpr uint32_t mostRounds = 63;
+
+/// Of the place of an item on the curve.
+constexpr uint32_t bitsOfAxis = 20, sortPasses = 3 * bitsOfAxis / digitBits;
+static_assert(3 * bitsOfAxis % digitBits == 0);
+
+/// A node of the wide tree before it is written.
+struct WideNode {
+  uint32_t node; // of the binary tree
+  uint32_t firstNode, firstItem;
+  uint32_t slots; // slotsOf
+};
+
+struct Pair {
+  uint32_t left, right;
+};
+
+/// What all steps of a build share. n is the number of items, at least 1.
+struct TreeBuild {
+  Items items; // `launch` null: the boxes are given
+  uint32_t count;
+
+  // The binary tree. Its leaves, one for each item, are nodes 0 to n - 1, in the order of a curve;
+  // the others follow in the order of rounds, the root last. Before the leaves are made the box of
+  // item i is that of node n + i.
+  RtslBox *boxes;   // 2 n
+  Pair *children;   // of node n + i
+  Choice *choices;  // of node n + i
+  Costs *costs;     // of node n + i
+  RtslBox *centres; // ranges of the items' centres
+
+  uint64_t *keys[2]; // of the curve; before and after a pass of sorting
+  uint32_t *order[2];
+  uint64_t *sums;        // one for each element, or for each digit and tile
+  uint64_t *sumsOfTiles; // of `sums`; then that of all
+  uint32_t *clusters[2]; // their nodes, before and after a round
+  uint32_t *nearest;     // of each cluster, the one to be joined with
+
+  WideNode *wide;     // n; may be where the keys are
+  uint32_t *contents; // the items in the order of the wide tree
+  RtslBvhNode *nodes;
+  RtslTreeItem *treeItems;
+
+  // Not by an index, which would put a kernel's copy of this into memory.
+  uint64_t *keysOf(uint32_t which) const { return which ? keys[1] : keys[0]; }
+  uint32_t *orderOf(uint32_t which) const { return which ? order[1] : order[0]; }
+  uint32_t *clustersOf(uint32_t which) const { return which ? clusters[1] : clusters[0]; }
+
+  bool isItem(uint32_t node) const { return node < count; }
+  /// The item of such a node.
+  uint32_t itemOf(uint32_t node) const { return order[sortPasses & 1][node]; }
+
+  // For childrenOf:
+  Choice choice(uint32_t node) const {
+    Choice none;
+    __builtin_memset(&none, 0, sizeof none);
+    none.items = 1;
+    return isItem(node) ? none : choices[node - count];
+  }
+  uint32_t left(uint32_t node) const { return children[node - count].left; }
+  uint32_t right(uint32_t node) const { return children[node - count].right; }
+};
+
+} // namespace rtsl::device::build
