@@ -1,4 +1,6 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
+#include "runtime/scene/MeshValues.h"
+#include "scenefile/PrimitiveCount.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/files/MeshFiles.h"
 #include "scenefile/graph/VariablePlaces.h"
@@ -33,7 +35,8 @@ public:
                NamedBuffers &buffers)
       : description(description), program(*program), variables(description, *program),
         variablePlaces(description), buffers(buffers), scene(std::move(program)),
-        files(description), images(description, [this](const std::string &className) {
+        files(description, runtime::requestOf(this->program)),
+        images(description, [this](const std::string &className) {
           return readsOfImages(className, "levelStarts");
         }) {}
 
@@ -300,7 +303,7 @@ private:
     }
     case Kind::String:
       if (type && type->kind == ValueType::Kind::Int && type->bufferRank == 0)
-        return Value(numberOfRoot(json, what)).at(json.place());
+        return Value(numberOfRoot(json, description, what)).at(json.place());
       if (type && type->bufferRank != 0 && type->kind != ValueType::Kind::Reference)
         return namedBuffer(json, *type, what);
       refuseUnlessReference(json, type, what);
@@ -326,20 +329,6 @@ private:
       break;
     }
     throw Error(ErrorCode::WrongType, fmt::format("{} cannot be null", what), json.place());
-  }
-
-  /// A string that stands for an int is the name of a root.
-  double numberOfRoot(const JsonValue &json, const std::string &what) const {
-    const auto &roots = description.roots;
-    const auto found = std::find(roots.begin(), roots.end(), json.string);
-    if (found != roots.end())
-      return double(found - roots.begin());
-    Error error(ErrorCode::WrongType,
-                fmt::format("{} is an `int`, and no root is named `{}`", what, json.string),
-                json.place());
-    if (const std::string near = closestName(json.string, roots); !near.empty())
-      error.fix(near);
-    throw error;
   }
 
   static void refuseUnlessReference(const JsonValue &json, const ValueType *type,
@@ -439,38 +428,6 @@ private:
     return selections[selector - 1] + child;
   }
 
-  /// The number of primitives that the object holds.
-  std::uint32_t countOf(const GeometryDescription &geometry, RtslRef primitive) const {
-    if (!geometry.count)
-      return 1;
-    if (geometry.count->kind == Kind::Number)
-      return std::uint32_t(geometry.count->number);
-    const ClassInfo &classInfo = scene.classOf(primitive);
-    const MemberInfo *member = find(classInfo.members, geometry.count->string);
-    if (member && member->type.bufferRank == 1) {
-      RtslBuffer buffer;
-      std::memcpy(&buffer, scene.record(primitive) + member->offset, sizeof buffer);
-      if (buffer.size[0] != 0)
-        return buffer.size[0];
-      throw Error(
-          ErrorCode::OutOfRange,
-          fmt::format("the buffer `{}` is empty: there would be no primitives", member->name),
-          geometry.count->place());
-    }
-    Error error(ErrorCode::UnknownName,
-                fmt::format("`count` is a number or the name of a buffer, and `{}` has no member "
-                            "`{}` that is one",
-                            classInfo.name, geometry.count->string),
-                geometry.count->place());
-    std::vector<std::string> names;
-    for (const MemberInfo &one : classInfo.members)
-      if (one.type.bufferRank == 1)
-        names.push_back(one.name);
-    if (const std::string near = closestName(geometry.count->string, names); !near.empty())
-      error.fix(near);
-    throw error;
-  }
-
   /// Adds all instances of a geometry. Instances of a primitive share its object, unless they take
   /// different variables.
   void addGeometry(const GeometryDescription &geometry, std::size_t index) {
@@ -489,7 +446,7 @@ private:
         requireRoot(material, "rt_Material", "a material", geometry.material.shownName());
         if (geometry.primitive) {
           primitive = addOnce(*geometry.primitive, name);
-          number = countOf(geometry, primitive);
+          number = primitivesOf(geometry, scene, primitive);
         }
       }
       if (isFirst && !geometry.primitive)
@@ -537,14 +494,50 @@ private:
     if (found != meshes.end())
       return found->second;
     try {
-      return meshes[number] = scene.addMesh(files.take(number), geometry.name.text.empty()
-                                                                    ? geometry.mesh[0].path
-                                                                    : geometry.name.text);
+      runtime::Mesh mesh = files.take(number);
+      addAttributes(geometry, mesh);
+      return meshes[number] =
+                 scene.addMesh(std::move(mesh), geometry.name.text.empty() ? geometry.mesh[0].path
+                                                                           : geometry.name.text);
     } catch (Error &error) {
+      if (isOfAttribute(geometry, error))
+        throw;
       if (geometry.part.empty() || !error.place || error.place->line == 0) // else it is in the part
         error.place = placeOfMesh(geometry, error);
       throw;
     }
+  }
+
+  /// The attributes that the scene gives, if the program reads them.
+  void addAttributes(const GeometryDescription &geometry, runtime::Mesh &mesh) {
+    for (const AttributeDescription &attribute : geometry.attributes) {
+      const runtime::AttributeInfo *read = runtime::findAttribute(program, attribute.name);
+      if (!read) {
+        scene.addWarning(
+            {fmt::format("no material of the scene reads the attribute `{}`", attribute.name),
+             attribute.place});
+        continue;
+      }
+      if (!attribute.values)
+        continue;
+      const ValueType type = bufferOfAttribute(read->type);
+      const std::string what = fmt::format("the attribute `{}`", attribute.name);
+      runtime::NamedAttribute made = attributeFrom(
+          attribute, read->type, convert(*attribute.values, &type, what), program.colorComponents);
+      runtime::apply(geometry.transform, made);
+      try {
+        runtime::addInFileOrder(mesh, std::move(made), geometry.mesh[0].name.text);
+      } catch (Error &error) {
+        error.place = attribute.values->place();
+        throw;
+      }
+    }
+  }
+
+  /// Is the error about a value that the scene gives?
+  static bool isOfAttribute(const GeometryDescription &geometry, const Error &error) {
+    return error.place && error.place->line != 0 && !geometry.attributes.empty() &&
+           error.place->file == geometry.place.file;
   }
 
   template <typename Set>

@@ -2,6 +2,7 @@
 #include "scenefile/SceneFile.h"
 
 #include "scenefile/Models.h"
+#include "support/ClosestName.h"
 
 #include <fmt/format.h>
 
@@ -130,6 +131,20 @@ ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) 
                 "`constructor` is a list of arguments or an object of arguments by name",
                 object.constructor->place());
   return object;
+}
+
+double numberOfRoot(const JsonValue &json, const SceneDescription &description,
+                    const std::string &what) {
+  const auto &roots = description.roots;
+  const auto found = std::find(roots.begin(), roots.end(), json.string);
+  if (found != roots.end())
+    return double(found - roots.begin());
+  Error error(ErrorCode::WrongType,
+              fmt::format("{} is an `int`, and no root is named `{}`", what, json.string),
+              json.place());
+  if (const std::string near = closestName(json.string, roots); !near.empty())
+    error.fix(near);
+  throw error;
 }
 
 std::size_t launchCount(const SceneDescription &description) {

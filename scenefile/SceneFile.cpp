@@ -379,7 +379,7 @@ private:
     errors.attempt([&] {
       checkKeys(value,
                 {"name", "primitive", "mesh", "part", "material", "transform", "mask", "id",
-                 "count", "textureCoordinates", "backFaces", "variables"},
+                 "count", "textureCoordinates", "backFaces", "variables", "attributes"},
                 what);
     });
     GeometryDescription geometry;
@@ -401,6 +401,15 @@ private:
     errors.attempt([&] {
       if (const JsonValue *backFaces = value.find("backFaces"))
         readBackFaces(*backFaces, geometry);
+    });
+    errors.attempt([&] {
+      if (const JsonValue *attributes = value.find("attributes")) {
+        geometry.attributes = readAttributes(*attributes);
+        if (geometry.mesh.empty())
+          throw Error(ErrorCode::UnknownKey,
+                      "`attributes` are for a `mesh`: a primitive has scratch members",
+                      attributes->place());
+      }
     });
     return geometry;
   }

@@ -19,6 +19,7 @@
 
 #include "scenefile/files/BufferFiles.h"
 #include "scenefile/files/Images.h"
+#include "scenefile/files/MeshAttributes.h"
 
 #include <array>
 #include <cstdint>
@@ -116,6 +117,7 @@ struct GeometryDescription {
   std::string part; // of a glTF file, as "meshes.0.primitives.1"; empty: all meshes of the file
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
+  std::vector<AttributeDescription> attributes; // of a mesh
   ReferenceDescription material;
   runtime::Transform transform; // of the vertices of a mesh in `objects`, unless it moves
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
@@ -212,6 +214,11 @@ const ObjectDescription *findObject(const SceneDescription &description, const s
 bool isGiven(const ObjectDescription &object, const std::string &member);
 /// An object written in place of a reference. `what` begins messages. Throws MissingKey, WrongType.
 ObjectDescription objectInPlace(const JsonValue &json, const std::string &what);
+
+/// The number of the root that a string names where an `int` is needed. Throws WrongType. `what`
+/// begins messages.
+double numberOfRoot(const JsonValue &json, const SceneDescription &description,
+                    const std::string &what);
 
 /// How many launches the scene has: its passes, or one.
 std::size_t launchCount(const SceneDescription &description);

@@ -12,7 +12,8 @@ namespace {
 /// A GPU loads four words at once.
 constexpr unsigned tableAlignment = 16;
 
-constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances";
+constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances",
+                              meshAttributesName = "rtsl.mesh_attributes";
 
 void defineTable(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
                  llvm::ArrayRef<std::int32_t> words) {
@@ -54,6 +55,19 @@ void defineSceneTables(mlir::ModuleOp module) {
     defineFunction(builder, location, "rtsl_instances",
                    LLVM::LLVMPointerType::get(builder.getContext()),
                    [&] { return addressOf(builder, location, instancesName); });
+  }
+  if (const auto attributes = ir::attr::meshAttributes.of(module)) {
+    const auto count = static_cast<int32_t>(attributes.size() / 2);
+    defineFunction(builder, location, "rtsl_mesh_attribute_count", builder.getI32Type(), [&] {
+      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
+                                      builder.getI32IntegerAttr(count));
+    });
+    if (count != 0) {
+      defineTable(builder, location, meshAttributesName, attributes);
+      defineFunction(builder, location, "rtsl_mesh_attributes",
+                     LLVM::LLVMPointerType::get(builder.getContext()),
+                     [&] { return addressOf(builder, location, meshAttributesName); });
+    }
   }
   if (const auto listed = ir::attr::listed.of(module))
     defineFunction(builder, location, "rtsl_listed_instances", builder.getI32Type(), [&] {

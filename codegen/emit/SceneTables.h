@@ -13,8 +13,8 @@
 
 namespace rtsl::codegen {
 
-/// Adds a global variable for each table, and defines rtsl_instances and rtsl_listed_instances
-/// (runtime/device/ray/Abi.h), which otherwise read the launch.
+/// Adds a global variable for each table, and defines rtsl_instances, rtsl_listed_instances and
+/// rtsl_mesh_attributes (runtime/device/ray/Abi.h), which otherwise read the launch.
 void defineSceneTables(mlir::ModuleOp module);
 
 /// In a function of such a program, the address of the records; null if they are not constants.

@@ -1,6 +1,7 @@
 //===- Link.cpp - from classes to a program -------------------------------===//
 #include "codegen/link/Link.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Layout.h"
 
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
@@ -32,6 +33,17 @@ static llvm::StringSet<> membersRead(mlir::ModuleOp ir) {
   return names;
 }
 
+/// rtsl_mesh_attributes of the program: the offset and the number of words of each.
+static void defineMeshAttributes(linking::LinkContext &context) {
+  std::vector<std::int32_t> words;
+  for (const linking::MeshAttribute &attribute : context.meshAttributes) {
+    words.push_back(static_cast<std::int32_t>(attribute.offset));
+    words.push_back(static_cast<std::int32_t>(ir::sizeInBytes(attribute.irType) / 4));
+  }
+  ir::attr::meshAttributes.set(context.ir,
+                               mlir::Builder(context.ir.getContext()).getDenseI32ArrayAttr(words));
+}
+
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
           std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
           Findings *findings, FloatingPoint floatingPoint) {
@@ -53,6 +65,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::noteClasses(context);
   linking::dropUnreadOutputs(context);
   linking::placeAttributes(context);
+  defineMeshAttributes(context);
   linking::resolveRayTypes(context);
   linking::warnOfEndlessRays(context);
   if (diagnostics.hasErrors())
@@ -71,10 +84,12 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     info.needs = needsOfClasses[index];
     for (runtime::MemberInfo &member : info.members)
       member.isRead = membersOfProgram.contains(member.name);
+    info.attributes = linking::meshAttributesOf(context, info.name);
     if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);
     program.classes.push_back(std::move(info));
   }
+  program.meshAttributes = linking::describeMeshAttributes(context);
   program.engine = request.engine;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;

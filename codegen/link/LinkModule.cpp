@@ -57,10 +57,15 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
   ModuleFacts facts;
   facts.rayTypes = linking::rayTypesOf(context);
   facts.attributeWords = linking::attributeWordsOf(context);
+  for (const linking::MeshAttribute &attribute : context.meshAttributes)
+    facts.meshAttributes.push_back({attribute.name, attribute.type, attribute.offset});
   facts.needs = linking::findNeeds(context);
   const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context, facts.needs);
-  for (const auto &[index, linked] : llvm::enumerate(context.classes))
+  for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
     facts.needsOfClass[linked.info] = needs[index];
+    facts.meshAttributesOfClass[linked.info] =
+        linking::meshAttributesOf(context, linked.info->name);
+  }
   return facts;
 }
 

@@ -69,6 +69,21 @@ int rtslSetBackFaces(RtslScene *scene, int areHit);
 uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
                               const double *transform, uint32_t above);
 
+/* Sets an attribute of the next mesh that is added or loaded, which materials read as a scratch
+ * member of this name: `count` times as many floats as it has components, for each vertex, or with
+ * `ofFaces` for each face, in the order of the file. `space` is how a transform changes them. */
+typedef enum RtslAttributeSpace {
+  RTSL_NUMBERS, /* not at all */
+  RTSL_POINT,   /* 3 components */
+  RTSL_VECTOR,  /* 3 components */
+  RTSL_NORMAL,  /* 3 components */
+  RTSL_TANGENT  /* 4 components: a vector, and the side on which the bitangent is */
+} RtslAttributeSpace;
+int rtslMeshAttribute(RtslScene *scene, const char *name, uint32_t components, const float *values,
+                      size_t count, int ofFaces, RtslAttributeSpace space);
+/* The same with an integer for each face. */
+int rtslMeshAttributeInts(RtslScene *scene, const char *name, const int32_t *values, size_t count);
+
 /* Geometry that rays can hit: an instance of a primitive's object. */
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material);
 /* The same for an object that holds `count` primitives, numbered by rt_PrimitiveIndex. */

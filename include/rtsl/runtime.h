@@ -11,6 +11,7 @@
 #include "runtime/image/Image.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/Renderer.h"
+#include "runtime/scene/MeshValues.h"
 #include "runtime/scene/Scene.h"
 #include "support/Error.h"
 

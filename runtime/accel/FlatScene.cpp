@@ -60,6 +60,8 @@ FlatScene flatten(const Scene &scene) {
   flattener.addAt(offsetof(RtslLaunch, instances), launch.instances, launch.instanceCount);
   const std::uint64_t meshes =
       flattener.addAt(offsetof(RtslLaunch, meshes), launch.meshes, launch.meshCount);
+  flattener.addAt(offsetof(RtslLaunch, meshAttributes), launch.meshAttributes,
+                  launch.meshAttributeCount);
   flattener.addAt(offsetof(RtslLaunch, transforms), launch.transforms, launch.transformCount);
   const bool moves = launch.needs & RTSL_HAS_MOTION;
   flattener.addAt(offsetof(RtslLaunch, motions), launch.motions, moves ? launch.motionCount : 0);
@@ -85,6 +87,16 @@ FlatScene flatten(const Scene &scene) {
     flattener.addAt(place + offsetof(RtslMesh, uvs), mesh.uvs, 2 * vertices);
     flattener.addAt(place + offsetof(RtslMesh, indices), mesh.indices,
                     3 * std::size_t(mesh.triangleCount));
+    const std::uint64_t attributes =
+        flattener.addAt(place + offsetof(RtslMesh, attributes), mesh.attributes,
+                        mesh.attributes ? launch.meshAttributeCount : 0);
+    for (std::uint32_t j = 0; mesh.attributes && j < launch.meshAttributeCount; ++j) {
+      const RtslMeshValues &one = mesh.attributes[j];
+      flattener.addAt(attributes + j * sizeof(RtslMeshValues) + offsetof(RtslMeshValues, values),
+                      one.values,
+                      launch.meshAttributes[j].words *
+                          std::size_t(one.ofTriangles ? mesh.triangleCount : mesh.vertexCount));
+    }
   }
   static_assert(offsetof(RtslBuffer, addressHigh) == offsetof(RtslBuffer, addressLow) + 4);
   for (const Scene::BufferPlace &buffer : scene.buffers()) {

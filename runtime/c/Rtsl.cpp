@@ -16,9 +16,22 @@ struct RtslScene {
   runtime::Scene scene;
   std::vector<runtime::NamedValue> arguments, members; // of the next object
   runtime::Placement placement;                        // of the next instance
+  std::vector<runtime::NamedAttribute> attributes;     // of the next mesh
 
   /// The placement of the instance that is being added; the one after it has none.
   runtime::Placement takePlacement() { return std::exchange(placement, {}); }
+
+  runtime::Mesh loadMesh(const char *path) const {
+    runtime::MeshRequest request = runtime::requestOf(scene.program());
+    request.keepsOrder = !attributes.empty();
+    return runtime::loadMesh(path, request);
+  }
+
+  /// Gives a mesh the attributes that were set for it. `name` is for messages.
+  void giveAttributes(runtime::Mesh &mesh, const char *name) {
+    for (runtime::NamedAttribute &attribute : std::exchange(attributes, {}))
+      runtime::addInFileOrder(mesh, std::move(attribute), name);
+  }
 };
 
 namespace {
@@ -95,7 +108,7 @@ RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
       throw rtsl::Error(rtsl::ErrorCode::IncompleteScene, "there are no shaders");
-    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}, {}};
+    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}, {}, {}};
   });
 }
 
@@ -246,6 +259,30 @@ uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t ch
   });
 }
 
+int rtslMeshAttribute(RtslScene *scene, const char *name, uint32_t components, const float *values,
+                      size_t count, int ofFaces, RtslAttributeSpace space) {
+  return guarded(0, [&] {
+    runtime::NamedAttribute attribute =
+        runtime::floatAttribute(name, components, {values, values + count * components});
+    attribute.ofTriangles = ofFaces != 0;
+    attribute.space = static_cast<runtime::NamedAttribute::Space>(space);
+    scene->attributes.push_back(std::move(attribute));
+    return 1;
+  });
+}
+
+int rtslMeshAttributeInts(RtslScene *scene, const char *name, const int32_t *values, size_t count) {
+  return guarded(0, [&] {
+    runtime::NamedAttribute attribute;
+    attribute.name = name;
+    attribute.kind = runtime::NamedAttribute::Kind::Int;
+    attribute.ofTriangles = true;
+    attribute.words.assign(values, values + count);
+    scene->attributes.push_back(std::move(attribute));
+    return 1;
+  });
+}
+
 int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject material) {
   return rtslSceneAddPrimitives(scene, primitive, 1, material);
 }
@@ -261,7 +298,8 @@ int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t coun
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
                          RtslObject material) {
   return guarded(0, [&] {
-    runtime::Mesh mesh = runtime::loadMesh(path);
+    runtime::Mesh mesh = scene->loadMesh(path);
+    scene->giveAttributes(mesh, path);
     if (transform)
       mesh.apply(transformOf(transform));
     scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material,
@@ -272,7 +310,9 @@ int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *trans
 
 int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
   return guarded<int32_t>(-1, [&] {
-    return static_cast<int32_t>(scene->scene.addMesh(runtime::loadMesh(path), path));
+    runtime::Mesh mesh = scene->loadMesh(path);
+    scene->giveAttributes(mesh, path);
+    return static_cast<int32_t>(scene->scene.addMesh(std::move(mesh), path));
   });
 }
 
@@ -290,6 +330,8 @@ int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t verte
     runtime::Mesh mesh;
     mesh.positions.assign(positions, positions + 3 * vertexCount);
     mesh.indices.assign(indices, indices + 3 * triangleCount);
+    mesh.order = {true, vertexCount, triangleCount, {}, {}};
+    scene->giveAttributes(mesh, "the mesh");
     scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh)), material,
                                  scene->takePlacement());
     return 1;

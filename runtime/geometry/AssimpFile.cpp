@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -14,9 +15,70 @@ namespace rtsl::runtime {
 
 namespace {
 
+/// Whether a mesh of the file has an attribute: `tangent`, `uv1`, `color`, `color1`.
+struct Source {
+  std::string name;
+  std::uint32_t components;
+  unsigned set; // of texture coordinates or colors
+
+  bool isIn(const aiMesh &part) const {
+    return name == "tangent" ? part.HasTangentsAndBitangents()
+           : name[0] == 'u'  ? part.HasTextureCoords(set)
+                             : part.HasVertexColors(set);
+  }
+
+  /// The value of a vertex.
+  std::array<float, 4> at(const aiMesh &part, std::size_t vertex) const {
+    if (name[0] == 'u') {
+      const aiVector3D &uv = part.mTextureCoords[set][vertex];
+      return {uv.x, uv.y, 0, 0};
+    }
+    if (name[0] == 'c') {
+      const aiColor4D &color = part.mColors[set][vertex];
+      return {color.r, color.g, color.b, color.a};
+    }
+    const aiVector3D &t = part.mTangents[vertex], &b = part.mBitangents[vertex];
+    const aiVector3D across = part.HasNormals() ? part.mNormals[vertex] ^ t : b;
+    return {t.x, t.y, t.z, across * b < 0 ? -1.0f : 1.0f};
+  }
+};
+
+/// The attributes of the file's meshes; the others of its names go to `others`.
+std::vector<Source> sourcesOf(const aiScene &scene, const MeshRequest &request,
+                              std::vector<std::string> &others) {
+  std::vector<Source> all{{"tangent", 4, 0}};
+  for (unsigned set = 0; set < AI_MAX_NUMBER_OF_COLOR_SETS; ++set)
+    all.push_back({set == 0 ? "color" : fmt::format("color{}", set), 4, set});
+  for (unsigned set = 1; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set)
+    all.push_back({fmt::format("uv{}", set), 2, set});
+  std::vector<Source> wanted;
+  for (Source &source : all) {
+    const bool isThere = std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                                     [&](const aiMesh *mesh) { return source.isIn(*mesh); });
+    if (isThere && request.wants(source.name))
+      wanted.push_back(std::move(source));
+    else if (isThere)
+      others.push_back(source.name);
+  }
+  return wanted;
+}
+
+void addAttributes(Mesh &mesh, const aiMesh &part, const std::vector<Source> &sources) {
+  for (const Source &source : sources) {
+    std::vector<float> numbers(source.components * std::size_t(part.mNumVertices), 0.0f);
+    for (std::size_t i = 0; source.isIn(part) && i < part.mNumVertices; ++i)
+      std::copy_n(source.at(part, i).begin(), source.components, &numbers[source.components * i]);
+    NamedAttribute attribute = floatAttribute(source.name, source.components, numbers);
+    attribute.isRgb = source.name[0] == 'c';
+    if (source.name == "tangent")
+      attribute.space = NamedAttribute::Space::Tangent;
+    mesh.attributes.push_back(std::move(attribute));
+  }
+}
+
 /// Appends one of the file's meshes, transformed by its node.
 void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool normals, bool uvs,
-            const std::string &path) {
+            const std::vector<Source> &sources, const std::string &path) {
   Mesh mesh;
   std::size_t vertices = part.mNumVertices;
   for (std::size_t i = 0; i < vertices; ++i)
@@ -42,6 +104,7 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
   }
   if (mesh.indices.empty())
     return;
+  addAttributes(mesh, part, sources);
   validateMesh(mesh, path); // before indices are offset and coordinates transformed
   mesh.apply(transform);
   std::size_t offset = whole.vertexCount();
@@ -60,6 +123,11 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
   join(whole.normals, mesh.normals);
   join(whole.uvs, mesh.uvs);
   join(whole.indices, mesh.indices);
+  if (whole.attributes.empty())
+    whole.attributes = std::move(mesh.attributes);
+  else
+    for (std::size_t i = 0; i < whole.attributes.size(); ++i)
+      join(whole.attributes[i].words, mesh.attributes[i].words);
 }
 
 Transform transformOf(const aiMatrix4x4 &m) {
@@ -75,7 +143,7 @@ bool isReadByAssimp(const std::string &extension) {
   return Assimp::Importer().IsExtensionSupported(extension);
 }
 
-Mesh readByAssimp(const std::string &path) {
+Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
   Assimp::Importer importer;
   const aiScene *scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
   if (!scene || !scene->mRootNode) {
@@ -97,13 +165,14 @@ Mesh readByAssimp(const std::string &path) {
     uvs |= scene->mMeshes[i]->HasTextureCoords(0);
   }
   Mesh whole;
+  const std::vector<Source> sources = sourcesOf(*scene, request, whole.otherAttributes);
   std::vector<std::pair<const aiNode *, Transform>> open{{scene->mRootNode, Transform()}};
   while (!open.empty()) {
     auto [node, above] = open.back();
     open.pop_back();
     Transform transform = transformOf(node->mTransformation).then(above);
     for (unsigned i = 0; i < node->mNumMeshes; ++i)
-      append(whole, *scene->mMeshes[node->mMeshes[i]], transform, normals, uvs, path);
+      append(whole, *scene->mMeshes[node->mMeshes[i]], transform, normals, uvs, sources, path);
     for (unsigned i = node->mNumChildren; i-- > 0;)
       open.emplace_back(node->mChildren[i], transform);
   }

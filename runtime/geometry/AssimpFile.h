@@ -10,7 +10,9 @@ namespace rtsl::runtime {
 /// Does assimp have a reader for files with this extension, such as ".glb"?
 bool isReadByAssimp(const std::string &extension);
 
-/// loadMesh for a file that can be read. Throws BadMesh, OutOfMemory.
-Mesh readByAssimp(const std::string &path);
+/// loadMesh for a file that can be read. Its attributes are `color`, `color1` and so on, `uv1` and
+/// so on, and `tangent`, of those meshes of the file that have them; zeros in the others.
+/// Throws BadMesh, OutOfMemory.
+Mesh readByAssimp(const std::string &path, const MeshRequest &request = {});
 
 } // namespace rtsl::runtime

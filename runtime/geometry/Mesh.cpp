@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace rtsl::runtime {
 
@@ -14,15 +15,7 @@ void Mesh::apply(const Transform &transform) {
     for (int row = 0; row < 3; ++row)
       positions[i + row] = float(c[0][row] * x + c[1][row] * y + c[2][row] * z + c[3][row]);
   }
-  // The cofactors are the inverse transpose times the determinant; its sign keeps normals on the
-  // same side.
-  double sign = transform.determinant() < 0 ? -1 : 1;
-  double cofactors[3][3];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      cofactors[i][j] = sign * (c[i1][j1] * c[i2][j2] - c[i1][j2] * c[i2][j1]);
-    }
+  const auto cofactors = normalTransform(transform);
   for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
     double x = normals[i], y = normals[i + 1], z = normals[i + 2], n[3];
     for (int row = 0; row < 3; ++row)
@@ -31,7 +24,9 @@ void Mesh::apply(const Transform &transform) {
     for (int row = 0; row < 3; ++row)
       normals[i + row] = length > 0 ? float(n[row] / length) : 0.0f;
   }
-  if (sign < 0)
+  for (NamedAttribute &attribute : attributes)
+    runtime::apply(transform, attribute);
+  if (transform.determinant() < 0)
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3)
       std::swap(indices[i + 1], indices[i + 2]);
 }
@@ -41,11 +36,78 @@ namespace {
 /// Products of three coordinates, and Embree's arithmetic, stay well within the range of a float.
 constexpr float largestCoordinate = 1e18f;
 
+constexpr std::uint32_t mostAttributeComponents = 16; // of a color
+constexpr auto FloatKind = NamedAttribute::Kind::Float;
+
 [[noreturn]] void throwBad(const std::string &name, const std::string &what) {
   throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` {}", name, what), Place{name});
 }
 
+void validateAttribute(const Mesh &mesh, const NamedAttribute &attribute, const std::string &name) {
+  const char *what = attribute.ofTriangles ? "triangles" : "vertices";
+  const std::size_t count = attribute.ofTriangles ? mesh.triangleCount() : mesh.vertexCount();
+  if (attribute.components < 1 || attribute.components > mostAttributeComponents)
+    throwBad(name, fmt::format("has an attribute `{}` of {} numbers; at most {} are possible",
+                               attribute.name, attribute.components, mostAttributeComponents));
+  if (attribute.words.size() != attribute.components * count)
+    throwBad(name, fmt::format("has {} numbers of the attribute `{}` for {} {} with {} each",
+                               attribute.words.size(), attribute.name, count, what,
+                               attribute.components));
+  if (const std::uint32_t needed = componentsOf(attribute.space);
+      needed != 0 && (attribute.components != needed || attribute.kind != FloatKind))
+    throwBad(name,
+             fmt::format("has an attribute `{}` of {} numbers: a {} has {} floats", attribute.name,
+                         attribute.components, nameOf(attribute.space), needed));
+  if (attribute.kind != FloatKind) {
+    if (!attribute.ofTriangles)
+      throwBad(name, fmt::format("has an attribute `{}` of integers for each vertex: numbers of "
+                                 "vertices are interpolated, so integers are for each triangle",
+                                 attribute.name));
+    return;
+  }
+  for (std::size_t i = 0; i < attribute.words.size(); ++i) {
+    float number;
+    std::memcpy(&number, &attribute.words[i], sizeof number);
+    if (!std::isfinite(number))
+      throwBad(name, fmt::format("has an attribute `{}` that is not finite at {} {}",
+                                 attribute.name, attribute.ofTriangles ? "triangle" : "vertex",
+                                 i / attribute.components));
+  }
+}
+
 } // namespace
+
+void addInFileOrder(Mesh &mesh, NamedAttribute attribute, const std::string &file) {
+  if (!mesh.order.isKnown)
+    throw Error(ErrorCode::NotSupported,
+                fmt::format("the order of the vertices of `{}` is not known: numbers of them can "
+                            "be given for OBJ and PLY files and for a `part` of a glTF file",
+                            file));
+  if (attribute.components < 1 || attribute.components > mostAttributeComponents)
+    throwBad(file, fmt::format("has an attribute `{}` of {} numbers; at most {} are possible",
+                               attribute.name, attribute.components, mostAttributeComponents));
+  const std::size_t given = attribute.words.size() / attribute.components;
+  const std::size_t count = attribute.ofTriangles ? mesh.order.faceCount : mesh.order.vertexCount;
+  if (given != count)
+    throw Error(ErrorCode::BadMesh,
+                fmt::format("the attribute `{}` has {} values, and `{}` has {} {}", attribute.name,
+                            given, file, count, attribute.ofTriangles ? "faces" : "vertices"));
+  const auto &places = attribute.ofTriangles ? mesh.order.faces : mesh.order.vertices;
+  if (!places.empty()) {
+    std::vector<std::uint32_t> words;
+    words.reserve(attribute.components * places.size());
+    for (const std::size_t place : places)
+      words.insert(words.end(), &attribute.words[attribute.components * place],
+                   &attribute.words[attribute.components * place] + attribute.components);
+    attribute.words = std::move(words);
+  }
+  const auto known = std::find_if(mesh.attributes.begin(), mesh.attributes.end(),
+                                  [&](const auto &one) { return one.name == attribute.name; });
+  if (known != mesh.attributes.end())
+    *known = std::move(attribute);
+  else
+    mesh.attributes.push_back(std::move(attribute));
+}
 
 Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
                 const std::vector<std::string> &names) {
@@ -111,6 +173,8 @@ void validateMesh(const Mesh &mesh, const std::string &name) {
     if (!std::isfinite(mesh.uvs[i]))
       throwBad(name,
                fmt::format("has a texture coordinate that is not finite at vertex {}", i / 2));
+  for (const NamedAttribute &attribute : mesh.attributes)
+    validateAttribute(mesh, attribute, name);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
     if (mesh.indices[i] >= vertices)
       throwBad(name, fmt::format("has an index out of range: triangle {} uses vertex {} of {}",

@@ -1,6 +1,7 @@
 //===- Mesh.h - triangle meshes and their files ---------------------------===//
 #pragma once
 
+#include "runtime/geometry/NamedAttribute.h"
 #include "runtime/geometry/Transform.h"
 #include "support/Error.h"
 
@@ -18,6 +19,9 @@ struct Mesh {
   std::vector<float> uvs;             // 2 a vertex, or empty
   std::vector<std::uint32_t> indices; // 3 a triangle
   std::vector<float> keyTimes;        // ascending, in [0, 1]; empty: it does not move
+  std::vector<NamedAttribute> attributes;
+  std::vector<std::string> otherAttributes; // names that its file has, too, and were not requested
+  FileOrder order;                          // if it was requested
 
   std::size_t keyCount() const { return keyTimes.empty() ? 1 : keyTimes.size(); }
   std::size_t vertexCount() const { return positions.size() / 3 / keyCount(); }
@@ -31,16 +35,23 @@ struct Mesh {
 /// Reads an OBJ, PLY or glTF file (or another format of the installed assimp). All meshes of the
 /// file become one; polygons are triangulated, points and lines left out. Throws Error:
 /// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.
-Mesh loadMesh(const std::string &path);
+Mesh loadMesh(const std::string &path, const MeshRequest &request = {});
+
+/// Adds an attribute whose values are in the order of the vertices, or of the faces, of the file
+/// that the mesh is from; it replaces another one of its name. `file` is for messages. Throws
+/// BadMesh, and NotSupported if the order is not known.
+void addInFileOrder(Mesh &mesh, NamedAttribute attribute, const std::string &file);
 
 /// One mesh of several, its keys, at these times: they must have the same triangles and as many
-/// vertices. Texture coordinates are those of the first; normals are kept if all have them. `names`
+/// vertices. Texture coordinates and attributes are those of the first; normals are kept if all
+/// have them. `names`
 /// are for messages. Throws BadMesh.
 Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
                 const std::vector<std::string> &names);
 
 /// Throws BadMesh if the mesh is empty, has a coordinate that is not finite, an index out of range,
-/// or a number of normals or uvs that differs from that of its vertices. `name` is for the message.
+/// a number of normals or uvs that differs from that of its vertices, or a wrong attribute.
+/// `name` is for the message.
 void validateMesh(const Mesh &mesh, const std::string &name);
 
 } // namespace rtsl::runtime

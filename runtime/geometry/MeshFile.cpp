@@ -62,13 +62,14 @@ bool isPipe(const std::string &path) {
 }
 
 /// Nothing if assimp must read the file, which is not possible after a pipe has been read.
-std::optional<Mesh> readPlain(const std::string &path, const std::string &extension) {
+std::optional<Mesh> readPlain(const std::string &path, const std::string &extension,
+                              const MeshRequest &request) {
   const bool isPly = extension == ".ply";
   if (!isPly && extension != ".obj")
     return std::nullopt;
   const bool isRead = isPipe(path);
   const std::string bytes = readFile(path);
-  std::optional<Mesh> mesh = isPly ? readPlainPly(bytes) : readPlainObj(bytes);
+  std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
   const std::string missing = isPly ? findMissingPlyElements(bytes) : "";
@@ -86,11 +87,11 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
 
 } // namespace
 
-Mesh loadMesh(const std::string &path) {
+Mesh loadMesh(const std::string &path, const MeshRequest &request) {
   checkReadable(path);
   const std::string extension = extensionOf(path);
   try {
-    if (std::optional<Mesh> mesh = readPlain(path, extension)) {
+    if (std::optional<Mesh> mesh = readPlain(path, extension, request)) {
       validateMesh(*mesh, path);
       return std::move(*mesh);
     }
@@ -100,7 +101,7 @@ Mesh loadMesh(const std::string &path) {
           fmt::format("cannot read mesh `{}`: no reader for `{}` files; OBJ, PLY and glTF work",
                       path, path.substr(path.size() - extension.size())),
           Place{path});
-    return readByAssimp(path);
+    return readByAssimp(path, request);
   } catch (const std::bad_alloc &) {
     throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path),
                 Place{path});

@@ -44,6 +44,15 @@ public:
     return number;
   }
 
+  /// The position of each vertex.
+  std::vector<std::uint32_t> positions() const {
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(vertices.size());
+    for (const Vertex &vertex : vertices)
+      numbers.push_back(vertex.corner.position);
+    return numbers;
+  }
+
   void reserve(std::size_t count) {
     vertices.reserve(count);
     firstAt.reserve(count);
@@ -75,7 +84,9 @@ private:
 /// Reads line by line. Functions return false if the file is not plain.
 class Reader {
 public:
-  explicit Reader(std::string_view text) : at(text.data()), end(text.data() + text.size()) {}
+  Reader(std::string_view text, const MeshRequest &request)
+      : at(text.data()), end(text.data() + text.size()), request(request),
+        wantsColors(request.wants("color")) {}
 
   bool readAll() {
     makeRoom();
@@ -92,10 +103,24 @@ public:
     mesh.normals = vertices.gather(normals, &Corner::normal, 3);
     mesh.uvs = vertices.gather(uvs, &Corner::uv, 2);
     mesh.indices = std::move(indices);
+    addColors(mesh);
+    if (request.keepsOrder)
+      mesh.order = {true, positions.size() / 3, faceCount, vertices.positions(), std::move(faces)};
     return mesh;
   }
 
 private:
+  /// The attribute `color`, if every position has one.
+  void addColors(Mesh &mesh) const {
+    if (hasColors && !wantsColors)
+      mesh.otherAttributes.push_back("color");
+    if (colors.empty() || colors.size() != positions.size())
+      return;
+    mesh.attributes.push_back(
+        floatAttribute("color", 3, vertices.gather(colors, &Corner::position, 3)));
+    mesh.attributes.back().isRgb = true;
+  }
+
   /// Counts the lines, so that vectors are not reallocated while they are read.
   void makeRoom() {
     std::size_t positionLines = 0, normalLines = 0, uvLines = 0, faces = 0;
@@ -190,9 +215,16 @@ private:
     if (!readNumbers(positions, 3))
       return false;
     skipBlanks();
-    float ignored;
-    return (isAtEnd() || (readNumber(ignored) && readNumber(ignored) && readNumber(ignored))) &&
-           endLine();
+    if (isAtEnd())
+      return endLine();
+    hasColors = true;
+    std::array<float, 3> color;
+    for (float &component : color)
+      if (!readNumber(component))
+        return false;
+    if (wantsColors)
+      colors.insert(colors.end(), color.begin(), color.end());
+    return endLine();
   }
 
   /// u v, optionally with w.
@@ -257,6 +289,9 @@ private:
     for (int i = 1; i + 1 < count; ++i)
       for (int corner : {first, first + i, first + i + 1})
         indices.push_back(vertex[std::size_t(corner % count)]);
+    if (request.keepsOrder)
+      faces.insert(faces.end(), std::size_t(count - 2), std::uint32_t(faceCount));
+    ++faceCount;
     return endLine();
   }
 
@@ -265,15 +300,20 @@ private:
   }
 
   const char *at, *end;
-  std::vector<float> positions, normals, uvs; // as the file numbers them
+  const MeshRequest &request;
+  const bool wantsColors;
+  bool hasColors = false;
+  std::vector<float> positions, normals, uvs, colors; // as the file numbers them
+  std::vector<std::uint32_t> faces;                   // of each triangle
+  std::size_t faceCount = 0;
   Vertices vertices;
   std::vector<std::uint32_t> indices;
 };
 
 } // namespace
 
-std::optional<Mesh> readPlainObj(std::string_view text) {
-  Reader reader(text);
+std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request) {
+  Reader reader(text, request);
   if (!reader.readAll())
     return std::nullopt;
   return reader.takeMesh();

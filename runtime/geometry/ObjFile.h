@@ -10,9 +10,10 @@ namespace rtsl::runtime {
 
 /// Reads the contents of nearly all OBJ files: vertices, normals, texture coordinates, and faces of
 /// three or four corners that refer to preceding lines. Groups and materials are ignored. Corners
-/// that are equal in all indices share a vertex. Nothing if the file contains anything else or is
+/// that are equal in all indices share a vertex. The numbers after a position are the attribute
+/// `color`. Nothing if the file contains anything else or is
 /// damaged: such files are left to the general reader (MeshFile.cpp), which also reports errors,
 /// but is ten times slower for small files.
-std::optional<Mesh> readPlainObj(std::string_view text);
+std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request = {});
 
 } // namespace rtsl::runtime

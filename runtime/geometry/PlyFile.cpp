@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -23,9 +24,66 @@ struct Target {
   std::size_t component = 0;
 };
 
+/// An attribute, and the properties of the element that are its components.
+struct Column {
+  NamedAttribute attribute;
+  std::vector<std::size_t> properties;
+};
+
+constexpr const char *rgba[] = {"red", "green", "blue", "alpha"};
+
+/// The properties of an attribute: one of its name; `wear_x`, `wear_y` and so on, or `wear_u` and
+/// `wear_v`; of `color` red, green, blue and perhaps alpha. Empty if there are none.
+std::vector<std::size_t> propertiesOf(const Element &element, const std::string &name) {
+  const auto find = [&](const std::string &property) {
+    const auto found =
+        std::find_if(element.properties.begin(), element.properties.end(),
+                     [&](const Property &one) { return !one.isList && one.name == property; });
+    return std::size_t(found - element.properties.begin());
+  };
+  const std::size_t none = element.properties.size();
+  if (const std::size_t alone = find(name); alone != none)
+    return {alone};
+  std::vector<std::vector<std::string>> sets(2);
+  for (const char *axis : {"_x", "_y", "_z", "_w"})
+    sets[0].push_back(name + axis);
+  for (const char *axis : {"_u", "_v"})
+    sets[1].push_back(name + axis);
+  if (name == "color")
+    sets.emplace_back(std::begin(rgba), std::end(rgba));
+  for (const auto &set : sets) {
+    std::vector<std::size_t> properties;
+    for (const std::string &property : set)
+      if (const std::size_t place = find(property); place != none)
+        properties.push_back(place);
+      else
+        break;
+    if (properties.size() > 1)
+      return properties;
+  }
+  return {};
+}
+
+/// The name of the attribute that a property is part of.
+std::string attributeOf(const std::string &property) {
+  if (std::find(std::begin(rgba), std::end(rgba), property) != std::end(rgba))
+    return "color";
+  const std::size_t length = property.size();
+  if (length > 2 && property[length - 2] == '_' &&
+      std::string_view("xyzwuv").find(property.back()) != std::string_view::npos)
+    return property.substr(0, length - 2);
+  return property;
+}
+
+/// Numbers of 8 and 16 bits that are colors count from 0 to 1.
+double scaleOf(Type type) {
+  return type == Type::UInt8 ? 1 / 255.0 : type == Type::UInt16 ? 1 / 65535.0 : 1;
+}
+
 class Reader {
 public:
-  Reader(std::string_view bytes, const Header &header) : body(bytes, header), header(header) {}
+  Reader(std::string_view bytes, const Header &header, const MeshRequest &request)
+      : body(bytes, header), header(header), request(request) {}
 
   bool readAll() {
     for (const Element &element : header.elements) {
@@ -35,12 +93,83 @@ public:
       if (!isRead)
         return false;
     }
+    if (request.keepsOrder)
+      mesh.order = {true, mesh.vertexCount(), faceCount, {}, std::move(facesOfTriangles)};
     return !mesh.indices.empty();
   }
 
   Mesh mesh;
 
 private:
+  /// The requested attributes of an element. One that the vertices have is not read of the faces.
+  std::vector<Column> columnsOf(const Element &element, bool ofTriangles) {
+    std::vector<Column> columns;
+    for (const std::string &name : request.attributes) {
+      const std::vector<std::size_t> properties = propertiesOf(element, name);
+      const bool isKnown =
+          std::any_of(mesh.attributes.begin(), mesh.attributes.end(),
+                      [&](const NamedAttribute &other) { return other.name == name; });
+      if (properties.empty() || isKnown)
+        continue;
+      Column column{{}, properties};
+      column.attribute.name = name;
+      column.attribute.components = std::uint32_t(properties.size());
+      column.attribute.ofTriangles = ofTriangles;
+      column.attribute.isRgb = name == "color" && properties.size() >= 3;
+      const Type type = element.properties[properties.front()].type;
+      if (ofTriangles && !isFloating(type) && !column.attribute.isRgb)
+        column.attribute.kind =
+            type == Type::UInt32 ? NamedAttribute::Kind::UInt : NamedAttribute::Kind::Int;
+      columns.push_back(std::move(column));
+    }
+    for (const Property &property : element.properties) {
+      const std::string name = attributeOf(property.name);
+      if (!property.isList && !targetOf(property.name).to && !request.wants(name) &&
+          std::find(mesh.otherAttributes.begin(), mesh.otherAttributes.end(), name) ==
+              mesh.otherAttributes.end())
+        mesh.otherAttributes.push_back(name);
+    }
+    return columns;
+  }
+
+  /// The column and component that each property is; null: none.
+  static std::vector<Column *> byProperty(const Element &element, std::vector<Column> &columns) {
+    std::vector<Column *> found(element.properties.size(), nullptr);
+    for (Column &column : columns)
+      for (const std::size_t property : column.properties)
+        found[property] = &column;
+    return found;
+  }
+
+  /// Appends a number to its attribute; the properties of one come in any order.
+  bool readComponent(const Property &property, std::size_t number, Column &column,
+                     std::size_t index, std::size_t copies) {
+    double value;
+    if (!body.readNumber(property.type, value))
+      return false;
+    NamedAttribute &attribute = column.attribute;
+    const std::size_t components = attribute.components;
+    const auto component =
+        std::size_t(std::find(column.properties.begin(), column.properties.end(), number) -
+                    column.properties.begin());
+    std::uint32_t word;
+    if (attribute.kind == NamedAttribute::Kind::Float) {
+      const auto single = float(attribute.isRgb ? value * scaleOf(property.type) : value);
+      std::memcpy(&word, &single, sizeof word);
+    } else {
+      word = std::uint32_t(std::int64_t(value));
+    }
+    attribute.words.resize(std::max(attribute.words.size(), components * (index + copies)));
+    for (std::size_t i = 0; i < copies; ++i)
+      attribute.words[components * (index + i) + component] = word;
+    return true;
+  }
+
+  void keep(std::vector<Column> &columns) {
+    for (Column &column : columns)
+      mesh.attributes.push_back(std::move(column.attribute));
+  }
+
   Target targetOf(const std::string &name) {
     static constexpr const char *positions[] = {"x", "y", "z"}, *normals[] = {"nx", "ny", "nz"};
     static constexpr const char *us[] = {"u", "s", "texture_u"}, *vs[] = {"v", "t", "texture_v"};
@@ -82,6 +211,10 @@ private:
     const auto [positions, normals, uvs] = components;
     if (positions != 7 || (normals != 0 && normals != 7) || (uvs != 0 && uvs != 3))
       return false;
+    std::vector<Column> columns = columnsOf(element, false);
+    for (Column &column : columns)
+      column.attribute.words.resize(column.attribute.components * element.count);
+    const std::vector<Column *> columnOf = byProperty(element, columns);
     mesh.positions.resize(3 * element.count);
     mesh.normals.resize(normals ? 3 * element.count : 0);
     mesh.uvs.resize(uvs ? 2 * element.count : 0);
@@ -91,10 +224,12 @@ private:
         const auto [to, component] = targets[p];
         const bool isRead =
             to ? body.readFloat(property.type, (*to)[(to == &mesh.uvs ? 2 : 3) * i + component])
-               : body.skip(property);
+            : columnOf[p] ? readComponent(property, p, *columnOf[p], i, 1)
+                          : body.skip(property);
         if (!isRead)
           return false;
       }
+    keep(columns);
     return true;
   }
 
@@ -109,10 +244,36 @@ private:
                                      [](const Property &property) { return property.isList; });
     if (lists != 1 || std::none_of(element.properties.begin(), element.properties.end(), isCorners))
       return false;
-    for (std::uint64_t i = 0; i < element.count; ++i)
-      for (const Property &property : element.properties)
-        if (!(isCorners(property) ? readFace(property) : body.skip(property)))
+    std::vector<Column> columns = columnsOf(element, true);
+    const std::vector<Column *> columnOf = byProperty(element, columns);
+    const auto list =
+        std::size_t(std::find_if(element.properties.begin(), element.properties.end(), isCorners) -
+                    element.properties.begin());
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const std::size_t before = mesh.triangleCount();
+      const Body start = body;
+      for (std::size_t p = 0; p < list; ++p) // read when it is known how many triangles there are
+        if (!body.skip(element.properties[p]))
           return false;
+      if (!readFace(element.properties[list]))
+        return false;
+      const Body afterCorners = body;
+      const std::size_t added = mesh.triangleCount() - before;
+      if (!columns.empty())
+        body = start;
+      for (std::size_t p = columns.empty() ? list + 1 : 0; p < element.properties.size(); ++p) {
+        if (p == list)
+          body = afterCorners;
+        else if (!(columnOf[p]
+                       ? readComponent(element.properties[p], p, *columnOf[p], before, added)
+                       : body.skip(element.properties[p])))
+          return false;
+      }
+      if (request.keepsOrder)
+        facesOfTriangles.insert(facesOfTriangles.end(), added, std::uint32_t(faceCount));
+      ++faceCount;
+    }
+    keep(columns);
     return true;
   }
 
@@ -149,17 +310,20 @@ private:
 
   Body body;
   const Header &header;
+  const MeshRequest &request;
+  std::vector<std::uint32_t> facesOfTriangles;
+  std::size_t faceCount = 0;
 };
 
 } // namespace
 
-std::optional<Mesh> readPlainPly(std::string_view bytes) {
+std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &request) {
   if (!isPly(bytes))
     return std::nullopt;
   const std::optional<Header> header = readHeader(bytes);
   if (!header)
     return std::nullopt;
-  Reader reader(bytes, *header);
+  Reader reader(bytes, *header, request);
   if (!reader.readAll())
     return std::nullopt;
   normalize(reader.mesh.normals);

@@ -96,4 +96,16 @@ LinearInverse invertLinear(const Transform &transform) {
   return result;
 }
 
+std::array<std::array<double, 3>, 3> normalTransform(const Transform &transform) {
+  const auto &c = transform.columns;
+  const double sign = transform.determinant() < 0 ? -1 : 1;
+  std::array<std::array<double, 3>, 3> cofactors;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      cofactors[i][j] = sign * (c[i1][j1] * c[i2][j2] - c[i1][j2] * c[i2][j1]);
+    }
+  return cofactors;
+}
+
 } // namespace rtsl::runtime

@@ -32,4 +32,8 @@ struct LinearInverse {
 
 LinearInverse invertLinear(const Transform &transform);
 
+/// A multiple of the inverse transpose of the linear part, as columns, which maps a normal to the
+/// same side of the surface: its cofactors, times the sign of the determinant.
+std::array<std::array<double, 3>, 3> normalTransform(const Transform &transform);
+
 } // namespace rtsl::runtime

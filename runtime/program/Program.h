@@ -45,6 +45,13 @@ struct MemberInfo {
   bool isRead = true;      // by some function of the program
 };
 
+/// A scratch member that materials read of meshes: one of their named attributes.
+struct AttributeInfo {
+  std::string name;
+  ValueType type;
+  std::uint32_t offset = 0; // in RtslState::attributes, in words
+};
+
 struct ClassInfo {
   std::string name;
   std::string base; // "rt_Primitive", or another user class
@@ -61,6 +68,8 @@ struct ClassInfo {
   /// The parts of a hit that its methods read (for a material: methods that run at hits, and the
   /// lights), without calls on objects that they refer to.
   std::uint32_t needs = RTSL_NEEDS_ALL;
+  /// Of a material: which of Program::meshAttributes its methods read, as bits.
+  std::uint32_t attributes = 0;
   std::uint32_t anyHit =
       0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
   /// Writes member defaults into the record at `object`. Null: there are none.
@@ -122,6 +131,7 @@ struct Program {
   Engine engine = Engine::Classic;
   std::vector<ClassInfo> classes;
   std::uint32_t colorComponents = 3;
+  std::vector<AttributeInfo> meshAttributes; // at most 32
 
   /// Entries of Slots.def and SamplingSlots.def; a slot that no class of the scene defines may be
   /// null.
@@ -158,7 +168,7 @@ struct Program {
   Paths paths = Paths::Random;
   /// RTSL_HAS_*: what the scenes that it renders may have.
   std::uint32_t sceneNeeds = RTSL_HAS_ALL;
-  /// Keep normals and texture coordinates of meshes even if `needs` does not include them.
+  /// Keep normals, texture coordinates and attributes of meshes even if nothing reads them.
   bool keepsMeshes = true;
   /// The program's rtsl_sample, or rtsl_generate.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,

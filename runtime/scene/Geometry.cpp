@@ -277,13 +277,37 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
     needs |= RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER;
   if (instance.transform != 0)
     setWorldBounds(instance, meshBounds(mesh), placement.transform, shutterOpen, shutterClose);
+  const std::uint32_t wanted = objects.attributesOf(material) & ~meshes[mesh]->values.wanted();
+  if (wanted != 0) {
+    requireAttributes(meshes[mesh]->mesh, meshes[mesh]->name, objects.program(), wanted,
+                      objects.at(material));
+    setValues(mesh, objects.program(), wanted | meshes[mesh]->values.wanted());
+  }
   return addInstance(objects, instance, meshes[mesh]->name,
                      instance.transform != 0 ? 1 : meshTable[mesh].triangleCount);
 }
 
+void Geometry::setValues(std::uint32_t mesh, const Program &program, std::uint32_t wanted) {
+  attributeTable = attributesOf(program);
+  meshes[mesh]->values = MeshValues(meshes[mesh]->mesh, program, wanted);
+  meshTable[mesh].attributes = meshes[mesh]->values.table();
+}
+
 void Geometry::useProgram(const Objects &objects) {
-  for (RtslInstance &instance : instances)
+  std::vector<std::uint32_t> wanted(meshes.size(), 0);
+  std::map<RtslRef, std::uint32_t> known; // by material: a scene may have millions of instances
+  for (RtslInstance &instance : instances) {
     instance.needs = (instance.needs & RTSL_HAS_NO_BACKS) | objects.needsOf(instance.material);
+    if (instance.primitive != 0 || objects.program().meshAttributes.empty())
+      continue;
+    const auto [found, isNew] = known.emplace(instance.material, 0);
+    if (isNew)
+      found->second = objects.attributesOf(instance.material);
+    wanted[instance.mesh] |= found->second;
+  }
+  for (std::uint32_t i = 0; i < meshes.size(); ++i)
+    if (!meshes[i]->mesh.attributes.empty())
+      setValues(i, objects.program(), wanted[i]);
   dropUnusedAttributes(objects.program());
 }
 
@@ -309,6 +333,13 @@ void Geometry::dropUnusedAttributes(const Program &program) {
     look(i, "normals", RTSL_NEEDS_NORMALS, mesh.normals, meshTable[i].normals);
     look(i, "texture coordinates", RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES,
          mesh.uvs, meshTable[i].uvs);
+    for (NamedAttribute &attribute : mesh.attributes) {
+      const bool isNeeded = meshes[i]->values.isRead(attribute, program);
+      attributes.push_back({meshes[i]->name, fmt::format("attribute `{}`", attribute.name),
+                            4 * attribute.words.size(), isNeeded});
+      if (!isNeeded && !program.keepsMeshes)
+        attribute.words = {};
+    }
   }
 }
 
@@ -328,6 +359,8 @@ std::uint32_t Geometry::primitiveCount(std::uint32_t instance) const {
 void Geometry::fill(RtslLaunch &launch) const {
   launch.instances = instances.data();
   launch.meshes = meshTable.data();
+  launch.meshAttributes = attributeTable.data();
+  launch.meshAttributeCount = std::uint32_t(attributeTable.size());
   launch.transforms = transforms.data();
   launch.motions = motions.data();
   launch.motionFactors = motionFactors.data();

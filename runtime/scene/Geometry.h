@@ -8,6 +8,7 @@
 
 #include "runtime/geometry/Mesh.h"
 #include "runtime/scene/InstanceTransform.h"
+#include "runtime/scene/MeshValues.h"
 #include "runtime/scene/Objects.h"
 #include "runtime/scene/SceneData.h"
 
@@ -39,7 +40,7 @@ public:
   std::uint32_t addMeshInstance(const Objects &objects, std::uint32_t mesh, RtslRef material,
                                 const Placement &placement);
 
-  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops mesh attributes that
+  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops what of meshes
   /// no material reads, unless the program keeps them.
   void useProgram(const Objects &objects);
   /// Set by useProgram.
@@ -62,6 +63,7 @@ private:
     Mesh mesh;
     std::string name;
     std::optional<Bounds> bounds; // computed on first use
+    MeshValues values = {};
   };
 
   /// `items`: of the tree in world space.
@@ -73,6 +75,8 @@ private:
                              const std::optional<rtsl::Place> &where);
   std::uint32_t addMotion(const MovingTransform &transform);
   const Bounds &meshBounds(std::uint32_t mesh);
+  /// Sets RtslMesh::attributes for those in `wanted`.
+  void setValues(std::uint32_t mesh, const Program &program, std::uint32_t wanted);
 
   /// An object with several primitives.
   struct PrimitiveSet {
@@ -87,6 +91,7 @@ private:
 
   std::vector<std::unique_ptr<NamedMesh>> meshes;
   std::vector<RtslMesh> meshTable; // as long
+  std::vector<RtslMeshAttribute> attributeTable;
   std::vector<RtslTransform> transforms{identityTransform()};
   std::vector<RtslMotion> motions{RtslMotion{}}; // the first is unused
   std::vector<RtslMotionFactor> motionFactors;
@@ -99,7 +104,7 @@ private:
   float shutterOpen = 0, shutterClose = 1;
   std::uint64_t treeItems = 0;
   std::uint32_t needs = 0;
-  std::vector<MeshAttribute> attributes;
+  std::vector<MeshAttribute> attributes; // for reports
 };
 
 } // namespace rtsl::runtime

@@ -216,6 +216,13 @@ std::uint32_t Objects::needsOf(RtslRef reference) const {
   return code->needs & needs;
 }
 
+std::uint32_t Objects::attributesOf(RtslRef reference) const {
+  std::uint32_t attributes = 0;
+  for (RtslRef one : reachedFrom({reference}))
+    attributes |= at(one).classInfo->attributes;
+  return attributes;
+}
+
 /// The buffer of a member in the record of an object.
 static RtslBuffer bufferAt(const std::uint8_t *record, const MemberInfo &member) {
   RtslBuffer buffer;

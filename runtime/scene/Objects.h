@@ -58,6 +58,8 @@ public:
   std::vector<RtslRef> reachedFrom(std::vector<RtslRef> references) const;
   /// RTSL_NEEDS_*: the state that methods of this object and of all reachable objects read.
   std::uint32_t needsOf(RtslRef reference) const;
+  /// Which of Program::meshAttributes these methods read, as bits.
+  std::uint32_t attributesOf(RtslRef reference) const;
   /// The longest chain of references from object to object.
   std::uint32_t referenceChain() const { return longestChain; }
 

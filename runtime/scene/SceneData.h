@@ -39,10 +39,10 @@ struct Placement {
 /// A box. A side may be infinite.
 using Bounds = RtslBox;
 
-/// Normals or texture coordinates of a mesh, and whether the program reads them.
+/// Normals, texture coordinates or a named attribute of a mesh, and whether the program reads them.
 struct MeshAttribute {
   std::string mesh; // its name
-  const char *name; // "normals"
+  std::string name; // "normals", "attribute `wear`"
   std::size_t bytes = 0;
   bool isNeeded = false; // by the material of some instance
 };

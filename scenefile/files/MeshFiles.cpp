@@ -4,6 +4,10 @@
 #include "scenefile/gltf/Mesh.h"
 #include "support/WorkerThreads.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace rtsl::scene {
 
 using runtime::Mesh;
@@ -21,13 +25,35 @@ struct File {
   std::string path;
   std::string part; // of a glTF file; empty: all of it
   std::size_t uses = 0;
+  bool keepsOrder = false; // the scene gives values for its vertices or faces
   Mesh mesh = {};
   std::exception_ptr failure = nullptr;
 };
 
+bool hasValues(const GeometryDescription &geometry) {
+  return std::any_of(geometry.attributes.begin(), geometry.attributes.end(),
+                     [](const AttributeDescription &one) { return one.values != nullptr; });
+}
+
+/// Sets the spaces of attributes that the scene gives for those of the file.
+void setSpaces(Mesh &mesh, const GeometryDescription &geometry) {
+  for (const AttributeDescription &given : geometry.attributes)
+    for (runtime::NamedAttribute &attribute : mesh.attributes)
+      if (!given.values && attribute.name == given.name) {
+        const std::uint32_t needed = componentsOf(given.space);
+        if (needed != 0 && needed != attribute.components)
+          throw Error(ErrorCode::WrongType,
+                      fmt::format("the attribute `{}` has {} numbers, and its `space` is `{}`: {} "
+                                  "are needed",
+                                  given.name, attribute.components, nameOf(given.space), needed),
+                      given.place);
+        attribute.space = given.space;
+      }
+}
+
 } // namespace
 
-MeshFiles::MeshFiles(const SceneDescription &description) {
+MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshRequest &request) {
   std::map<std::pair<std::string, std::string>, std::size_t> fileNumbers; // by path and part
   std::vector<File> files;
   std::vector<Use> uses;
@@ -41,16 +67,19 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
       if (isNew)
         files.push_back({key.path, geometry.part});
       ++files[file->second].uses;
+      files[file->second].keepsOrder |= hasValues(geometry);
       uses.back().files.push_back(file->second);
     }
   }
 
   forEachOnThreads(0, files.size(), [&](std::size_t i) {
     File &file = files[i];
+    runtime::MeshRequest wanted = request;
+    wanted.keepsOrder = file.keepsOrder;
     try {
       file.mesh = file.part.empty()
-                      ? runtime::loadMesh(file.path)
-                      : gltf::readMesh(description.models->open(file.path), file.part);
+                      ? runtime::loadMesh(file.path, wanted)
+                      : gltf::readMesh(description.models->open(file.path), file.part, wanted);
     } catch (...) {
       file.failure = std::current_exception();
     }
@@ -77,6 +106,7 @@ MeshFiles::MeshFiles(const SceneDescription &description) {
                         : runtime::movingMesh(std::move(keys), geometry.meshTimes, names);
       if (geometry.isBarycentric)
         result.mesh.uvs.clear();
+      setSpaces(result.mesh, geometry);
       result.mesh.apply(geometry.transform);
     } catch (...) {
       result.failure = std::current_exception();
@@ -88,8 +118,11 @@ MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
   std::vector<std::string> paths;
   for (const MeshPath &key : geometry.mesh)
     paths.push_back(key.path);
-  return {std::move(paths), geometry.part, geometry.meshTimes, geometry.transform.columns,
-          geometry.isBarycentric};
+  std::vector<const JsonValue *> attributes;
+  for (const AttributeDescription &attribute : geometry.attributes)
+    attributes.push_back(attribute.json);
+  return {std::move(paths),           geometry.part,          geometry.meshTimes,
+          geometry.transform.columns, geometry.isBarycentric, std::move(attributes)};
 }
 
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {

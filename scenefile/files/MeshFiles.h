@@ -17,7 +17,8 @@ namespace rtsl::scene {
 /// of its objects, on all cores. Objects with the same files and transform share a mesh.
 class MeshFiles {
 public:
-  explicit MeshFiles(const SceneDescription &description);
+  /// `request`: what to read of the files.
+  MeshFiles(const SceneDescription &description, const runtime::MeshRequest &request);
 
   /// The number of an object's mesh.
   std::size_t numberOf(const GeometryDescription &geometry) const;
@@ -32,8 +33,9 @@ private:
     std::exception_ptr failure;
   };
 
-  using Key = std::tuple<std::vector<std::string>, std::string, std::vector<float>,
-                         decltype(runtime::Transform::columns), bool>;
+  using Key =
+      std::tuple<std::vector<std::string>, std::string, std::vector<float>,
+                 decltype(runtime::Transform::columns), bool, std::vector<const JsonValue *>>;
   static Key keyOf(const GeometryDescription &geometry);
 
   std::map<Key, std::size_t> numbers;

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <numeric>
 #include <optional>
@@ -50,13 +52,14 @@ struct Vertices {
 
   std::optional<Accessor> attribute(const File &file, const JsonValue &primitive,
                                     const std::string &part, const char *name,
-                                    const char *type) const {
+                                    const char *type) const { // null: any
     const JsonValue *number = attributes(primitive, part).find(name);
     if (!number)
       return std::nullopt;
     std::optional<Accessor> accessor(std::in_place, file, *number,
                                      fmt::format("`{}` of `{}`", name, part));
-    accessor->require(type);
+    if (type)
+      accessor->require(type);
     if (accessor->count() != positions.count())
       throw Error(ErrorCode::BadMesh,
                   fmt::format("`{}` has {} elements of `{}`, and {} of `POSITION`", part,
@@ -140,7 +143,64 @@ std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &p
   return warnings;
 }
 
-runtime::Mesh readMesh(const File &file, const std::string &part) {
+namespace {
+
+/// The name of an attribute in shaders: of `TEXCOORD_1` `uv1`, of `COLOR_0` `color`, of `TANGENT`
+/// `tangent`, and of one of the author's own, such as `_WEAR`, `wear`. Empty: it has none.
+std::string shaderNameOf(const std::string &name) {
+  const auto after = [&](const std::string &start) { return name.substr(start.size()); };
+  const auto begins = [&](const std::string &start) {
+    return name.compare(0, start.size(), start) == 0;
+  };
+  if (name == "TANGENT")
+    return "tangent";
+  if (begins("TEXCOORD_"))
+    return "uv" + after("TEXCOORD_");
+  if (begins("COLOR_"))
+    return name == "COLOR_0" ? "color" : "color" + after("COLOR_");
+  if (!begins("_"))
+    return "";
+  std::string own = after("_");
+  std::transform(own.begin(), own.end(), own.begin(),
+                 [](unsigned char c) { return char(std::tolower(c)); });
+  return own;
+}
+
+void flip(std::vector<float> &uvs) {
+  for (std::size_t i = 1; i < uvs.size(); i += 2)
+    uvs[i] = 1 - uvs[i];
+}
+
+/// Adds the attributes that are requested, and the names of the others.
+void addAttributes(runtime::Mesh &mesh, const File &file, const JsonValue &primitive,
+                   const std::string &part, const Vertices &vertices,
+                   const runtime::MeshRequest &request) {
+  for (const auto &[key, number] : Vertices::attributes(primitive, part).members) {
+    const std::string name = shaderNameOf(key.text);
+    if (name.empty())
+      continue;
+    if (!request.wants(name)) {
+      mesh.otherAttributes.push_back(name);
+      continue;
+    }
+    const Accessor accessor = *vertices.attribute(file, primitive, part, key.text.c_str(), nullptr);
+    std::vector<float> numbers = accessor.floats();
+    const auto components =
+        std::uint32_t(numbers.size() / std::max<std::size_t>(accessor.count(), 1));
+    const bool isUv = key.text.compare(0, 9, "TEXCOORD_") == 0;
+    if (isUv && components == 2)
+      flip(numbers);
+    mesh.attributes.push_back(runtime::floatAttribute(name, components, numbers));
+    mesh.attributes.back().isRgb = key.text.compare(0, 6, "COLOR_") == 0;
+    if (name == "tangent" && components == 4)
+      mesh.attributes.back().space = runtime::NamedAttribute::Space::Tangent;
+  }
+}
+
+} // namespace
+
+runtime::Mesh readMesh(const File &file, const std::string &part,
+                       const runtime::MeshRequest &request) {
   try {
     const JsonValue &primitive = primitiveOf(file, part, Place{file.path()});
     const std::uint32_t mode = modeOf(primitive, part);
@@ -151,8 +211,7 @@ runtime::Mesh readMesh(const File &file, const std::string &part) {
       mesh.normals = vertices.normals->floats();
     if (vertices.uvs) {
       mesh.uvs = vertices.uvs->floats();
-      for (std::size_t i = 1; i < mesh.uvs.size(); i += 2)
-        mesh.uvs[i] = 1 - mesh.uvs[i];
+      flip(mesh.uvs);
     }
     std::vector<std::uint32_t> indices;
     if (vertices.indices) {
@@ -162,6 +221,9 @@ runtime::Mesh readMesh(const File &file, const std::string &part) {
       std::iota(indices.begin(), indices.end(), 0u);
     }
     mesh.indices = trianglesOf(indices, mode);
+    addAttributes(mesh, file, primitive, part, vertices, request);
+    if (request.keepsOrder)
+      mesh.order = {true, mesh.vertexCount(), mesh.triangleCount(), {}, {}};
     runtime::validateMesh(mesh, fmt::format("{}/{}", file.path(), part));
     return mesh;
   } catch (const Error &error) {

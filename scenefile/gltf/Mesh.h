@@ -21,8 +21,11 @@ void checkPrimitive(const File &file, const JsonValue &primitive, const std::str
 /// What of a primitive is left out, by name.
 std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part);
 
-/// Reads a primitive. Texture coordinates are turned from glTF's, which begin at the upper left
-/// corner of an image, to ours. Throws BadMesh, BadBuffer.
-runtime::Mesh readMesh(const File &file, const std::string &part);
+/// Reads a primitive, and of its other attributes those that are requested: `TEXCOORD_1` is `uv1`,
+/// `COLOR_0` `color`, `TANGENT` `tangent`, and an author's own, such as `_WEAR`, `wear`. Texture
+/// coordinates are turned from glTF's, which begin at the upper left corner of an image, to ours.
+/// Throws BadMesh, BadBuffer.
+runtime::Mesh readMesh(const File &file, const std::string &part,
+                       const runtime::MeshRequest &request = {});
 
 } // namespace rtsl::scene::gltf

@@ -167,6 +167,8 @@ static Statement describeClass(const Context &context, const typed::Class &defin
     described = callMember(described, "methods", {list("", std::move(methods))});
   if (const Code needs = flagsOfNeeds(context.facts.needsOfClass.at(&definition)))
     described = callMember(described, "needs", {needs});
+  if (const std::uint32_t attributes = context.facts.meshAttributesOfClass.at(&definition))
+    described = callMember(described, "attributes", {cpp::integer(attributes)});
   std::vector<std::string> queried;
   for (const typed::Function *anyHit : payloadMethods(definition, "anyHit"))
     queried.push_back(context.names.of(anyHit->parameters.front()->type->structure));
@@ -203,6 +205,10 @@ Declarations description(Context &context, const StateEntries &entries,
   RequiredMembers required(context.module);
   for (const auto &definition : context.module.classes)
     body.push_back(describeClass(context, *definition, required));
+  for (const MeshAttributeFacts &attribute : context.facts.meshAttributes)
+    body.push_back(
+        onProgram(withParameters("meshAttribute", {context.types.inMemory(attribute.type)}),
+                  {string(attribute.name), integer(attribute.offset)}));
   if (const Code needs = flagsOfNeeds(context.facts.needs))
     body.push_back(onProgram("needs", {needs}));
   for (const auto &[base, method] : filled)

@@ -1,8 +1,9 @@
 //===- PlaceAttributes.cpp - offsets of the scratch members of a hit ------===//
 //
 // A primitive's scratch members are attributes of its hits; a material reads those that it declares
-// itself, matched by name and type. Two attributes may overlap if no primitive has both. An
-// attribute that is never read has no offset, and is not stored.
+// itself, matched by name and type. On a mesh they are its named attributes (MeshAttributes.cpp).
+// Two attributes may overlap if no primitive has both. An attribute that is never read has no
+// offset, and is not stored.
 //
 // Without a scene, attributes that are never read also get offsets if there is space, and
 // attributes of classes with a common base do not overlap: C++ has one struct for all of them.
@@ -35,27 +36,21 @@ namespace {
 
 /// Every scratch member that the material declares must be one of the primitive's, of the same
 /// type.
-void matchSurface(LinkContext &context, const ClassesByName &classes,
-                  const std::string &primitiveName, const typed::Class &material) {
-  const typed::Class *primitive = findClass(classes, primitiveName);
-  const std::string shownName = primitive ? primitiveName : "mesh";
+void matchSurface(LinkContext &context, const typed::Class &primitive,
+                  const typed::Class &material) {
   for (const typed::Member *read : allMembers(material)) {
     if (read->access != ast::Access::Scratch)
       continue;
-    const typed::Member *written = primitive ? findScratch(*primitive, read->name) : nullptr;
+    const typed::Member *written = findScratch(primitive, read->name);
     if (!written) {
-      Diagnostic &error = context.diagnostics.report(Code::attributeMissing, read->range,
-                                                     material.name, read->name, shownName);
-      if (primitive)
-        error.label(primitive->range,
-                    fmt::format("the scene gives `{}` to this primitive", material.name));
-      else
-        error.note(
-            "the triangles of a mesh have no attributes but their normals and texture coordinates");
+      context.diagnostics
+          .report(Code::attributeMissing, read->range, material.name, read->name, primitive.name)
+          .label(primitive.range,
+                 fmt::format("the scene gives `{}` to this primitive", material.name));
     } else if (written->type != read->type) {
       context.diagnostics
           .report(Code::attributeTypeMismatch, read->range, material.name, read->name,
-                  toString(read->type), shownName, toString(written->type))
+                  toString(read->type), primitive.name, toString(written->type))
           .label(written->range, fmt::format("written here as `{}`", toString(written->type)));
     }
   }
@@ -117,6 +112,8 @@ std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &
         found->primitives.insert(groupOf(context, classes, owner.str()));
         if (const typed::Class *info = findClass(classes, owner.str()); info && !found->member)
           found->member = findScratch(*info, found->name);
+        if (mayBeOnMesh(context, owner.str()))
+          found->primitives.insert("mesh");
       }
     });
   }
@@ -181,9 +178,11 @@ void placeAttributes(LinkContext &context) {
   const ClassesByName classes = classesOf(context);
   std::set<std::pair<std::string, std::string>> seen;
   for (const auto &[primitive, material] : context.request.surfaces)
-    if (const typed::Class *info = findClass(classes, material);
-        info && seen.insert({primitive, material}).second)
-      matchSurface(context, classes, primitive, *info);
+    if (const typed::Class *info = findClass(classes, material),
+        *hit = findClass(classes, primitive);
+        info && hit && seen.insert({primitive, material}).second)
+      matchSurface(context, *hit, *info);
+  findMeshMaterials(context, classes);
 
   std::vector<Attribute> attributes = collect(context, classes);
   for (const Attribute &attribute : attributes)
@@ -218,6 +217,7 @@ void placeAttributes(LinkContext &context) {
   if (words > RTSL_MAX_ATTRIBUTE_WORDS)
     context.diagnostics.report(Code::attributesTooLarge, last ? last->range : SourceRange(), words,
                                RTSL_MAX_ATTRIBUTE_WORDS);
+  listMeshAttributes(context, classes);
 }
 
 } // namespace rtsl::linking

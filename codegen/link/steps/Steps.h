@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,15 @@ struct RayType {
   std::string name() const { return payload.getName().str(); }
 };
 
+/// A scratch member that materials read of meshes.
+struct MeshAttribute {
+  std::string name;
+  const Type *type = nullptr;
+  mlir::Type irType;
+  std::uint32_t offset = 0;      // in words
+  std::set<std::string> readers; // classes of materials
+};
+
 struct LinkContext {
   mlir::ModuleOp ir;
   const typed::Module &module;
@@ -49,6 +59,8 @@ struct LinkContext {
   // for the functions of this name, recorded if they are reached
   std::map<std::string, Finding> dispatches = {};
   std::vector<RayType> rayTypes = {};
+  std::set<std::string> meshMaterials = {}; // classes of materials that may be on a mesh
+  std::vector<MeshAttribute> meshAttributes = {};
   /// The symbols of `ir`. Functions are added and erased through this table, so that lookups remain
   /// fast.
   mlir::SymbolTable symbols = mlir::SymbolTable(ir);
@@ -112,6 +124,17 @@ using ClassesByName = std::map<std::string, const typed::Class *>;
 ClassesByName classesOf(const LinkContext &context);
 /// Null if there is none of this name.
 const typed::Class *findClass(const ClassesByName &classes, const std::string &name);
+
+/// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports scratch members of
+/// theirs of types that meshes do not have.
+void findMeshMaterials(LinkContext &context, const ClassesByName &classes);
+/// Whether a class is one of them.
+bool mayBeOnMesh(const LinkContext &context, const std::string &className);
+/// Lists the attributes that they read, which have offsets: LinkContext::meshAttributes.
+void listMeshAttributes(LinkContext &context, const ClassesByName &classes);
+/// Program::meshAttributes and ClassInfo::attributes.
+std::vector<runtime::AttributeInfo> describeMeshAttributes(const LinkContext &context);
+std::uint32_t meshAttributesOf(const LinkContext &context, const std::string &className);
 
 /// The scratch member of this name of a class; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);

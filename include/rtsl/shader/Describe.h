@@ -297,6 +297,11 @@ public:
     info.needs = what;
     return *this;
   }
+  /// Which of the program's mesh attributes the class's methods read, as bits.
+  ClassDescription &attributes(std::uint32_t which) {
+    info.attributes = which;
+    return *this;
+  }
   /// Has `anyHit` for rays with these payloads.
   template <typename... Payload>
   ClassDescription &anyHitFor() {
@@ -375,6 +380,11 @@ public:
   }
   /// RTSL_NEEDS_*: the parts of a hit that the methods of the program read.
   void needs(std::uint32_t what) { result->needs = what; }
+  /// A scratch member that materials may read of meshes, `offset` words after the first.
+  template <typename T>
+  void meshAttribute(const char *name, std::uint32_t offset) {
+    result->meshAttributes.push_back({name, detail::valueType<T>(), offset});
+  }
   /// RTSL_FEATURE_*: side effects of samples.
   void features(std::uint32_t what) { result->slots.features = what; }
   void engine(runtime::Engine engine) { result->engine = engine; }

@@ -17,6 +17,12 @@ __attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
 __attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launch) {
   return launch->instances;
 }
+__attribute__((weak)) const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch) {
+  return launch->meshAttributes;
+}
+__attribute__((weak)) uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launch) {
+  return launch->meshAttributeCount;
+}
 __attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
   return 0;
 }

@@ -95,15 +95,36 @@ typedef struct RtslMotionKey {
   uint32_t unused;
 } RtslMotionKey;
 
+/// What the numbers of a named attribute of a mesh are: how a transform changes them.
+#define RTSL_ATTRIBUTE_NUMBERS 0u // not at all
+#define RTSL_ATTRIBUTE_POINT 1u
+#define RTSL_ATTRIBUTE_VECTOR 2u
+#define RTSL_ATTRIBUTE_NORMAL 3u  // by the inverse transpose; the result has length 1
+#define RTSL_ATTRIBUTE_TANGENT 4u // a vector, and the side on which the bitangent is: 1 or -1
+
+/// The values of a named attribute of a mesh: as many words as RtslMeshAttribute::words for each
+/// vertex or triangle. Those of vertices are floats.
+typedef struct RtslMeshValues {
+  const uint32_t *values; // null: the mesh does not have the attribute
+  uint32_t ofTriangles;   // 1: for each triangle; 0: for each vertex
+  uint32_t space;         // RTSL_ATTRIBUTE_*
+} RtslMeshValues;
+
+/// A scratch member that some material reads of meshes, in RtslState::attributes.
+typedef struct RtslMeshAttribute {
+  uint32_t offset, words;
+} RtslMeshAttribute;
+
 /// An indexed triangle mesh in object space. `normals` and `uvs` may be null. If it has several
 /// keys, the positions of all vertices at the first one are followed by those at the next, and so
 /// are the normals; between keys they are interpolated linearly.
 typedef struct RtslMesh {
-  const float *positions;  // 3 a vertex
-  const float *normals;    // 3 a vertex
-  const float *uvs;        // 2 a vertex
-  const uint32_t *indices; // 3 a triangle
-  const float *keyTimes;   // ascending, in [0, 1]; null: it has one key, and does not move
+  const float *positions;           // 3 a vertex
+  const float *normals;             // 3 a vertex
+  const float *uvs;                 // 2 a vertex
+  const uint32_t *indices;          // 3 a triangle
+  const float *keyTimes;            // ascending, in [0, 1]; null: it has one key, and does not move
+  const RtslMeshValues *attributes; // by number of RtslLaunch::meshAttributes; null: none
   uint32_t vertexCount, triangleCount;
   uint32_t keyCount, unused;
 } RtslMesh;
@@ -156,6 +177,7 @@ typedef struct RtslLaunch {
   uint8_t *records; // object records; the first 4 bytes of each are its class id
   const RtslInstance *instances;
   const RtslMesh *meshes;
+  const RtslMeshAttribute *meshAttributes;
   const RtslTransform *transforms; // the first is the identity
   const RtslMotion *motions;       // the first is unused
   const RtslMotionFactor *motionFactors;
@@ -171,6 +193,7 @@ typedef struct RtslLaunch {
   float ambient[RTSL_MAX_COLOR];
   uint32_t instanceCount, meshCount, transformCount, lightCount;
   uint32_t boxCount, selectionCount;
+  uint32_t meshAttributeCount;
   uint32_t motionCount, motionFactorCount, motionKeyCount;
   float shutterOpen, shutterClose; // of RTSL_HAS_SHUTTER: the times of samples, in [0, 1]
   uint32_t colorComponents;
@@ -294,7 +317,7 @@ typedef struct RtslState {
 #define RTSL_STATE_VARIABLE(name, type, ...) RTSL_TYPE_##type(name);
 #include "language/StateVariables.def"
 
-  // What `intersect` wrote to scratch members for the hit so far.
+  // What `intersect` wrote to scratch members for the hit so far; of a mesh its named attributes.
   uint32_t attributes[RTSL_MAX_ATTRIBUTE_WORDS];
 
   // Temporary values of a traversal (Hit.h).
@@ -340,7 +363,7 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
 #define RTSL_NEEDS_HIT_ERRORS 2048u   // no state: rays leave hits, so the error of t matters
-#define RTSL_NEEDS_ATTRIBUTES 4096u   // no state: what `intersect` wrote to scratch members
+#define RTSL_NEEDS_ATTRIBUTES 4096u   // no state: scratch members of the hit
 #define RTSL_NEEDS_INSTANCE_ID 32768u // InstanceId
 #define RTSL_NEEDS_CAMERA_RAY 65536u  // RayOrigin RayDirection in `generate`
 #define RTSL_NEEDS_EMITTERS 131072u   // no state: points are lit by surfaces that shine
@@ -408,6 +431,9 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 /// RtslLaunch::instances. A program that was bound to a scene of few instances has a copy of them,
 /// so that what it loads from there at a constant index is a constant.
 const RtslInstance *rtsl_instances(const RtslLaunch *launch);
+/// RtslLaunch::meshAttributes and meshAttributeCount. A compiled program has a copy of them.
+const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch);
+uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launch);
 /// The number of instances of such a scene if each of them is one primitive: the project's own
 /// traversal tests them one after the other. Otherwise 0, and it searches the tree.
 uint32_t rtsl_listed_instances(const RtslLaunch *launch);

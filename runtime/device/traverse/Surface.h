@@ -7,6 +7,7 @@
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Candidate.h"
 #include "runtime/device/traverse/Instance.h"
+#include "runtime/device/traverse/MeshAttributes.h"
 #include "runtime/device/traverse/Traverse.h"
 
 namespace rtsl::device {
@@ -205,8 +206,14 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
     const RtslMesh &mesh = launch.meshes[instance.mesh];
     const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
     describeTriangle(state, mesh, p, needs);
-    if (isTransformed(launch, instance))
-      surfaceToWorld(state, TransformAt(launch, instance, state.Time), needs, extents(p), 0);
+    if (needs & RTSL_NEEDS_ATTRIBUTES)
+      describeAttributes(state, mesh);
+    if (isTransformed(launch, instance)) {
+      const TransformAt transform(launch, instance, state.Time);
+      surfaceToWorld(state, transform, needs, extents(p), 0);
+      if (needs & RTSL_NEEDS_ATTRIBUTES)
+        attributesToWorld(state, mesh, transform);
+    }
     return;
   }
   {

@@ -289,7 +289,7 @@ def outputs():
 
 
 def graph():
-    """Objects of several primitives, selectors, ids and variables."""
+    """Objects of several primitives, selectors, ids, variables and attributes of meshes."""
     balls = [[0, 0, 0, 1], [1.2, 0, 0, 0.5], [-1.2, 0, 0, 0.5], [0, 1.2, 0, 0.5]]
     return {
         "rtsl": 1,
@@ -306,6 +306,16 @@ def graph():
             "one": {
                 "primitive": {"class": "Balls", "balls": [[0, 0, 0, 1.3]]},
                 "material": {"class": "Paint"},
+            },
+            "tile": {
+                "mesh": str(here / "square.obj"),
+                "material": {"class": "Worn"},
+                "attributes": {
+                    "wear": [0.5, 1, 0.25, 0.75],
+                    "paint": [[1, 0, 0], [0, 1, 0], [0, 0, 1], 1],
+                    "along": {"values": [[1, 0.5, 0.25]] * 4, "space": "vector"},
+                    "marks": {"values": [[False, True]], "per": "face"},
+                },
             },
             "lod": {"selector": {"class": "Near", "limit": 14.6}, "children": ["many", "one"]},
             "dice": {
@@ -326,6 +336,14 @@ def graph():
                             "scale": [0.5, 1.5, 1],
                             "rotate": [20, 30, 0],
                             "translate": [3, 0, 0],
+                        },
+                    },
+                    {
+                        "child": "tile",
+                        "transform": {
+                            "scale": [-2, 1, 1],
+                            "rotate": [20, 30, 0],
+                            "translate": [0, -2, 1],
                         },
                     },
                 ]

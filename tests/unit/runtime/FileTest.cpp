@@ -154,6 +154,48 @@ TEST_F(Meshes, ReadsPlyAndGltf) {
   EXPECT_EQ(mesh.positions[0], 5);
 }
 
+/// The numbers of an attribute; empty if the mesh does not have it.
+static std::vector<float> numbersOf(const Mesh &mesh, const std::string &name) {
+  for (const NamedAttribute &attribute : mesh.attributes)
+    if (attribute.name == name) {
+      std::vector<float> numbers(attribute.words.size());
+      std::memcpy(numbers.data(), attribute.words.data(), 4 * numbers.size());
+      return numbers;
+    }
+  return {};
+}
+
+TEST_F(Meshes, ReadTheAttributesThatAreRequested) {
+  const std::string ply =
+      put("a.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                   "property float z\nproperty uchar green\nproperty uchar red\nproperty uchar "
+                   "blue\nproperty float uv1_v\nproperty float uv1_u\nproperty int wear\n"
+                   "element face 1\nproperty list uchar int vertex_indices\nproperty int part\n"
+                   "end_header\n0 0 0 0 255 51 1 2 3\n1 0 0 0 0 0 0 0 0\n1 1 0 0 0 0 0 0 -4\n"
+                   "0 1 0 0 0 0 0 0 0\n4 0 1 2 3 7\n");
+  const Mesh mesh = loadMesh(ply, {{"color", "uv1", "wear", "part", "none"}, true});
+  EXPECT_EQ(numbersOf(mesh, "color")[0], 1.0f);
+  EXPECT_EQ(numbersOf(mesh, "color")[2], 0.2f);
+  EXPECT_EQ(numbersOf(mesh, "uv1")[0], 2.0f);
+  EXPECT_EQ(numbersOf(mesh, "wear")[2], -4.0f);
+  EXPECT_TRUE(numbersOf(mesh, "none").empty());
+  ASSERT_EQ(mesh.attributes.back().name, "part");
+  EXPECT_EQ(mesh.attributes.back().words, (std::vector<std::uint32_t>{7, 7})) << "two triangles";
+  EXPECT_EQ(mesh.order.faces, (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_EQ(loadMesh(ply).attributes.size(), 0u);
+  EXPECT_EQ(loadMesh(ply).otherAttributes,
+            (std::vector<std::string>{"color", "uv1", "wear", "part"}));
+
+  // The corners of the two faces have texture coordinates of their own.
+  const Mesh obj =
+      loadMesh(put("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nvt 0 0\nvt 1 1\n"
+                            "f 3/1 1/1 2/1\nf 1/2 2/2 3/2\n"),
+               {{"color"}, true});
+  EXPECT_EQ(obj.order.vertices, (std::vector<std::uint32_t>{2, 0, 1, 0, 1, 2}));
+  EXPECT_EQ(numbersOf(obj, "color")[2], 1.0f);
+  EXPECT_EQ(numbersOf(obj, "color")[3], 1.0f);
+}
+
 TEST_F(Meshes, BadFilesAreRefusedByName) {
   auto error = [&](const std::string &name, const std::string &text) {
     std::string file = put(name, text), message = errorOf([&] { loadMesh(file); });

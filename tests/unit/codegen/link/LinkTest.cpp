@@ -187,11 +187,22 @@ TEST(Link, AMissingAttributeIsAnErrorWithBothPlaces) {
   EXPECT_EQ(linked.sources.text(error.labels.front().range), "Plate");
 }
 
-TEST(Link, AMeshHasNoAttributes) {
-  Linked linked(surfaces, {{"Fog"}, {}, {{"", "Fog"}}});
+TEST(Link, AttributesThatAreReadOfMeshesDoNotOverlap) {
+  Linked linked(surfaces, {{"Fog", "Strange"}, {}, {{"", "Fog"}, {"", "Strange"}}});
+  ASSERT_TRUE(linked.succeeded);
+  std::set<std::int64_t> offsets;
+  linked.ir->walk([&](ir::AttributeOp op) { offsets.insert(*op.getOffset()); });
+  EXPECT_EQ(offsets.size(), 2u) << "a mesh may have both";
+}
+
+TEST(Link, AttributesOfMeshesAreNumbersVectorsAndColors) {
+  Linked linked("class Turned : rt_Material { scratch mat2 turn;"
+                " void shade() { rt_SampleColor = color(turn[0].x); } };",
+                {{"Turned"}, {}, {{"", "Turned"}}});
   EXPECT_FALSE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u);
-  EXPECT_EQ(linked.diagnostics.all().front().code, Code::attributeMissing);
+  EXPECT_EQ(linked.diagnostics.all().front().code, Code::meshAttributeType);
+  EXPECT_EQ(linked.sources.text(linked.diagnostics.all().front().range), "turn");
 }
 
 TEST(Link, AnAttributeOfAnotherTypeIsAnErrorWithBothPlaces) {
