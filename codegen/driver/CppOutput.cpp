@@ -17,10 +17,11 @@ std::optional<std::string> printStates(const Compilation &linked, const cpp::Opt
                                        Diagnostics &diagnostics) {
   const typed::Module &module = *linked.input.module;
   CompileInput input = linked.input;
-  input.cpp.features &= RTSL_FEATURE_PRINT;
+  const bool raises = printing.exceptions && printing.checkIndices;
+  input.cpp.features &= RTSL_FEATURE_PRINT | (raises ? RTSL_FEATURE_EXCEPTIONS : 0u);
   CompileOptions options = linked.options;
   options.checkIndices = false; // the C++ code checks indices itself
-  SourceTable source = cpp::makeSourceTable(module);
+  SourceTable source = cpp::makeSourceTable(module, raises);
   Compilation states(input, options, diagnostics);
   states.context = linked.context;
   states.source = &source;

@@ -190,6 +190,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
     evaluation.leaves.push_back(&expr);
     evaluation.operands.push_back(operand);
   };
+  if (llvm::is_contained(evaluation.leaves, &expr))
+    return; // an index that was checked before
   const bool isOnPath = evaluation.path.count(&expr) != 0;
   if (!isTop && !isOnPath && !evaluation.isNested && expr.kind != ExprKind::String &&
       !isKept(expr)) {
@@ -237,11 +239,44 @@ static bool isOneStep(const typed::Expr &expr) {
   return expr.kind != ExprKind::Comma && expr.kind != ExprKind::String;
 }
 
+/// The evaluation checks the indices of the places that it reads or writes itself; those of an
+/// assignment before the rays of its value.
+void FunctionLowering::addIndexedPlaces(const typed::Expr &expr, Evaluation &evaluation) {
+  std::vector<const typed::Expr *> places = writesOf(expr).lvalues;
+  if (mayRaise(expr))
+    places.push_back(&expr);
+  bool comeFirst = false;
+  if (auto *assign = dynCast<typed::AssignExpr>(&expr))
+    forEachExpr(*assign->value,
+                [&](const typed::Expr &inner) { comeFirst |= typed::raysOf(inner).any(); });
+  for (const typed::Expr *at : places)
+    for (; at; at = outerPlace(*at)) {
+      evaluation.path.insert(at);
+      if (!comeFirst || isInOutputBuffer(*at) || !mayRaise(*at))
+        continue;
+      const auto &element = cast<typed::IndexExpr>(*at);
+      evaluation.leaves.push_back(element.index.get());
+      evaluation.operands.push_back(checkedIndex(element));
+    }
+}
+
+Value FunctionLowering::checkedIndex(const typed::IndexExpr &expr) {
+  const typed::Expr &index = *expr.index;
+  const Value unchecked = value(index);
+  SourceTable &table = *module.options.source;
+  const auto number = static_cast<std::uint32_t>(table.entries.size());
+  table.entries.push_back({SourceTable::Kind::Index, &expr, {&index}});
+  emitter.setLoc(module.location(index.range));
+  auto check = emitter.make<ir::EvaluateOp>(module.type(index.type), number, unchecked,
+                                            emitter.getStrArrayAttr({}));
+  return check.getResult(0);
+}
+
 std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, Value into) {
   const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
   if (into && isWrite)
     return lowerNested(expr, /*hasResult=*/true, into);
-  if (!isOneStep(expr))
+  if (!isOneStep(expr) && !mayRaise(expr)) // the parts of an index are never conditional
     return std::nullopt;
   const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
   if (isChoice && !isKept(expr))
@@ -252,6 +287,8 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
   evaluation.hasResult = !isWrite;
   for (const typed::Expr *at = outputOf(expr); at; at = outerPlace(*at))
     evaluation.path.insert(at);
+  if (module.options.raisesExceptions)
+    addIndexedPlaces(expr, evaluation);
   if (!collectWritten(expr, evaluation))
     return lowerNested(expr, evaluation.hasResult, into);
   gather(expr, evaluation, true);
@@ -289,9 +326,11 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
     ir::attr::changes.set(op, emitter.getDenseI32ArrayAttr(evaluation.changed));
   const bool isPrint = expr.kind == ExprKind::Builtin &&
                        has(cast<typed::BuiltinExpr>(expr).builtin, typed::effect::Prints);
+  bool raises = false;
+  forEachExpr(expr, [&](const typed::Expr &inner) { raises |= mayRaise(inner); });
   if (evaluation.isNested)
     ir::attr::nested.set(op);
-  else if (!isPrint && !outputOf(expr) &&
+  else if (!isPrint && !raises && !outputOf(expr) &&
            (!isCall || isKept(expr))) // it accesses nothing but these variables
     ir::attr::plain.set(op);
   for (const auto &[lvalue, copy] : evaluation.outputs)

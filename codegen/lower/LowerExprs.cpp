@@ -206,7 +206,7 @@ Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {
     if (auto *literal = dynCast<typed::LiteralExpr>(expr.index);
         literal && literal->value.scalars.front().u < type->count)
       return {emitter.extract(vector, static_cast<unsigned>(literal->value.scalars.front().u))};
-    return {emitter.extract(vector, clampedIndex(*expr.index, type->count))};
+    return {emitter.extract(vector, clampedIndex(expr))};
   }
   return load(lowerLvalue(expr));
 }

@@ -120,9 +120,8 @@ Lvalue FunctionLowering::indexLvalue(const typed::IndexExpr &expr) {
   result.guard = base.guard;
   std::optional<std::int64_t> constant = constantIndex(*expr.index, type->count);
   if (!type->isVector()) {
-    result.address = constant
-                         ? emitter.element(base.address, static_cast<unsigned>(*constant))
-                         : emitter.element(base.address, clampedIndex(*expr.index, type->count));
+    result.address = constant ? emitter.element(base.address, static_cast<unsigned>(*constant))
+                              : emitter.element(base.address, clampedIndex(expr));
     return result;
   }
   result.address = base.address;
@@ -132,7 +131,7 @@ Lvalue FunctionLowering::indexLvalue(const typed::IndexExpr &expr) {
     result.components = {base.isPartOfVector ? base.components[component] : component};
     return result;
   }
-  result.component = clampedIndex(*expr.index, type->count);
+  result.component = clampedIndex(expr);
   if (base.isPartOfVector) {
     // `v.zx[i]`: the component that the swizzle names.
     Num index = num(result.component), component = index.like(base.components.back());
@@ -173,8 +172,10 @@ Lvalue FunctionLowering::bufferLvalue(const typed::IndexExpr &expr) {
   return result;
 }
 
-Value FunctionLowering::clampedIndex(const typed::Expr &index, std::uint32_t count) {
-  return clampedIndex(index, emitter.intConstant(count));
+Value FunctionLowering::clampedIndex(const typed::IndexExpr &expr) {
+  if (module.options.source && mayRaise(expr))
+    return checkedIndex(expr);
+  return clampedIndex(*expr.index, emitter.intConstant(expr.base->type->count));
 }
 
 // The count is never negative. If it is 0 the index is 0, or 2^32 - 1 unsigned, but guarded.

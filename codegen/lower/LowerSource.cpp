@@ -21,6 +21,12 @@ static bool hasNoOutputs(const typed::Function &function) {
                      [](const auto &p) { return p->direction == ast::Direction::In; });
 }
 
+/// Does the operation itself end the sample where an index is out of range?
+bool FunctionLowering::mayRaise(const typed::Expr &expr) const {
+  auto *index = dynCast<typed::IndexExpr>(&expr);
+  return index && module.options.raisesExceptions && index->index->kind != ExprKind::Literal;
+}
+
 /// May the operation itself, regardless of its operands, be kept in a whole expression?
 bool FunctionLowering::isKept(const typed::Expr &expr) const {
   switch (expr.kind) {
@@ -31,9 +37,10 @@ bool FunctionLowering::isKept(const typed::Expr &expr) const {
   case ExprKind::String:
     return false;
   case ExprKind::Field:
-  case ExprKind::Index:
   case ExprKind::Swizzle:
     return !isInOutputBuffer(expr); // whose elements change
+  case ExprKind::Index:
+    return !isInOutputBuffer(expr) && !mayRaise(expr);
   case ExprKind::Builtin:
     return typed::isPure(cast<typed::BuiltinExpr>(expr).builtin);
   case ExprKind::Call: {
@@ -173,7 +180,7 @@ std::optional<Parts> FunctionLowering::lowerWhole(const typed::Expr &expr) {
   auto *builtin = dynCast<typed::BuiltinExpr>(&expr);
   if (builtin && has(builtin->builtin, typed::effect::Prints) && !module.options.prints)
     return Parts();
-  if ((isCall && !isKept(expr)) || isInOutputBuffer(expr) ||
+  if ((isCall && !isKept(expr)) || isInOutputBuffer(expr) || mayRaise(expr) ||
       (builtin && (outputsOf(builtin->builtin).second != 0 || typed::isAtomic(builtin->builtin) ||
                    has(builtin->builtin, typed::effect::Prints))))
     return lowerEvaluation(expr);

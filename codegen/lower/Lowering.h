@@ -172,6 +172,7 @@ private:
   /// The expression as one operation, if it is to be kept whole and can be.
   std::optional<Parts> lowerWhole(const typed::Expr &expr);
   bool collectLeaves(const typed::Expr &expr, std::vector<const typed::Expr *> &leaves) const;
+  bool mayRaise(const typed::Expr &expr) const;
   bool isKept(const typed::Expr &expr) const;
   Value wholeExpression(SourceTable::Kind kind, const typed::Expr &expr,
                         std::vector<const typed::Expr *> leaves, llvm::ArrayRef<Value> operands,
@@ -194,6 +195,9 @@ private:
     bool isNested = false;              // subexpressions with effects are part of it
     bool hasResult = true;
   };
+  void addIndexedPlaces(const typed::Expr &expr, Evaluation &evaluation);
+  /// The index of an element that is no part of a buffer, checked by an operation of its own.
+  Value checkedIndex(const typed::IndexExpr &expr);
   /// The expression as one operation that reads and writes variables in place; nothing if that is
   /// not possible. With `into` its value is stored there.
   std::optional<Parts> lowerEvaluation(const typed::Expr &expr, Value into = nullptr);
@@ -222,7 +226,7 @@ private:
   Value temporary(llvm::StringRef name, const Type *type);
   /// An index, clamped to [0, count - 1] if indices are checked.
   Value clampedIndex(const typed::Expr &index, Value count);
-  Value clampedIndex(const typed::Expr &index, std::uint32_t count);
+  Value clampedIndex(const typed::IndexExpr &expr);
 
   // LowerOperators.cpp
   Parts lowerUnary(const typed::UnaryExpr &expr);

@@ -21,6 +21,7 @@ struct SourceTable {
     Compound,    // the new value of the target of `target op= value`
     Step,        // that of `++target`
     AngleCosine, // the cosine of the angle of an `illuminance`
+    Index,       // that of an element, which ends the sample if it is out of range
     Into         // the value is stored to a variable that stays whole, the first operand
   };
   struct Entry {

@@ -17,23 +17,31 @@ void Effects::add(const Effects &other) {
   writesScratch |= other.writesScratch;
   writesMembers |= other.writesMembers;
   hasOutput |= other.hasOutput;
+  raises |= other.raises;
 }
 
 bool Effects::operator==(const Effects &other) const {
   return reads == other.reads && writes == other.writes && random == other.random &&
          reportsHit == other.reportsHit && usesRay == other.usesRay &&
          usesScratch == other.usesScratch && writesScratch == other.writesScratch &&
-         writesMembers == other.writesMembers && hasOutput == other.hasOutput;
+         writesMembers == other.writesMembers && hasOutput == other.hasOutput &&
+         raises == other.raises;
 }
 
 static bool intersect(const std::set<const void *> &a, const std::set<const void *> &b) {
   return std::any_of(a.begin(), a.end(), [&](const void *place) { return b.count(place) != 0; });
 }
 
+/// Would it show whether a sample ends before or after this? Rays draw random numbers.
+static bool showsEnd(const Effects &effects) {
+  return effects.random || effects.hasOutput;
+}
+
 bool conflicts(const Effects &first, const Effects &second) {
   return intersect(first.writes, second.reads) || intersect(first.reads, second.writes) ||
          intersect(first.writes, second.writes) || (first.random && second.random) ||
-         (first.reportsHit && second.reportsHit) || (first.hasOutput && second.hasOutput);
+         (first.reportsHit && second.reportsHit) || (first.hasOutput && second.hasOutput) ||
+         (first.raises && showsEnd(second)) || (showsEnd(first) && second.raises);
 }
 
 const void *EffectsOf::place(StateVariable variable) {
@@ -251,7 +259,8 @@ void EffectsOf::collect(const Expr &expr, Effects &effects) {
     break;
   case ExprKind::Index:
     effects.usesRay |= isInOutputBuffer(expr);
-    effects.usesRay |= raises && cast<IndexExpr>(expr).index->kind != ExprKind::Literal;
+    if (raises && cast<IndexExpr>(expr).index->kind != ExprKind::Literal)
+      effects.usesRay = effects.raises = true;
     break;
   case ExprKind::IncDec:
     collectWrite(*cast<IncDecExpr>(expr).target, effects);

@@ -30,10 +30,11 @@ struct Effects {
   bool writesScratch = false;
   bool writesMembers = false;
   bool hasOutput = false; // does something that cannot be named, such as printing
+  bool raises = false;    // ends the sample at an index that is out of range
 
   void add(const Effects &other);
   bool operator==(const Effects &other) const;
-  bool isPure() const { return writes.empty() && !random && !reportsHit && !hasOutput; }
+  bool isPure() const { return writes.empty() && !random && !reportsHit && !hasOutput && !raises; }
 };
 
 /// Would it show if `second` were evaluated before `first`?
@@ -47,7 +48,7 @@ const Function &overridden(const Function &function);
 
 class EffectsOf {
 public:
-  /// `prints`: does `print` print? `raises`: does an index out of range use the state?
+  /// `prints`: does `print` print? `raises`: does an index out of range end the sample?
   explicit EffectsOf(const Module &module, bool prints = false, bool raises = false);
 
   /// All expressions that are evaluated: not what a `print` would print that prints nothing.

@@ -29,6 +29,13 @@ std::string tooDeepText(const runtime::RenderStatistics &statistics,
                      statistics.raysTooDeep, statistics.samples, options.maxDepth);
 }
 
+std::string badRaysText(const runtime::RenderStatistics &statistics) {
+  if (!statistics.badRays || statistics.exceptions[RTSL_EXCEPTION_BAD_RAY])
+    return {};
+  return fmt::format("{} rays had no direction or were not finite, and returned black",
+                     statistics.badRays);
+}
+
 std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
                                         const runtime::RenderOptions &options) {
   const std::uint64_t *counts = statistics.exceptions;

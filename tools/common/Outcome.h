@@ -19,6 +19,10 @@ std::string sampleText(const runtime::SampleId &sample);
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
                         const runtime::RenderOptions &options);
 
+/// "3 rays had no direction or were not finite, and returned black"; empty: none, or they ended
+/// samples.
+std::string badRaysText(const runtime::RenderStatistics &statistics);
+
 /// A sentence for each kind of exception that samples met.
 std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
                                         const runtime::RenderOptions &options);

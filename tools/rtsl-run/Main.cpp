@@ -123,9 +123,8 @@ void report(const Options &options, const runtime::Package &package,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr, "{}\n", tool::gpuText(*gpu));
-  if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
-               statistics.badRays);
+  if (const std::string text = tool::badRaysText(statistics); !text.empty())
+    fmt::print(stderr, "{}\n", text);
 }
 
 /// The picture to compare with, before time is spent on another one; nothing if not requested

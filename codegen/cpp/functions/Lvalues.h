@@ -25,8 +25,9 @@ public:
   /// to a bool that lies in memory as 32 bits.
   bool canBind(const typed::Expr &lvalue) const;
 
+  Code index(const typed::IndexExpr &expr, bool storeIndices = false);
+
 private:
-  Code index(const typed::IndexExpr &expr, bool storeIndices);
   /// With --exceptions: the index, which is reported to the state if it is out of range.
   Code checked(Code index, Code count) const;
   Code bufferElement(const typed::IndexExpr &expr);

@@ -80,6 +80,8 @@ Code StateExpressions::of(const SourceTable::Entry &entry, mlir::ValueRange oper
   case SourceTable::Kind::Value:
   case SourceTable::Kind::Into:
     return state.functions.expressions.expr(*entry.expr);
+  case SourceTable::Kind::Index:
+    return state.functions.lvalues.index(static_cast<const typed::IndexExpr &>(*entry.expr));
   case SourceTable::Kind::AngleCosine:
     return cpp::call("rtsl::cosOfAngle", {state.functions.expressions.argument(*entry.expr)});
   case SourceTable::Kind::Compound: {

@@ -18,8 +18,8 @@ static const std::vector<std::pair<StateVariable, const char *>> &stateVariables
   return all;
 }
 
-SourceTable makeSourceTable(const typed::Module &module) {
-  auto effects = std::make_shared<typed::EffectsOf>(module);
+SourceTable makeSourceTable(const typed::Module &module, bool raises) {
+  auto effects = std::make_shared<typed::EffectsOf>(module, /*prints=*/false, raises);
   SourceTable table;
   table.isPure = [effects](const typed::Function &function) {
     const typed::Effects &inside = effects->function(function);

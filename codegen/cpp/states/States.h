@@ -20,7 +20,8 @@ struct StateProgram {
   const SourceTable &source;
 };
 
-/// The table for lowering that this printer requires.
-SourceTable makeSourceTable(const typed::Module &module);
+/// The table for lowering that this printer requires. `raises`: an index out of range ends the
+/// sample.
+SourceTable makeSourceTable(const typed::Module &module, bool raises);
 
 } // namespace rtsl::cpp

@@ -5,10 +5,10 @@
 //
 // - no material has `closestHit` for the type: any hit will do, and the first one ends the search;
 // - some material has `anyHit`: hits may be refused. The order in which the methods run must not be
-//   visible. It is not if they do not write the payload, draw no random numbers, and do not end the
-//   search before the nearest hit where that is needed. Nor is it if each of them either refuses,
-//   or writes the same constants and ends the search, and no `closestHit` follows. In all other
-//   cases they run in the order of hits.
+//   visible. It is not if they do not write the payload, draw no random numbers, raise no
+//   exceptions, and do not end the search before the nearest hit where that is needed. Nor is it if
+//   each of them either refuses, or writes the same constants and ends the search, and no
+//   `closestHit` follows. In all other cases they run in the order of hits.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -64,7 +64,7 @@ std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkCont
 /// The effects of the `anyHit` methods for one type of ray.
 struct AnyHitEffects {
   bool writes = false, reads = false; // the payload
-  bool draws = false;                 // random numbers, or has unknown effects
+  bool draws = false;                 // random numbers, ends samples, or has unknown effects
   bool terminates = false;
 };
 
@@ -92,7 +92,7 @@ AnyHitEffects effectsOf(const std::vector<FuncOp> &functions) {
         effects.writes |= getsPayload;
       } else if (auto answer = llvm::dyn_cast<ir::AnswerHitOp>(op)) {
         effects.terminates |= answer.getAnswer() == ir::HitAnswer::Terminate;
-      } else if (llvm::isa<ir::PrintOp, ir::CallMethodOp>(op)) {
+      } else if (llvm::isa<ir::PrintOp, ir::RaiseOp, ir::CallMethodOp>(op)) {
         effects.draws = true;
       }
     });

@@ -94,10 +94,10 @@ private:
 
 /// An index, clamped; an index out of range ends the sample (`rtslc compile --exceptions`).
 template <int N, typename Index, typename Count>
-inline uint checked(State<N> &rt, Index index, Count count) {
+inline Index checked(State<N> &rt, Index index, Count count) {
   if (static_cast<uint>(index) >= static_cast<uint>(count))
     rtsl_raise(rawState(rt), RTSL_EXCEPTION_INDEX);
-  return clampIndex(index, static_cast<uint>(count));
+  return static_cast<Index>(clampIndex(index, static_cast<uint>(count)));
 }
 
 //===----------------------------------------------------------------------===//

@@ -75,6 +75,18 @@ def events(answered):
     return scene
 
 
+def late():
+    """Indices out of range before, between and after rays that are exceptions themselves."""
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Events.rtsl"), str(glass / "Sphere.rtsl")],
+        "rayGeneration": {"class": "Around"},
+        "objects": [sphere([0, 0, 0], radius, {"class": "Late", "curve": [0.25, 0.75, 0.5, 1]}) for radius in (1, 2, 3)],
+        "exception": {"class": "Code"},
+        "render": {"engine": "programs", "size": [24, 24], "spp": 2, "depth": 3},
+    }
+
+
 def chains(length, depth, branches=True):
     """Objects that call each other, in a chain of this length (Chains.rtsl)."""
     textures = {"t0": {"class": "Filter"}, "s0": {"class": "Scale"}}
@@ -360,7 +372,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
-    ("g++", ["-O1"], ["--exceptions"], [events(False), events(True)]),
+    ("g++", ["-O1"], ["--exceptions"], [events(False), events(True), late()]),
+    ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [late()]),
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
     (
         "g++",

@@ -97,9 +97,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
   for (const std::string &text : exceptionTexts(statistics, render))
     fmt::print(stderr, "{}\n", text);
-  if (statistics.badRays)
-    fmt::print(stderr, "{} rays had no direction or were not finite, and returned black\n",
-               statistics.badRays);
+  if (const std::string text = tool::badRaysText(statistics); !text.empty())
+    fmt::print(stderr, "{}\n", text);
 }
 
 void warn(const PictureSummary &summary, Messages &messages) {

@@ -152,7 +152,11 @@ const Type *ValueTypes::of(mlir::Value value) {
         const SourceTable::Entry &entry = source.entries[expression.getSource()];
         return entry.kind == SourceTable::Kind::AngleCosine ? types.floatType : entry.expr->type;
       })
-      .Case([&](ir::EvaluateOp call) { return source.entries[call.getSource()].expr->type; })
+      .Case([&](ir::EvaluateOp call) {
+        const SourceTable::Entry &entry = source.entries[call.getSource()];
+        return entry.kind == SourceTable::Kind::Index ? entry.leaves.front()->type
+                                                      : entry.expr->type;
+      })
       .Case([&](ir::LoadOp load) {
         if (auto variable = load.getAddress().getDefiningOp<ir::VarOp>())
           return ofVariable(variable);

@@ -6,6 +6,7 @@
 #include "codegen/lower/Lower.h"
 #include "codegen/passes/Pipeline.h"
 #include "frontend/syntax/Parser.h"
+#include "runtime/device/ray/Abi.h"
 #include "sema/Sema.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -29,6 +30,7 @@ public:
     context.loadAllAvailableDialects();
     LowerOptions options;
     options.diagnostics = &diagnostics;
+    options.raisesExceptions = this->request.features & RTSL_FEATURE_EXCEPTIONS;
     ir = lower(*module, options, context);
     EXPECT_TRUE(ir) << renderText(diagnostics, false);
     if (ir)

@@ -8,7 +8,8 @@ namespace {
 
 /// A scene with these materials in which the ray generation sends a `Shadow`. Returns `how` of its
 /// ray.
-std::uint32_t howToSearch(const std::string &materials, std::vector<std::string> classes) {
+std::uint32_t howToSearch(const std::string &materials, std::vector<std::string> classes,
+                          std::uint32_t features = 0) {
   classes.push_back("Eye");
   Linked linked(R"(
 struct Shadow { float light; bool isLit; vec2 parts[2]; };
@@ -20,7 +21,7 @@ class Eye : rt_RayGeneration {
   }
 };
 )" + materials,
-                {classes, {}, {}, {}, true, runtime::Engine::Programs});
+                {classes, {}, {}, {}, true, runtime::Engine::Programs, features});
   EXPECT_TRUE(linked.succeeded);
   std::uint32_t how = ~0u;
   if (linked.succeeded)
@@ -58,6 +59,14 @@ TEST(RayTypes, OrderDoesNotShowWhereNothingIsWritten) {
   EXPECT_EQ(howToSearch(material(refuse + "terminateRay();", closest), {"M"}), invoke | inOrder);
   EXPECT_EQ(howToSearch(material("if (rand() < opacity) ignoreIntersection();"), {"M"}),
             invoke | first | inOrder);
+}
+
+TEST(RayTypes, OrderShowsWhereSamplesMayEnd) {
+  const std::string refuse = "if (s.parts[int(rt_HitDistance)].x < 0.5) ignoreIntersection();";
+  const std::string closest = "void closestHit(inout Shadow s) { s.light = rt_HitDistance; }";
+  EXPECT_EQ(howToSearch(material(refuse, closest), {"M"}), invoke);
+  EXPECT_EQ(howToSearch(material(refuse, closest), {"M"}, RTSL_FEATURE_EXCEPTIONS),
+            invoke | inOrder);
 }
 
 TEST(RayTypes, OrderShowsInWhatIsWritten) {
