@@ -2,7 +2,8 @@
 //
 // assimp reads all formats, but is slow: for each OBJ or PLY file it clears 32 MiB first. So files
 // of these formats without unusual features are read here, and assimp reads the rest: other
-// formats, rare features, and damaged files, for which it gives the message.
+// formats, rare features, and damaged files, for which it gives the message, unless they are PLY
+// files, some of which crash it.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/geometry/AssimpFile.h"
@@ -72,10 +73,9 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
   std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
-  const std::string missing = isPly ? findMissingPlyElements(bytes) : "";
-  if (!missing.empty())
-    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is truncated: it {}", path, missing),
-                Place{path});
+  const std::string damage = isPly ? findPlyDamage(bytes) : "";
+  if (!damage.empty())
+    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` {}", path, damage), Place{path});
   if (isRead)
     throw Error(ErrorCode::BadMesh,
                 fmt::format("cannot read mesh `{}` from a pipe: it is damaged, or has something in "

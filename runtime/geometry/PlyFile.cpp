@@ -330,10 +330,13 @@ std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &requ
   return std::move(reader.mesh);
 }
 
-std::string findMissingPlyElements(std::string_view bytes) {
-  const std::optional<Header> header = readHeader(bytes);
+std::string findPlyDamage(std::string_view bytes) {
+  if (!isPly(bytes))
+    return "is damaged: it does not begin with `ply`";
+  std::size_t line = 0;
+  const std::optional<Header> header = readHeader(bytes, &line);
   if (!header)
-    return "";
+    return fmt::format("is damaged or cut short in line {} of its header", line);
   Body body(bytes, *header);
   for (const Element &element : header->elements) {
     if (element.properties.empty())
@@ -341,8 +344,8 @@ std::string findMissingPlyElements(std::string_view bytes) {
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const Property &property : element.properties)
         if (!body.skip(property))
-          return fmt::format("ends in element {} of {} of `{}`", i + 1, element.count,
-                             element.name);
+          return fmt::format("is truncated: it ends in element {} of {} of `{}`", i + 1,
+                             element.count, element.name);
   }
   return "";
 }

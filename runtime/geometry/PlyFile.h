@@ -16,9 +16,9 @@ namespace rtsl::runtime {
 /// files are left to the general reader (MeshFile.cpp).
 std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &request = {});
 
-/// The elements that the header declares but the file does not contain, for a message such as "ends
-/// in element 3 of 50 of `face`"; the general reader would read zeros instead. Empty if nothing is
-/// missing, or the header is not understood.
-std::string findMissingPlyElements(std::string_view bytes);
+/// Why the file cannot be a PLY file, for a message such as "is truncated: it ends in element 3 of
+/// 50 of `face`". Empty if its header is valid, and all elements that this declares are there. The
+/// general reader must not read other files: it reads zeros, never ends or crashes.
+std::string findPlyDamage(std::string_view bytes);
 
 } // namespace rtsl::runtime

@@ -123,6 +123,27 @@ class BadScenes(Case):
         self.glass_scene()
         self.assert_message(self.render("--set", "objects.3.mesh=half.ply"), "E0904", "half.ply")
 
+    def test_damaged_headers_of_ply_meshes(self):
+        header = (
+            b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            b"property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+            b"end_header\n"
+        )
+        body = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+        self.glass_scene()
+        for damaged, line in (
+            (header[:42], "line 4"),
+            (header[:-11], "line 8"),
+            (header.replace(b"float y", b"flo\nt y") + body, "line 5"),
+            (header.replace(b"element vertex 3", b"element vertex") + body, "line 3"),
+            (b"plx" + header[3:] + body, "`ply`"),
+        ):
+            with self.subTest(damaged=damaged):
+                self.write("damaged.ply", damaged)
+                message = self.render("--set", "objects.3.mesh=damaged.ply")
+                self.assert_message(message, "E0904", "damaged.ply")
+                self.assert_message(message, "E0904", line)
+
     def test_mesh_with_an_index_out_of_range(self):
         self.write("range.obj", TRIANGLE.replace("f 1 2 3", "f 1 2 77"))
         self.glass_scene()

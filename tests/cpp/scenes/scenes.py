@@ -81,7 +81,10 @@ def late():
         "rtsl": 1,
         "import": [str(here / "Events.rtsl"), str(glass / "Sphere.rtsl")],
         "rayGeneration": {"class": "Around"},
-        "objects": [sphere([0, 0, 0], radius, {"class": "Late", "curve": [0.25, 0.75, 0.5, 1]}) for radius in (1, 2, 3)],
+        "objects": [
+            sphere([0, 0, 0], radius, {"class": "Late", "curve": [0.25, 0.75, 0.5, 1]})
+            for radius in (1, 2, 3)
+        ],
         "exception": {"class": "Code"},
         "render": {"engine": "programs", "size": [24, 24], "spp": 2, "depth": 3},
     }
