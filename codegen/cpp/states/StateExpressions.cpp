@@ -20,7 +20,6 @@ bool StateExpressions::print(mlir::Operation &op, Statements &out) {
     return false;
   const SourceTable::Entry &entry = state.source.entries[whole.getSource()];
   const Code code = of(entry, whole->getOperands());
-  state.usesScratch |= context.effects.expression(*entry.expr).usesScratch;
   state.values.make(op, code, out);
   return true;
 }

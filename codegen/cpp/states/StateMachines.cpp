@@ -207,7 +207,7 @@ Declaration StateMachines::stateFunction(const Machine &machine, MethodPrinter &
         byReference(context.names.of(payload->type->structure), context.names.of(payload)));
     arguments.push_back(payloadAt(context.names, *payload->type->structure));
   }
-  if (statePrinter.usesScratch) {
+  if (mentions(body, "scratch")) {
     parameters.push_back(byConstReference("Scratch", "scratch"));
     arguments.push_back(storedScratch(context.names, definition));
   }

@@ -69,7 +69,6 @@ void StateMemory::write(ir::FrameStoreOp op, Statements &out) {
 /// Variables that stay whole are read and written where they lie, by the author's expression.
 void StateMemory::write(ir::EvaluateOp op, Statements &out) {
   const SourceTable::Entry &entry = state.source.entries[op.getSource()];
-  state.usesScratch |= context.effects.expression(*entry.expr).usesScratch;
   const bool isWrite =
       op.getNumResults() == 0 && entry.kind == SourceTable::Kind::Value &&
       (entry.expr->kind == ExprKind::Assign || entry.expr->kind == ExprKind::IncDec);

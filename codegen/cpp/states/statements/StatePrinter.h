@@ -36,7 +36,6 @@ struct StatePrinter {
   const Machine &machine;
   FunctionPrinter &functions;
   ValueTypes &types;
-  bool usesScratch = false; // known when the body has been made
 
   ValueNames names;
   StatementEmitter emitter;
