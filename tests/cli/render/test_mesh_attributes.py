@@ -125,7 +125,7 @@ class Attributes(Case):
         return self.render_scene(scene, *options)[0]
 
     def everything(self):
-        """Meshes in world space, in their own space, mirrored, moving, with keys; and a primitive."""
+        """Meshes in world space, in their own, mirrored, moving, with keys; and a primitive."""
         side = {"values": [[0, 0, 1]] * 6, "space": "vector"}
         tangent = {"values": [[1, 0, 0.5, 1]] * 6, "space": "tangent"}
         return scene(
