@@ -113,14 +113,16 @@ std::uint64_t GpuRenderer::sliceBytes() {
   return std::min<std::uint64_t>(device.freeMemory() / 4, enough);
 }
 
-/// Calls visit(values, where the device has them) for the parts of the sums; squares may be
-/// missing.
+/// Calls visit(values, where the device has them) for the parts of the sums; some may be missing.
 template <typename Visit>
 static void forEachPart(PixelSums &sums, RtslPixelSums &onDevice, Visit visit) {
   visit(sums.colors, onDevice.colors);
   visit(sums.squares, onDevice.squares);
   visit(sums.counted, onDevice.counted);
   visit(sums.taken, onDevice.taken);
+  visit(sums.values, onDevice.values);
+  visit(sums.deciding, onDevice.deciding);
+  visit(sums.closed, onDevice.closed);
 }
 
 RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
@@ -138,6 +140,8 @@ RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
 
 void GpuRenderer::fetchSums() {
   forEachPart(*sums, sumsOnDevice, [&](auto &values, auto *&address) {
+    if (values.empty())
+      return;
     device.download(values.data(), reinterpret_cast<Address>(address),
                     values.size() * sizeof values[0]);
   });

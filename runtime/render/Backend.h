@@ -75,6 +75,7 @@ private:
   virtual void fetchSums() {}
 
   void takeSums(PartialRendering &rendering);
+  void measure(const PassOptions &passes, PartialRendering &rendering);
   bool runPass(const PassOptions &passes, std::chrono::steady_clock::time_point pause,
                RenderStatistics &met);
   void runPasses(const PassOptions &passes, const std::function<void(const PassState &)> &progress,

@@ -16,10 +16,9 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'C', 'K', 'P', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 1;
+constexpr std::uint32_t formatVersion = 2;
 
-/// Numbers are little-endian. The facts follow, and then the sums of all pixels: colors, squares,
-/// counted, taken.
+/// Numbers are little-endian. The facts follow, and then the sums of all pixels (forEachPart).
 struct Header {
   char magic[8];
   std::uint32_t version;
@@ -50,6 +49,19 @@ void forEachNumber(Rendering &rendering, Visit visit) {
   visit(rendering.met.raysTooDeep);
   for (auto &count : rendering.met.exceptions)
     visit(count);
+}
+
+/// Calls visit(values) for the parts of sums, in the order of the file; those that only adaptive
+/// renderings have are empty in others.
+template <typename Sums, typename Visit>
+void forEachPart(Sums &sums, Visit visit) {
+  visit(sums.colors);
+  visit(sums.squares);
+  visit(sums.counted);
+  visit(sums.taken);
+  visit(sums.values);
+  visit(sums.deciding);
+  visit(sums.closed);
 }
 
 class FactWriter {
@@ -208,16 +220,19 @@ std::string_view readValues(std::string_view from, std::vector<Value> &values) {
 }
 
 PixelSums readSums(std::string_view bytes, const std::string &path, std::uint64_t pixels,
-                   std::uint32_t components) {
-  PixelSums sums = PixelSums::make(pixels, components);
-  if (bytes.size() != pixels * (8 * (components + 1) + 8))
+                   std::uint32_t components, bool isAdaptive) {
+  PixelSums sums = PixelSums::make(pixels, components, isAdaptive);
+  std::size_t expected = 0;
+  forEachPart(sums, [&](const auto &values) { expected += bytesOf(values).size(); });
+  if (bytes.size() != expected)
     refuseDamaged(path);
-  bytes = readValues(bytes, sums.colors);
-  bytes = readValues(bytes, sums.squares);
-  bytes = readValues(bytes, sums.counted);
-  readValues(bytes, sums.taken);
-  for (std::size_t pixel = 0; pixel < sums.pixels(); ++pixel)
-    if (sums.counted[pixel] > sums.taken[pixel])
+  forEachPart(sums, [&](auto &values) { bytes = readValues(bytes, values); });
+  for (std::size_t half = 0; half < sums.counted.size(); ++half)
+    if (sums.counted[half] > sums.taken[half / sums.halves()] ||
+        (isAdaptive && sums.deciding[half] > sums.taken[half / 2]))
+      refuseDamaged(path);
+  for (const std::uint32_t closed : sums.closed)
+    if (closed > PixelSums::allClosed)
       refuseDamaged(path);
   return sums;
 }
@@ -231,9 +246,8 @@ void writeCheckpoint(const std::string &path, const Identity &identity,
   facts.add(rendering);
   const PixelSums &sums = rendering.sums;
   Header header{};
-  std::vector<std::string_view> parts = {bytesOf(header),       facts.bytes,
-                                         bytesOf(sums.colors),  bytesOf(sums.squares),
-                                         bytesOf(sums.counted), bytesOf(sums.taken)};
+  std::vector<std::string_view> parts = {bytesOf(header), facts.bytes};
+  forEachPart(sums, [&](const auto &values) { parts.push_back(bytesOf(values)); });
   std::memcpy(header.magic, magic, sizeof magic);
   header.version = formatVersion;
   header.factBytes = std::uint32_t(facts.bytes.size());
@@ -249,7 +263,7 @@ void writeCheckpoint(const std::string &path, const Identity &identity,
 
 PartialRendering parseCheckpoint(std::string_view bytes, const std::string &path,
                                  const Identity &identity, std::uint64_t pixels,
-                                 std::uint32_t components) {
+                                 std::uint32_t components, bool isAdaptive) {
   const Header header = checkFile(bytes, path, identity.producer);
   PartialRendering rendering;
   try {
@@ -259,8 +273,8 @@ PartialRendering parseCheckpoint(std::string_view bytes, const std::string &path
   } catch (const Malformed &) {
     refuseDamaged(path);
   }
-  rendering.sums =
-      readSums(bytes.substr(sizeof header + header.factBytes), path, pixels, components);
+  rendering.sums = readSums(bytes.substr(sizeof header + header.factBytes), path, pixels,
+                            components, isAdaptive);
   return rendering;
 }
 

@@ -35,9 +35,9 @@ void writeCheckpoint(const std::string &path, const Identity &identity,
 
 /// The contents of a file with this name. Throws BadCheckpoint: it is no checkpoint, of another
 /// version or another rendering, truncated, or damaged (a change of any one byte is found). The
-/// sums have this many pixels and components.
+/// sums have this many pixels and components, and are adaptive or not.
 PartialRendering parseCheckpoint(std::string_view bytes, const std::string &path,
                                  const Identity &identity, std::uint64_t pixels,
-                                 std::uint32_t components);
+                                 std::uint32_t components, bool isAdaptive = false);
 
 } // namespace rtsl::runtime

@@ -1,5 +1,6 @@
 #include "runtime/render/Megakernel.h"
 
+#include "runtime/device/engines/Slice.h"
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
 
@@ -102,6 +103,8 @@ void Megakernel::begin() {
   job.pixels = reinterpret_cast<float *>(clearedPixels());
   leastTaken = 0;
   isUneven = false;
+  openPixels = pixelCount();
+  job.places = nullptr;
   if (mostSamples < samplesOfPixel && options.wantsPicture)
     placeOwnSums();
   else
@@ -116,17 +119,17 @@ void Megakernel::placeOwnSums() {
 }
 
 void Megakernel::run(Watch &watch) {
-  const std::uint64_t all = pixelCount() * (samplesOfPixel - leastTaken);
+  const std::uint64_t all = openPixels * (samplesOfPixel - leastTaken);
   std::uint64_t before = 0;
   kernelSeconds = 0;
   samplesOfSlice = 0;
   const auto share = [&](std::uint64_t samples) { return double(before + samples) / double(all); };
   while (leastTaken < samplesOfPixel && !watch.isStopped()) {
     job.firstSample = leastTaken;
-    job.sampleCount = std::min(mostSamples, samplesOfPixel - leastTaken);
+    job.sampleCount = std::min(samplesAtOnce(), samplesOfPixel - leastTaken);
     job.taken = isUneven ? job.sums.taken : nullptr;
     runSlice(watch, share);
-    const std::uint64_t whole = pixelCount() * job.sampleCount;
+    const std::uint64_t whole = openPixels * job.sampleCount;
     before += whole;
     isUneven = isUneven || samplesOfSlice < whole;
     if (samplesOfSlice < whole)
@@ -141,7 +144,7 @@ void Megakernel::run(Watch &watch) {
 /// and a GPU that shows a screen can do so.
 void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share) {
   upload(jobAddress, &job, sizeof job);
-  const std::uint64_t none = 0, all = pixelCount() * job.sampleCount;
+  const std::uint64_t none = 0, all = openPixels * job.sampleCount;
   const Address next = statusAddress + offsetof(RtslStatus, nextSample);
   upload(next, &none, sizeof none);
   samplesOfSlice = 0;
@@ -174,11 +177,11 @@ RenderStatistics Megakernel::finish() {
   statistics.kernelSeconds = kernelSeconds;
   if (leastTaken == samplesOfPixel) {
     statistics.pixels = pixelCount();
-    statistics.samples = pixelCount() * samplesOfPixel;
+    statistics.samples = openPixels * samplesOfPixel;
   } else { // pixels have samples of the slice in the order of their numbers
-    statistics.samples = pixelCount() * leastTaken + samplesOfSlice;
+    statistics.samples = openPixels * leastTaken + samplesOfSlice;
     if (leastTaken + job.sampleCount == samplesOfPixel)
-      statistics.pixels = samplesOfSlice / job.sampleCount;
+      statistics.pixels = pixelCount() - openPixels + samplesOfSlice / job.sampleCount;
   }
   if (!sums)
     fetchPixels();
@@ -192,6 +195,31 @@ void Megakernel::uploadSums() {
   const SampleCounts counts = countSamples(*sums);
   leastTaken = counts.least;
   isUneven = counts.least < counts.most;
+  openPixels = counts.openPixels;
+  placeOpenPixels();
+}
+
+/// Lists the pixels that take samples, if others do not.
+void Megakernel::placeOpenPixels() {
+  job.places = nullptr;
+  if (openPixels == pixelCount() || openPixels == 0)
+    return;
+  std::vector<std::uint32_t> places;
+  places.reserve(openPixels);
+  for (std::uint32_t place = 0; place < pixelCount(); ++place)
+    if (sums->isOpen(device::pixelAt(job, place).number(job)))
+      places.push_back(place);
+  if (!placesAddress)
+    placesAddress = allocate(pixelCount() * sizeof places[0], "the pixels that take samples");
+  upload(placesAddress, places.data(), places.size() * sizeof places[0]);
+  job.places = reinterpret_cast<const std::uint32_t *>(placesAddress);
+  job.placeCount = std::uint32_t(places.size());
+}
+
+/// The samples of a pixel in a slice. Fewer pixels leave room for more.
+std::uint32_t Megakernel::samplesAtOnce() const {
+  const std::uint64_t most = pixelCount() * mostSamples / std::max<std::uint64_t>(openPixels, 1);
+  return std::uint32_t(std::min(most, mostInSlice));
 }
 
 } // namespace rtsl::runtime

@@ -73,16 +73,19 @@ private:
   /// `share` gives what is done of the run, for a number of samples of the slice.
   void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
   void placeOwnSums();
+  void placeOpenPixels();
+  std::uint32_t samplesAtOnce() const;
 
   FlatScene scene; // empty after prepare()
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
-  Address statusAddress = 0, jobAddress = 0;
+  Address statusAddress = 0, jobAddress = 0, placesAddress = 0;
   RtslJob job{};
   std::uint32_t mostSamples = 1; // of a pixel in a slice
   PixelSums ownSums;             // zeros: what a rendering that needs several slices begins with
   RtslPixelSums placedSums{};
-  // Of the sums: samples that each pixel has, and whether some have more.
+  // Of the sums: pixels that take samples, how many each of them has, and whether some have more.
+  std::uint64_t openPixels = 0;
   std::uint32_t leastTaken = 0;
   bool isUneven = false;
   // Of the last run:

@@ -12,13 +12,14 @@ namespace rtsl::runtime {
 
 /// How far a rendering in passes is.
 struct PassState {
-  std::uint32_t samplesPerPixel = 0; // that every pixel has
+  std::uint32_t samplesPerPixel = 0; // that every pixel has which needs them
   double seconds = 0;
   /// The estimated relative error of the picture: the root of the mean over the pixels of the
   /// variance of their means, divided by the mean of the picture. A pixel's value is the mean of
   /// its components, its variance the sample variance divided by the number of samples, as if these
   /// were independent: they are spread evenly, so the true error is smaller. Measured at
   /// certain numbers of samples, which do not depend on time; infinite before the first of them.
+  /// In an adaptive rendering it is the same measure, by Adaptive.h.
   double error = std::numeric_limits<double>::infinity();
 };
 
@@ -36,7 +37,8 @@ struct PartialRendering {
 /// pixel have the bits of a rendering with n samples per pixel.
 struct PassOptions {
   double seconds = std::numeric_limits<double>::infinity(); // no pass begins later
-  double error = 0;                                         // PassState::error; 0: no limit
+  /// PassState::error; 0: no limit. With RenderOptions::isAdaptive there must be one.
+  double error = 0;
   double secondsBetweenPictures = 10;
   /// Called after a pass if the last call is as long ago; not after the last pass.
   std::function<void(const Image &)> picture;

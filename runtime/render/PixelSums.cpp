@@ -9,13 +9,19 @@
 
 namespace rtsl::runtime {
 
-PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components) {
+PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive) {
   PixelSums sums;
+  const std::uint64_t halves = isAdaptive ? 2 * pixels : pixels;
   try {
-    sums.colors.resize(pixels * components);
-    sums.squares.resize(pixels);
-    sums.counted.resize(pixels);
+    sums.colors.resize(halves * components);
+    sums.squares.resize(halves);
+    sums.counted.resize(halves);
     sums.taken.resize(pixels);
+    if (isAdaptive) {
+      sums.values.resize(halves);
+      sums.deciding.resize(halves);
+      sums.closed.resize(pixels);
+    }
   } catch (const std::bad_alloc &) {
     throw Error(ErrorCode::OutOfMemory, "not enough memory for the sums of the pixels");
   }
@@ -23,33 +29,62 @@ PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components) {
 }
 
 RtslPixelSums PixelSums::pointers() {
-  return {colors.data(), squares.data(), counted.data(), taken.data()};
+  RtslPixelSums sums{};
+  sums.colors = colors.data();
+  sums.squares = squares.data();
+  sums.counted = counted.data();
+  sums.taken = taken.data();
+  if (isAdaptive()) {
+    sums.values = values.data();
+    sums.deciding = deciding.data();
+    sums.closed = closed.data();
+  }
+  return sums;
+}
+
+/// Of a pixel's samples. One of the two counts of a half has all that were taken: both halves take
+/// samples until both are complete.
+static std::uint32_t finiteSamples(const PixelSums &sums, std::size_t pixel) {
+  if (!sums.isAdaptive())
+    return sums.counted[pixel];
+  return std::max(sums.counted[2 * pixel], sums.deciding[2 * pixel]) +
+         std::max(sums.counted[2 * pixel + 1], sums.deciding[2 * pixel + 1]);
 }
 
 SampleCounts countSamples(const PixelSums &sums) {
   SampleCounts counts;
-  if (sums.isEmpty())
-    return counts;
-  counts.least = counts.most = sums.taken.front();
+  std::uint32_t leastOpen = std::numeric_limits<std::uint32_t>::max(), mostOpen = 0, most = 0;
   for (std::size_t pixel = 0; pixel < sums.pixels(); ++pixel) {
-    const std::uint32_t taken = sums.taken[pixel], counted = sums.counted[pixel];
+    const std::uint32_t taken = sums.taken[pixel], finite = finiteSamples(sums, pixel);
     counts.samples += taken;
-    counts.notFinite += taken - counted;
-    counts.pixelsWithoutSample += taken > 0 && counted == 0;
-    counts.least = std::min(counts.least, taken);
-    counts.most = std::max(counts.most, taken);
+    counts.notFinite += taken - finite;
+    counts.pixelsWithoutSample += taken > 0 && finite == 0;
+    most = std::max(most, taken);
+    if (!sums.isOpen(pixel))
+      continue;
+    ++counts.openPixels;
+    leastOpen = std::min(leastOpen, taken);
+    mostOpen = std::max(mostOpen, taken);
   }
+  counts.least = counts.openPixels ? leastOpen : most;
+  counts.most = counts.openPixels ? mostOpen : most;
   return counts;
 }
 
 void resolve(const PixelSums &sums, float withoutSample, Image &picture) {
-  const std::uint32_t components = picture.channels;
+  const std::uint32_t components = picture.channels, halves = sums.halves();
   for (std::size_t pixel = 0; pixel < sums.pixels(); ++pixel)
     for (std::uint32_t c = 0; c < components; ++c) {
-      const std::size_t i = pixel * components + c;
-      picture.pixels[i] = sums.counted[pixel] ? float(sums.colors[i] / double(sums.counted[pixel]))
-                          : sums.taken[pixel] ? withoutSample
-                                              : 0.0f;
+      double means = 0;
+      std::uint32_t count = 0;
+      for (std::size_t half = pixel * halves; half < (pixel + 1) * halves; ++half)
+        if (sums.counted[half]) {
+          means += sums.colors[half * components + c] / double(sums.counted[half]);
+          ++count;
+        }
+      picture.pixels[pixel * components + c] = count               ? float(means / count)
+                                               : sums.taken[pixel] ? withoutSample
+                                                                   : 0.0f;
     }
 }
 

@@ -11,30 +11,45 @@
 namespace rtsl::runtime {
 
 /// The exact sums of the samples of each pixel, in the order of the samples. A rendering that goes
-/// on with them has the bits of one that was never interrupted. RtslPixelSums, as it is owned.
+/// on with them has the bits of one that was never interrupted. RtslPixelSums, as it is owned: the
+/// samples of an adaptive rendering are in two halves.
 struct PixelSums {
   std::vector<double> colors;         // as many as a color has components
-  std::vector<double> squares;        // of pixel values: the means of the components
-  std::vector<std::uint32_t> counted; // finite samples
+  std::vector<double> squares;        // of the values of samples: the means of their components
+  std::vector<std::uint32_t> counted; // finite samples in `colors`
   std::vector<std::uint32_t> taken;   // all samples
 
+  // Of an adaptive rendering; otherwise empty.
+  std::vector<double> values;          // of the samples in `squares`
+  std::vector<std::uint32_t> deciding; // their number
+  std::vector<std::uint32_t> closed;   // bit h: half h of the pixel is complete
+
+  static constexpr std::uint32_t allClosed = 3;
+
   /// Without samples. Throws OutOfMemory.
-  static PixelSums make(std::uint64_t pixels, std::uint32_t components);
+  static PixelSums make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive = false);
 
   RtslPixelSums pointers();
   std::size_t pixels() const { return taken.size(); }
   bool isEmpty() const { return taken.empty(); }
+  bool isAdaptive() const { return !closed.empty(); }
+  std::uint32_t halves() const { return isAdaptive() ? 2 : 1; }
+  /// Whether the pixel takes samples.
+  bool isOpen(std::size_t pixel) const { return !isAdaptive() || closed[pixel] != allClosed; }
 };
 
 /// What has been taken of all samples.
 struct SampleCounts {
   std::uint64_t samples = 0, notFinite = 0, pixelsWithoutSample = 0;
-  std::uint32_t least = 0, most = 0; // of a pixel
+  // Of a pixel that takes samples; of any pixel, if none does.
+  std::uint32_t least = 0, most = 0;
+  std::uint64_t openPixels = 0; // that take samples
 };
 SampleCounts countSamples(const PixelSums &sums);
 
 /// Writes the means of the pixels to a picture of the same size: black where there is no sample,
-/// `withoutSample` where none was finite.
+/// `withoutSample` where none was finite. The mean of two halves is that of their means, so that
+/// it does not depend on which one has more samples.
 void resolve(const PixelSums &sums, float withoutSample, Image &picture);
 
 /// The estimate of PassState::error. Infinite if no pixel has two samples; 0 for a black picture

@@ -1,4 +1,5 @@
 //===- RenderInPasses.cpp - passes of samples, and checkpoints between them ===//
+#include "runtime/render/Adaptive.h"
 #include "runtime/render/Backend.h"
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
@@ -75,8 +76,9 @@ void addMet(RenderStatistics &&pass, std::size_t mostNotFinite, RenderStatistics
   met.notFinite.resize(std::min(met.notFinite.size(), mostNotFinite));
 }
 
-bool isGoodEnough(const PassState &state, const PassOptions &passes) {
-  return state.seconds >= passes.seconds || (passes.error > 0 && state.error <= passes.error);
+bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdaptive) {
+  const bool endsByError = passes.error > 0 && !isAdaptive; // there pixels end one by one
+  return state.seconds >= passes.seconds || (endsByError && state.error <= passes.error);
 }
 
 } // namespace
@@ -84,9 +86,10 @@ bool isGoodEnough(const PassState &state, const PassOptions &passes) {
 /// Allocates the sums of a rendering that begins.
 void Backend::takeSums(PartialRendering &rendering) {
   if (rendering.sums.isEmpty())
-    rendering.sums = PixelSums::make(pixelCount(), channels());
+    rendering.sums = PixelSums::make(pixelCount(), channels(), options.isAdaptive);
   if (rendering.sums.pixels() != pixelCount() ||
-      rendering.sums.colors.size() != pixelCount() * channels())
+      rendering.sums.isAdaptive() != options.isAdaptive ||
+      rendering.sums.colors.size() != pixelCount() * channels() * rendering.sums.halves())
     throw Error(ErrorCode::OutOfRange, "a rendering goes on only with the sums of as many pixels");
   const std::uint32_t most = countSamples(rendering.sums).most;
   if (most > options.samplesPerPixel)
@@ -116,6 +119,17 @@ bool Backend::runPass(const PassOptions &passes, Clock::time_point pause, Render
   return isDone;
 }
 
+/// After a pass of a rendering that ends by its error.
+void Backend::measure(const PassOptions &passes, PartialRendering &rendering) {
+  fetchSums();
+  if (!options.isAdaptive) {
+    rendering.state.error = relativeError(rendering.sums, channels());
+    return;
+  }
+  rendering.state.error = closeHalves(rendering.sums, windowOf(options).width(), passes.error);
+  uploadSums();
+}
+
 void Backend::runPasses(const PassOptions &passes,
                         const std::function<void(const PassState &)> &progress,
                         PartialRendering &rendering) {
@@ -129,8 +143,9 @@ void Backend::runPasses(const PassOptions &passes,
   uploadSums();
   do {
     if (next == state.samplesPerPixel) {
-      const bool isAnyLeft = next < options.samplesPerPixel;
-      if (!isAnyLeft || (next > 0 && isGoodEnough(state, passes)))
+      const bool isAnyLeft =
+          next < options.samplesPerPixel && countSamples(rendering.sums).openPixels > 0;
+      if (!isAnyLeft || (next > 0 && isGoodEnough(state, passes, options.isAdaptive)))
         break;
       next += samplesOfPass(state, passes, options.samplesPerPixel);
     }
@@ -141,10 +156,10 @@ void Backend::runPasses(const PassOptions &passes,
     if (isDone) {
       const bool isMeasured = passes.error > 0 && next == nextMeasurement(state.samplesPerPixel);
       const bool isShown = passes.picture && secondsSince(shown) >= passes.secondsBetweenPictures;
-      if (isMeasured || isShown)
-        fetchSums();
       if (isMeasured)
-        state.error = relativeError(rendering.sums, channels());
+        measure(passes, rendering);
+      else if (isShown)
+        fetchSums();
       state.samplesPerPixel = next;
       if (progress)
         progress(state);
@@ -187,8 +202,9 @@ Image Backend::renderInPasses(const PassOptions &passes,
   said.samples = counts.samples;
   said.samplesNotFinite = counts.notFinite;
   said.pixelsWithoutSample = counts.pixelsWithoutSample;
-  said.pixels = std::uint64_t(
-      std::count(rendering.sums.taken.begin(), rendering.sums.taken.end(), counts.most));
+  said.openPixels = options.isAdaptive ? counts.openPixels : 0;
+  for (std::size_t pixel = 0; pixel < rendering.sums.pixels(); ++pixel)
+    said.pixels += !rendering.sums.isOpen(pixel) || rendering.sums.taken[pixel] == counts.most;
   said.isUnfinished = counts.least < counts.most || counts.least == 0;
   said.renderSeconds = rendering.state.seconds;
   said.buildSeconds = buildSeconds;

@@ -57,6 +57,9 @@ struct RenderOptions {
   /// where there are none.
   bool keepsUnfinished = false;
 
+  /// Renderings in passes only, with a limit of their error: pixels end one by one (Adaptive.h).
+  bool isAdaptive = false;
+
   /// What a pixel is none of whose samples is finite. The megakernel makes it 0 in any case.
   float withoutSample = 0;
   /// How many samples that are not finite the statistics name: the first in the order of rows,
@@ -75,6 +78,7 @@ inline bool operator<(const SampleId &a, const SampleId &b) {
 struct RenderStatistics {
   std::uint64_t samples = 0,
                 pixels = 0;              // the requested ones, unless the rendering is unfinished
+  std::uint64_t openPixels = 0;          // of an adaptive rendering: those that need more samples
   bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
   double buildSeconds = 0;               // acceleration structures
   double renderSeconds = 0;              // samples

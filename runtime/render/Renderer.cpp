@@ -1,5 +1,6 @@
 #include "runtime/render/Renderer.h"
 
+#include "runtime/device/engines/Slice.h"
 #include "runtime/embree/HostScene.h"
 #include "runtime/render/HostThreads.h"
 #include "runtime/render/Watch.h"
@@ -30,11 +31,13 @@ struct Worker {
   SamplesNotFinite notFinite;
 };
 
-/// The sums of one pixel.
+/// The sums of one pixel, or of a half of its samples.
 struct PixelSum {
   double colors[RTSL_MAX_COLOR] = {};
-  double squares = 0; // of the means of the components
-  std::uint32_t counted = 0, taken = 0;
+  double squares = 0, values = 0; // of the means of the components
+  std::uint32_t counted = 0, deciding = 0;
+  bool isClosed = false;   // `colors` is complete,
+  bool hasDecided = false; // and `squares` and `values` are
 
   template <typename Count>
   void add(const float *color, Count components) {
@@ -44,28 +47,40 @@ struct PixelSum {
   }
 
   template <typename Count>
-  void addSquare(const float *color, Count components) {
+  void decide(const float *color, Count components) {
     double value = 0;
     for (std::uint32_t c = 0; c < components; ++c)
       value += double(color[c]);
     value /= double(components);
+    values += value;
     squares += value * value;
+    ++deciding;
   }
 
   template <typename Count>
-  void load(const PixelSums &from, std::size_t pixel, Count components) {
-    std::copy_n(&from.colors[pixel * components], std::uint32_t(components), colors);
-    squares = from.squares[pixel];
-    counted = from.counted[pixel];
-    taken = from.taken[pixel];
+  void load(const PixelSums &from, std::size_t pixel, std::uint32_t half, Count components) {
+    const std::size_t at = pixel * from.halves() + half;
+    std::copy_n(&from.colors[at * components], std::uint32_t(components), colors);
+    squares = from.squares[at];
+    counted = from.counted[at];
+    if (from.isAdaptive()) {
+      values = from.values[at];
+      deciding = from.deciding[at];
+      isClosed = from.closed[pixel] >> half & 1;
+      hasDecided = from.closed[pixel] >> (1 - half) & 1;
+    }
   }
 
   template <typename Count>
-  void store(PixelSums &to, std::size_t pixel, Count components) const {
-    std::copy_n(colors, std::uint32_t(components), &to.colors[pixel * components]);
-    to.squares[pixel] = squares;
-    to.counted[pixel] = counted;
-    to.taken[pixel] = taken;
+  void store(PixelSums &to, std::size_t pixel, std::uint32_t half, Count components) const {
+    const std::size_t at = pixel * to.halves() + half;
+    std::copy_n(colors, std::uint32_t(components), &to.colors[at * components]);
+    to.squares[at] = squares;
+    to.counted[at] = counted;
+    if (to.isAdaptive()) {
+      to.values[at] = values;
+      to.deciding[at] = deciding;
+    }
   }
 };
 
@@ -98,6 +113,8 @@ struct Renderer::Implementation {
 
   template <typename Count>
   void renderTile(std::uint64_t tile, Worker &worker, Count components);
+  template <typename Count>
+  void renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker, Count components);
   void work();
   void add(Worker &worker);
 };
@@ -153,42 +170,60 @@ bool isFinite(const float *color, Count components) {
 /// finite is left out of the mean, for it would take the whole pixel with it. A number of
 /// components that is a constant makes no loops of them.
 template <typename Count>
+void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker,
+                                           Count components) {
+  const auto sample = scene.program().sample;
+  const std::uint32_t column = x - window.x0, row = y - window.y0;
+  const std::size_t index = std::size_t(row) * window.width() + column;
+  const std::uint32_t halves = sums ? sums->halves() : 1;
+  PixelSum parts[2];
+  for (std::uint32_t half = 0; sums && half < halves; ++half)
+    parts[half].load(*sums, index, half, components);
+  const std::uint32_t before = sums ? sums->taken[index] : 0;
+  std::uint32_t taken = before;
+  for (; taken < samplesOfPixel && !watch->isStopped(); ++taken) {
+    PixelSum &sum = parts[taken % halves];
+    const std::uint32_t number = device::numberInHalf(taken, halves);
+    float color[RTSL_MAX_COLOR];
+    sample(&worker.launch, x, y, number, color);
+    if (!isFinite(color, components)) {
+      worker.notFinite.add({x, y, number});
+      continue;
+    }
+    if (!sum.isClosed)
+      sum.add(color, components);
+    if (sums && !sum.hasDecided)
+      sum.decide(color, components);
+  }
+  worker.samples += taken - before;
+  worker.pixels += taken == samplesOfPixel;
+  if (sums) {
+    for (std::uint32_t half = 0; half < halves; ++half)
+      parts[half].store(*sums, index, half, components);
+    sums->taken[index] = taken;
+    return;
+  }
+  const PixelSum &sum = parts[0];
+  worker.pixelsWithoutSample += taken > 0 && sum.counted == 0;
+  float *pixel = image->at(column, row);
+  for (std::uint32_t c = 0; c < components; ++c)
+    pixel[c] = sum.counted ? float(sum.colors[c] / double(sum.counted))
+               : taken     ? options.withoutSample
+                           : 0.0f;
+}
+
+template <typename Count>
 void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Count components) {
-  auto sample = scene.program().sample;
   std::uint32_t x0 = window.x0 + std::uint32_t(tile % tilesAcross) * tileSize,
                 y0 = window.y0 + std::uint32_t(tile / tilesAcross) * tileSize;
   std::uint32_t x1 = std::min(x0 + tileSize, window.x1), y1 = std::min(y0 + tileSize, window.y1);
   for (std::uint32_t y = y0; y < y1; ++y)
     for (std::uint32_t x = x0; x < x1; ++x) {
-      const std::uint32_t column = x - window.x0, row = y - window.y0;
-      const std::size_t index = std::size_t(row) * window.width() + column;
-      PixelSum sum;
-      if (sums)
-        sum.load(*sums, index, components);
-      const std::uint32_t before = sum.taken;
-      for (; sum.taken < samplesOfPixel && !watch->isStopped(); ++sum.taken) {
-        float color[RTSL_MAX_COLOR];
-        sample(&worker.launch, x, y, sum.taken, color);
-        if (!isFinite(color, components)) {
-          worker.notFinite.add({x, y, sum.taken});
-          continue;
-        }
-        sum.add(color, components);
-        if (sums)
-          sum.addSquare(color, components);
-      }
-      worker.samples += sum.taken - before;
-      worker.pixels += sum.taken == samplesOfPixel;
-      worker.pixelsWithoutSample += sum.taken > 0 && sum.counted == 0;
-      if (sums) {
-        sum.store(*sums, index, components);
-        continue;
-      }
-      float *pixel = image->at(column, row);
-      for (std::uint32_t c = 0; c < components; ++c)
-        pixel[c] = sum.counted ? float(sum.colors[c] / double(sum.counted))
-                   : sum.taken ? options.withoutSample
-                               : 0.0f;
+      const std::size_t index = std::size_t(y - window.y0) * window.width() + (x - window.x0);
+      if (sums && !sums->isOpen(index))
+        ++worker.pixels;
+      else
+        renderPixel(x, y, worker, components);
     }
 }
 

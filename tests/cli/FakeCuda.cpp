@@ -70,14 +70,14 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads) {
   if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
-  const std::uint64_t pixels = std::uint64_t(job.width) * job.height,
-                      samples = pixels * job.sampleCount;
+  const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
   bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
   isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
   isFine &= isAllocated(job.samples, samples * launch.colorComponents * sizeof(float));
   isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
             job.status->nextSample < samples && job.status->stop == 0;
   isFine &= job.firstSample + job.sampleCount <= job.samplesPerPixel;
+  isFine &= !job.places || isAllocated(job.places, job.placeCount * sizeof(std::uint32_t));
   isFine &=
       isAllocated(launch.records, 16) &&
       (launch.lightCount == 0 || isAllocated(launch.lights, launch.lightCount * sizeof(RtslRef)));
@@ -107,15 +107,20 @@ int sum(const RtslJob &job) {
   const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
   const std::uint32_t components = job.launch->colorComponents;
   const RtslPixelSums &sums = job.sums;
+  const std::uint64_t halves = pixels * rtsl::device::halvesOf(sums);
   bool isFine = job.status->nextSample > 0;
   if (job.pixels)
     isFine &= isAllocated(job.pixels, pixels * components * sizeof(float));
   if (sums.colors)
-    isFine &= isAllocated(sums.colors, pixels * components * sizeof(double)) &&
-              isAllocated(sums.counted, pixels * sizeof(std::uint32_t)) &&
+    isFine &= isAllocated(sums.colors, halves * components * sizeof(double)) &&
+              isAllocated(sums.counted, halves * sizeof(std::uint32_t)) &&
               isAllocated(sums.taken, pixels * sizeof(std::uint32_t));
   if (sums.squares)
-    isFine &= isAllocated(sums.squares, pixels * sizeof(double));
+    isFine &= isAllocated(sums.squares, halves * sizeof(double));
+  if (sums.closed)
+    isFine &= isAllocated(sums.closed, pixels * sizeof(std::uint32_t)) &&
+              isAllocated(sums.values, halves * sizeof(double)) &&
+              isAllocated(sums.deciding, halves * sizeof(std::uint32_t));
   if (!isFine)
     return IllegalAddress;
   rtsl::device::addSamples(job, 0, 1);

@@ -19,7 +19,9 @@ std::string notFiniteText(const runtime::RenderStatistics &statistics) {
 }
 
 std::string sampleText(const runtime::SampleId &sample) {
-  return fmt::format("pixel {},{} sample {}", sample.x, sample.y, sample.sample);
+  return fmt::format("pixel {},{} sample {}{}", sample.x, sample.y,
+                     sample.sample % RTSL_SECOND_HALF,
+                     sample.sample >= RTSL_SECOND_HALF ? " of the second half" : "");
 }
 
 std::string tooDeepText(const runtime::RenderStatistics &statistics,

@@ -45,7 +45,8 @@ inline bool beginSample(const RtslJob &job, uint32_t sample, Rays &rays) {
   const Pixel pixel = pixelAt(job, place);
   if (job.taken && number < job.taken[pixel.number(job)])
     return false;
-  startRays(rays, *job.launch, job.left + pixel.x, job.top + pixel.y, number);
+  startRays(rays, *job.launch, job.left + pixel.x, job.top + pixel.y,
+            numberInHalf(number, halvesOf(job.sums)));
   return true;
 }
 

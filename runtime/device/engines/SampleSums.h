@@ -35,35 +35,41 @@ inline bool isFiniteColor(const float *color, uint32_t components) {
   return isFinite;
 }
 
-/// The sums of a pixel while samples are added.
+/// The sums of a pixel, or of a half of it, while samples are added.
 struct PixelSum {
   double color[RTSL_MAX_COLOR];
-  double squares;
-  uint32_t counted, taken;
+  double squares, values;
+  uint32_t counted, deciding;
+  bool isClosed = false;   // `color` is complete,
+  bool hasDecided = false; // and `squares` and `values` are
 };
 
-/// Adds a sample to its pixel. One that is not finite is left out of the pixel's mean, which would
-/// not be finite either.
-inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, const float *color) {
+/// Adds sample `number` to its pixel. One that is not finite is left out of the pixel's mean, which
+/// would not be finite either.
+inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, uint32_t number,
+                      const float *color) {
   const uint32_t components = rtsl_color_components(job.launch);
-  const uint32_t number = sum.taken++;
   if (!isFiniteColor(color, components)) {
     countUp(&job.status->samplesNotFinite);
     noteNotFinite(*job.status, pixel << 32 | number);
     return;
   }
-  ++sum.counted;
   double value = 0;
-  forEachComponent(components, [&](uint32_t i) {
-    sum.color[i] += double(color[i]);
-    value += double(color[i]);
-  });
+  forEachComponent(components, [&](uint32_t i) { value += double(color[i]); });
   value /= double(components);
-  sum.squares += value * value;
+  if (!sum.isClosed) {
+    ++sum.counted;
+    forEachComponent(components, [&](uint32_t i) { sum.color[i] += double(color[i]); });
+  }
+  if (!sum.hasDecided) {
+    ++sum.deciding;
+    sum.values += value;
+    sum.squares += value * value;
+  }
 }
 
 /// The mean of the finite samples, black without any.
-inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel) {
+inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t taken) {
   const uint32_t components = rtsl_color_components(job.launch);
   float *mean = job.pixels + pixel * components;
   forEachComponent(components, [&](uint32_t i) {
@@ -71,46 +77,66 @@ inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel) {
               : sum.counted   ? float(sum.color[i])
                               : 0.0f;
   });
-  if (sum.counted == 0 && sum.taken == job.samplesPerPixel)
+  if (sum.counted == 0 && taken == job.samplesPerPixel)
     countUp(&job.status->pixelsWithoutSample);
 }
 
-/// The sums of the samples before the slice.
-inline PixelSum sumBefore(const RtslJob &job, uint64_t pixel) {
+/// The sums of the samples before the slice, of half `half`.
+inline PixelSum sumBefore(const RtslJob &job, uint64_t pixel, uint32_t half) {
   const uint32_t components = rtsl_color_components(job.launch);
   const RtslPixelSums &sums = job.sums;
+  const uint64_t at = pixel * halvesOf(sums) + half;
   PixelSum sum;
-  const double *colors = sums.colors ? sums.colors + pixel * components : nullptr;
+  const double *colors = sums.colors ? sums.colors + at * components : nullptr;
   forEachComponent(components, [&](uint32_t i) { sum.color[i] = colors ? colors[i] : 0; });
-  sum.squares = sums.squares ? sums.squares[pixel] : 0;
-  sum.counted = sums.colors ? sums.counted[pixel] : 0;
-  sum.taken = sums.colors ? sums.taken[pixel] : job.firstSample;
+  sum.squares = sums.squares ? sums.squares[at] : 0;
+  sum.counted = sums.colors ? sums.counted[at] : 0;
+  sum.values = sum.deciding = 0;
+  if (sums.closed) {
+    sum.values = sums.values[at];
+    sum.deciding = sums.deciding[at];
+    sum.isClosed = sums.closed[pixel] >> half & 1;
+    sum.hasDecided = sums.closed[pixel] >> (1 - half) & 1;
+  }
   return sum;
 }
 
-inline void storeSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel) {
+inline void storeSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t half) {
   const uint32_t components = rtsl_color_components(job.launch);
   const RtslPixelSums &sums = job.sums;
-  double *colors = sums.colors + pixel * components;
+  const uint64_t at = pixel * halvesOf(sums) + half;
+  double *colors = sums.colors + at * components;
   forEachComponent(components, [&](uint32_t i) { colors[i] = sum.color[i]; });
   if (sums.squares)
-    sums.squares[pixel] = sum.squares;
-  sums.counted[pixel] = sum.counted;
-  sums.taken[pixel] = sum.taken;
+    sums.squares[at] = sum.squares;
+  sums.counted[at] = sum.counted;
+  if (sums.closed) {
+    sums.values[at] = sum.values;
+    sums.deciding[at] = sum.deciding;
+  }
 }
 
 /// Adds the first `count` samples that the slice has of the pixel at `place`.
 inline void addSamplesOfPixel(const RtslJob &job, uint32_t place, uint32_t count) {
   const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t halves = halvesOf(job.sums);
   const uint64_t pixel = pixelAt(job, place).number(job);
-  PixelSum sum = sumBefore(job, pixel);
   const float *samples = job.samples + uint64_t(place) * job.sampleCount * components;
-  for (uint32_t i = sum.taken - job.firstSample; i < count; ++i) // those before are added already
-    addSample(job, sum, pixel, samples + uint64_t(i) * components);
+  const uint32_t before = job.sums.colors ? job.sums.taken[pixel] : job.firstSample;
+  const uint32_t wanted = job.firstSample + count;
+  const uint32_t end = wanted > before ? wanted : before; // those before are added already
+  for (uint32_t half = 0; half < halves; ++half) {
+    PixelSum sum = sumBefore(job, pixel, half);
+    for (uint32_t number = before + (before + half) % halves; number < end; number += halves)
+      addSample(job, sum, pixel, numberInHalf(number, halves),
+                samples + uint64_t(number - job.firstSample) * components);
+    if (job.sums.colors)
+      storeSum(job, sum, pixel, half);
+    if (job.pixels)
+      writeMean(job, sum, pixel, end);
+  }
   if (job.sums.colors)
-    storeSum(job, sum, pixel);
-  if (job.pixels)
-    writeMean(job, sum, pixel);
+    job.sums.taken[pixel] = end;
 }
 
 /// After all lanes of the job: adds the samples that were taken to the sums, and computes the means

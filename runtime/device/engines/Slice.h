@@ -4,6 +4,9 @@
 // and the pixels are in tiles of 8 x 4: the lanes of a warp, which take 32 samples with following
 // numbers, begin with rays that are nearly the same, and mostly stay together.
 //
+// In an adaptive rendering the samples of a pixel are in two halves, and pixels that are complete
+// take no part in a slice.
+//
 //===----------------------------------------------------------------------===//
 #pragma once
 
@@ -18,9 +21,22 @@ struct Pixel {
   uint64_t number(const RtslJob &job) const { return uint64_t(y) * job.width + x; }
 };
 
+/// The halves of the samples in these sums, or 1.
+inline uint32_t halvesOf(const RtslPixelSums &sums) {
+  return sums.closed ? 2 : 1;
+}
+
+/// What the program calls sample `number` of a pixel: of two halves, the first has the even ones,
+/// and the second the odd ones, and each is a sequence of its own.
+inline uint32_t numberInHalf(uint32_t number, uint32_t halves) {
+  return halves == 1 ? number : number / 2 + number % 2 * RTSL_SECOND_HALF;
+}
+
 /// Pixels are numbered in bands of four rows, and in a band column by column.
 inline Pixel pixelAt(const RtslJob &job, uint32_t place) {
   constexpr uint32_t rows = 4;
+  if (job.places)
+    place = job.places[place];
   const uint32_t band = place / (rows * job.width), inBand = place - band * rows * job.width;
   const uint32_t left = job.height - band * rows; // the last band may have fewer rows
   if (left >= rows)
@@ -29,7 +45,7 @@ inline Pixel pixelAt(const RtslJob &job, uint32_t place) {
 }
 
 inline uint32_t samplesOfSlice(const RtslJob &job) {
-  return job.width * job.height * job.sampleCount;
+  return (job.places ? job.placeCount : job.width * job.height) * job.sampleCount;
 }
 
 /// Whether the slice has stopped: lanes that see it take no samples any more.

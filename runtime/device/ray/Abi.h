@@ -246,12 +246,19 @@ typedef struct RtslStatus {
 #define RTSL_PROBLEM_NONE 0u
 #define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane was started
 
-/// The sums of the samples of each pixel, row by row, to which slices are added.
+/// The sums of the samples of each pixel, row by row, to which slices are added. The samples of an
+/// adaptive rendering (runtime/render/Adaptive.h) are in two halves: there each pixel has two of
+/// everything but `taken` and `closed`, for its first half and for its second. Otherwise the last
+/// three are null.
 typedef struct RtslPixelSums {
-  double *colors;    // colorComponents per pixel
-  double *squares;   // of the means of the components of each sample; null: not wanted
-  uint32_t *counted; // finite samples
-  uint32_t *taken;   // all samples
+  double *colors;     // colorComponents per pixel
+  double *squares;    // of the values of samples, the means of their components; null: not wanted
+  uint32_t *counted;  // finite samples in `colors`
+  uint32_t *taken;    // all samples
+  double *values;     // of the samples in `squares`
+  uint32_t *deciding; // their number
+  uint32_t *closed;   // bit h: half h is complete. Its colors take no sample any more, and the
+                      // squares and values of the other half, which decided that, take none either
 } RtslPixelSums;
 
 /// A slice of a rendering for the megakernel (runtime/device/engines/Megakernel.h): some samples of
@@ -265,15 +272,18 @@ typedef struct RtslJob {
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice
-  float *samples;        // colorComponents for each sample of the slice; null: not wanted
-  RtslPixelSums sums;    // of the samples before this slice; all null: there are none
+  float *samples;     // colorComponents for each sample of the slice; null: not wanted
+  RtslPixelSums sums; // of the samples before this slice; all null: there are none
+  // the places of the pixels that take samples, ascending, and their number; null: all pixels
+  const uint32_t *places;
+  uint32_t placeCount;
   const uint32_t *taken; // sums.taken, if some pixels have samples of the slice already; or null
   float *pixels;         // the means, colorComponents per pixel, row by row; null: not wanted
 } RtslJob;
 
 /// What happens in a sample, apart from its color.
 typedef struct RtslEvents {
-  uint32_t x, y, sample; // which sample
+  uint32_t x, y, sample; // which sample, as rtsl_sample takes it
   uint32_t exception;    // RTSL_EXCEPTION_*: the first one
   uint32_t printed;      // how many times `print` has run
 } RtslEvents;
@@ -509,7 +519,9 @@ uint32_t rtsl_is_abandoned(RtslState *state);
 void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
 
 /// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents
-/// floats.
+/// floats. Numbers from RTSL_SECOND_HALF on are those of a second, independent sequence of samples
+/// (Slice.h: numberInHalf).
+#define RTSL_SECOND_HALF 0x80000000u
 void rtsl_sample(const RtslLaunch *launch, uint32_t x, uint32_t y, uint32_t sample, float *color);
 
 /// The same for the programs engine: runs `generate` of the launch's rayGeneration.

@@ -114,18 +114,21 @@ struct SampleNumbers {
   float shutter; // 0: when it opens, 1: when it closes
 };
 
-/// Begins sample `index` of a pixel: sets the key of its first ray.
-inline SampleNumbers beginRandomNumbers(RtslState &state, uint32_t x, uint32_t y, uint32_t index,
+/// Begins sample `number` of a pixel: sets the key of its first ray. Those from RTSL_SECOND_HALF on
+/// are a sequence of their own.
+inline SampleNumbers beginRandomNumbers(RtslState &state, uint32_t x, uint32_t y, uint32_t number,
                                         uint32_t seed) {
   state.dimension = 0;
+  const uint32_t index = number & (RTSL_SECOND_HALF - 1);
+  seed ^= number / RTSL_SECOND_HALF * 0x9e3779b9u;
   const Words4 ofPixel = hash4(x, y, 0xffffffffu, seed); // the same for all samples of the pixel
   if (const uint32_t sampler = evenSampler(state)) {
     state.randomKey[0] = index;
     state.randomKey[1] = ofPixel.z;
-    const auto number = [&](uint32_t pair, uint32_t coordinate) {
+    const auto drawn = [&](uint32_t pair, uint32_t coordinate) {
       return unitFloat(evenFraction(sampler, index, ofPixel.w, pair, coordinate));
     };
-    return {{number(0, 0), number(0, 1)}, {number(1, 0), number(1, 1)}, number(2, 0), number(2, 1)};
+    return {{drawn(0, 0), drawn(0, 1)}, {drawn(1, 0), drawn(1, 1)}, drawn(2, 0), drawn(2, 1)};
   }
   const Words4 key = hash4(x, y, index, seed);
   state.randomKey[0] = key.x;

@@ -195,7 +195,7 @@ class Resuming(Checkpoints):
         self.assertEqual([file for file in self.files() if file.startswith(".a.ckpt")], [])
 
     def samples_of_checkpoint(self):
-        """The least and the most of a pixel: the last numbers of the file."""
+        """The least and the most of a pixel: the last numbers of a file that is not adaptive."""
         pixels = 50 * 37
         taken = struct.unpack(f"<{pixels}I", self.checkpoint()[-4 * pixels :])
         return min(taken), max(taken)

@@ -85,11 +85,36 @@ TEST_F(Checkpoint, IsReadAsItWasWritten) {
   EXPECT_EQ(read.sums.squares, written.sums.squares);
   EXPECT_EQ(read.sums.counted, written.sums.counted);
   EXPECT_EQ(read.sums.taken, written.sums.taken);
+  EXPECT_FALSE(read.sums.isAdaptive());
   EXPECT_EQ(read.met.badRays, 10u);
   EXPECT_EQ(read.met.raysTooDeep, 11u);
   EXPECT_EQ(read.met.exceptions[RTSL_EXCEPTION_INDEX], 12u);
   ASSERT_EQ(read.met.notFinite.size(), 2u);
   EXPECT_EQ(read.met.notFinite[1].sample, 4u);
+}
+
+TEST_F(Checkpoint, HasAllOfAnAdaptiveRendering) {
+  PartialRendering written = rendering();
+  written.sums = PixelSums::make(pixels, components, true);
+  for (std::size_t i = 0; i < written.sums.colors.size(); ++i)
+    written.sums.colors[i] = double(i) / 3;
+  written.sums.squares = {1, 2, 3, 4, 5, 6};
+  written.sums.values = {7, 8, 9, 10, 11, 12};
+  written.sums.counted = {1, 2, 3, 3, 5, 5};
+  written.sums.deciding = {2, 2, 3, 3, 4, 5};
+  written.sums.taken = {4, 6, 10};
+  written.sums.closed = {0, 3, 2};
+  writeCheckpoint(file, identity(), written);
+  const PartialRendering read =
+      parseCheckpoint(readFile(file), file, identity(), pixels, components, true);
+  EXPECT_EQ(read.sums.colors, written.sums.colors);
+  EXPECT_EQ(read.sums.squares, written.sums.squares);
+  EXPECT_EQ(read.sums.values, written.sums.values);
+  EXPECT_EQ(read.sums.counted, written.sums.counted);
+  EXPECT_EQ(read.sums.deciding, written.sums.deciding);
+  EXPECT_EQ(read.sums.taken, written.sums.taken);
+  EXPECT_EQ(read.sums.closed, written.sums.closed);
+  EXPECT_NE(refusal(readFile(file)), ""); // as one that is not adaptive
 }
 
 TEST_F(Checkpoint, IsRefusedWhateverByteChanges) {
@@ -145,7 +170,7 @@ TEST_F(Checkpoint, SaysHowTheRenderingsDiffer) {
   std::string version = bytes;
   version[8] = 9;
   EXPECT_EQ(refusal(signedAnew(version)), "cannot go on from `a.ckpt`: it is a checkpoint of "
-                                          "format 9, and this program has format 1");
+                                          "format 9, and this program has format 2");
 }
 
 TEST_F(Checkpoint, LeavesNothingBehindOfThoseThatWereKilled) {

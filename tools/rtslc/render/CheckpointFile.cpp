@@ -67,13 +67,13 @@ CheckpointFile::CheckpointFile(CheckpointOptions options, runtime::Identity iden
   removeUnfinishedFiles(this->options.file);
 }
 
-runtime::PartialRendering CheckpointFile::read(std::uint64_t pixels,
-                                               std::uint32_t components) const {
+runtime::PartialRendering CheckpointFile::read(std::uint64_t pixels, std::uint32_t components,
+                                               bool isAdaptive) const {
   std::error_code unknown;
   if (!std::filesystem::exists(options.file, unknown))
     return {};
   return runtime::parseCheckpoint(readFile(options.file), options.file, identity, pixels,
-                                  components);
+                                  components, isAdaptive);
 }
 
 void CheckpointFile::write(const runtime::PartialRendering &rendering, bool isLast) {

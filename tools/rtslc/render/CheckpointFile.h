@@ -33,7 +33,8 @@ public:
   CheckpointFile(CheckpointOptions options, runtime::Identity identity);
 
   /// The rendering of the file; without samples if there is no file. Throws BadCheckpoint.
-  runtime::PartialRendering read(std::uint64_t pixels, std::uint32_t components) const;
+  runtime::PartialRendering read(std::uint64_t pixels, std::uint32_t components,
+                                 bool isAdaptive) const;
 
   /// Replaces the file. What fails is reported by report().
   void write(const runtime::PartialRendering &rendering, bool isLast);

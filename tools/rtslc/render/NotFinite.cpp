@@ -50,7 +50,8 @@ std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &s
   scene.useProgram(program);
   runtime::Renderer renderer(scene, render);
   std::vector<runtime::SampleId> samples = statistics.notFinite;
-  if (samples.size() < std::min<std::uint64_t>(statistics.samplesNotFinite, render.mostNotFinite)) {
+  if (!render.isAdaptive && // there the samples depend on the others
+      samples.size() < std::min<std::uint64_t>(statistics.samplesNotFinite, render.mostNotFinite)) {
     runtime::RenderStatistics again; // the same samples: every path has the same bits
     renderer.render(&again);
     samples = again.notFinite;

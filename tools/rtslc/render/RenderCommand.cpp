@@ -183,6 +183,9 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
                                                       options.scene));
   if (command.count("--noise") && (options.noise == 0 || std::isinf(options.noise)))
     throw CLI::ValidationError("--noise", "no picture is without error; give a number like 0.01");
+  if (options.isAdaptive && !command.count("--noise"))
+    throw CLI::ValidationError("--adaptive", "the error decides which pixels take more samples; "
+                                             "give the wanted one to `--noise`");
   if (command.count("--checkpoint-every") && options.checkpoint.file.empty())
     throw CLI::ValidationError("--checkpoint-every", "there is no `--checkpoint`");
   if (options.isInPasses())
@@ -232,6 +235,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addNotNegative(*command, "--noise", options->noise,
                  "render samples until the estimated relative error of the picture is below; at "
                  "most --spp");
+  command->add_flag("--adaptive", options->isAdaptive,
+                    "with --noise: more samples for pixels that need them, and fewer for others");
   addCheckpointOptions(*command, options->checkpoint);
   addTevOption(*command, options->tev);
   addSizeOption(*command, options->size);

@@ -39,6 +39,7 @@ struct RenderCommandOptions {
   bool watches = false;          // for changes of files
   std::optional<double> seconds; // --time
   double noise = 0;              // --noise; 0: not given
+  bool isAdaptive = false;
   CheckpointOptions checkpoint;
   TevOptions tev;
   bool isOpenEnded() const { return seconds || noise > 0; }

@@ -109,6 +109,9 @@ runtime::Identity identityOf(const RenderInput &input) {
   all.push_back({"the sampler", compile.sampler & RTSL_FEATURE_SAMPLER_SOBOL ? "sobol"
                                 : compile.sampler & RTSL_FEATURE_SAMPLER_R2  ? "r2"
                                                                              : "independent"});
+  all.push_back({"`--adaptive`", yesOrNo(render.isAdaptive)});
+  if (render.isAdaptive)
+    all.push_back({"`--noise`", fmt::format("{}", input.noise)});
   all.push_back({"`--exceptions`", yesOrNo(input.raisesExceptions)});
   all.push_back({"the check of indices", yesOrNo(compile.checkIndices)});
   all.push_back({"what `-D` and `-U` define", macroText(input.options.preprocessor)});

@@ -20,10 +20,12 @@ struct RenderInput {
   const runtime::RenderOptions &render;
   TargetName target;
   bool raisesExceptions;
+  double noise; // of an adaptive rendering
 };
 
 /// With --fp=fast also the target, the traversal and how traces are compiled: other arithmetic
-/// gives the same bits on all of them. Not the number of samples. Throws what readFile does.
+/// gives the same bits on all of them. Not the number of samples,
+/// and the limit of the error only if it decides which pixels have them. Throws what readFile does.
 runtime::Identity identityOf(const RenderInput &input);
 
 } // namespace rtsl::tool

@@ -57,6 +57,7 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
   render.threads = options.threads;
   render.traversal = options.traversal;
   render.keepsUnfinished = true;
+  render.isAdaptive = options.isAdaptive;
   if (options.exceptions)
     render.mostNotFinite = runtime::PrintLog::mostLines;
   return render;
@@ -78,10 +79,9 @@ const char *nameOfStop() {
 
 std::string unfinishedPassesText(const runtime::PassState &state, std::uint32_t requested,
                                  const runtime::RenderStatistics &statistics, bool isOpenEnded) {
-  const bool isEven = statistics.pixels * state.samplesPerPixel == statistics.samples;
   return fmt::format("stopped by {} after {}{} samples per pixel{}", nameOfStop(),
                      state.samplesPerPixel, isOpenEnded ? "" : fmt::format(" of {}", requested),
-                     isEven                      ? ""
+                     !statistics.isUnfinished    ? ""
                      : state.samplesPerPixel > 0 ? "; some pixels have more"
                                                  : "; some pixels have more, the others are black");
 }
@@ -150,6 +150,7 @@ private:
       ofView.aovs.clear();
       ofView.seconds.reset();
       ofView.noise = 0;
+      ofView.isAdaptive = false;
       ofView.checkpoint = {};
       ofView.tev = {};
       ofView.prints = false;
@@ -309,10 +310,11 @@ private:
     runtime::Image image = backend.renderInPasses(passes, show, rendering, &summary.statistics);
     const runtime::PassState &state = rendering.state;
     const std::uint32_t requested = summary.render.samplesPerPixel;
-    summary.statistics.isUnfinished |= !options.isOpenEnded() && state.samplesPerPixel < requested;
-    if (summary.statistics.isUnfinished)
+    const bool isShort = !options.isOpenEnded() && state.samplesPerPixel < requested;
+    if (summary.statistics.isUnfinished || isShort)
       summary.unfinished =
           unfinishedPassesText(state, requested, summary.statistics, options.isOpenEnded());
+    summary.statistics.isUnfinished |= isShort;
     summary.render.samplesPerPixel = state.samplesPerPixel;
     summary.error = state.error;
     return image;
@@ -322,14 +324,14 @@ private:
   runtime::PartialRendering resume(runtime::PassOptions &passes) {
     const RenderInput identified{input->description, files,          messages.sources,
                                  options.common,     summary.render, options.target,
-                                 options.exceptions};
+                                 options.exceptions, options.noise};
     checkpoint.emplace(options.checkpoint, identityOf(identified));
     passes.secondsBetweenCheckpoints = checkpoint->seconds();
     passes.checkpoint = [this](const runtime::PartialRendering &rendering, bool isLast) {
       checkpoint->write(rendering, isLast);
     };
-    runtime::PartialRendering rendering =
-        checkpoint->read(windowOf(summary.render).pixels(), scene->program().colorComponents);
+    runtime::PartialRendering rendering = checkpoint->read(
+        windowOf(summary.render).pixels(), scene->program().colorComponents, options.isAdaptive);
     const runtime::SampleCounts counts = countSamples(rendering.sums);
     if (counts.most > summary.render.samplesPerPixel)
       throw Error(ErrorCode::BadCheckpoint,

@@ -25,12 +25,20 @@ nlohmann::ordered_json toJson(const SampleNotFinite &one) {
     color.push_back(std::isfinite(value) ? nlohmann::ordered_json(value)
                     : std::isnan(value)  ? nlohmann::ordered_json("nan")
                                          : nlohmann::ordered_json(value > 0 ? "inf" : "-inf"));
-  nlohmann::ordered_json document = {
-      {"pixel", {one.sample.x, one.sample.y}}, {"sample", one.sample.sample}, {"color", color}};
+  nlohmann::ordered_json document = {{"pixel", {one.sample.x, one.sample.y}},
+                                     {"sample", one.sample.sample % RTSL_SECOND_HALF},
+                                     {"color", color}};
+  if (one.sample.sample >= RTSL_SECOND_HALF)
+    document["half"] = 2;
   if (one.place)
     document["place"] = {
         {"file", one.place->file}, {"line", one.place->line}, {"column", one.place->column}};
   return document;
+}
+
+/// The mean number of samples of a pixel, which are not the same for all if they are adaptive.
+double samplesOfPixel(const PictureSummary &summary) {
+  return double(summary.statistics.samples) / double(windowOf(summary.render).pixels());
 }
 
 std::string toJson(const RenderCommandOptions &options, const PictureSummary &summary) {
@@ -60,6 +68,9 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
     document["notFinite"].push_back(toJson(one));
   if (std::isfinite(summary.error))
     document["noise"] = summary.error;
+  if (render.isAdaptive)
+    document["adaptive"] = {{"mean", samplesOfPixel(summary)},
+                            {"openPixels", statistics.openPixels}};
   if (summary.resumedAt)
     document["resumedAt"] = summary.resumedAt;
   if (statistics.isUnfinished || (options.isInPasses() && interruption()))
@@ -83,12 +94,15 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     return printOut(toJson(options, summary));
   if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
     return;
-  fmt::print(
-      stderr,
-      "{}: {}x{}, {} spp; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million samples/s)\n",
-      options.output == "-" ? "standard output" : options.output, render.width, render.height,
-      render.samplesPerPixel, summary.times.compile * 1e3, statistics.renderSeconds,
-      double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  const std::string adaptive =
+      render.isAdaptive ? fmt::format(" at most, {:.1f} on average", samplesOfPixel(summary)) : "";
+  fmt::print(stderr,
+             "{}: {}x{}, {} spp{}; compiled in {:.0f} ms, rendered in {:.2f} s ({:.2f} million "
+             "samples/s)\n",
+             options.output == "-" ? "standard output" : options.output, render.width,
+             render.height, render.samplesPerPixel, adaptive, summary.times.compile * 1e3,
+             statistics.renderSeconds,
+             double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (summary.resumedAt)
     fmt::print(stderr, "resumed at {} spp\n", summary.resumedAt);
   if (std::isfinite(summary.error))
