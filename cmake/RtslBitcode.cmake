@@ -32,6 +32,21 @@ function(rtsl_bitcode library symbol target)
   set(linked "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.bc")
   add_custom_command(OUTPUT "${linked}" COMMAND "${RTSL_LLVM_LINK}" ${modules} -o "${linked}"
     DEPENDS ${modules} COMMENT "Linking ${symbol}.bc" VERBATIM)
+  rtsl_embed(${library} ${symbol} "${linked}")
+endfunction()
+
+# rtsl_ptx(library symbol SOURCE): compiles freestanding C++ with kernels to PTX for the oldest GPU,
+# and embeds it in the same way; a zero follows its end.
+function(rtsl_ptx library symbol source)
+  set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${symbol}.ptx")
+  add_custom_command(OUTPUT "${ptx}"
+    COMMAND "${RTSL_CLANG}" ${RTSL_BITCODE_FLAGS} ${RTSL_BITCODE_FLAGS_gpu}
+      -I "${PROJECT_SOURCE_DIR}" -MD -MF "${ptx}.d" -MT "${ptx}" -S "${source}" -o "${ptx}"
+    DEPENDS "${source}" DEPFILE "${ptx}.d" COMMENT "Compiling ${symbol} to PTX" VERBATIM)
+  rtsl_embed(${library} ${symbol} "${ptx}")
+endfunction()
+
+function(rtsl_embed library symbol file)
   # The assembler puts the file into the object as it is: no megabytes of C++ to parse.
   set(embedding "${CMAKE_CURRENT_BINARY_DIR}/${symbol}Bytes.cpp")
   file(CONFIGURE OUTPUT "${embedding}" CONTENT [[
@@ -41,14 +56,14 @@ asm(".section .rodata.@symbol@, \"a\", @progbits\n"
     ".globl @symbol@Begin\n"
     ".globl @symbol@End\n"
     "@symbol@Begin:\n"
-    ".incbin \"@linked@\"\n"
+    ".incbin \"@file@\"\n"
     "@symbol@End:\n"
     ".byte 0\n"
     ".text\n");
 ]] @ONLY)
   # Without ccache, which does not see what .incbin reads and would return an object with earlier
   # bytes. The launcher is a property of targets only.
-  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${linked}")
+  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${file}")
   add_library(${symbol}Bytes OBJECT "${embedding}")
   set_target_properties(${symbol}Bytes PROPERTIES CXX_COMPILER_LAUNCHER "")
   target_sources(${library} PRIVATE $<TARGET_OBJECTS:${symbol}Bytes>)

@@ -79,7 +79,21 @@ std::vector<Element> take(HostBuildDevice &device, BuildDevice::Address address,
   return taken;
 }
 
-/// The tree of one thing.
+/// The tree of boxes by joining neighbours.
+WideTree fastTree(const std::vector<BvhItem> &items, unsigned threads) {
+  std::vector<RtslBox> boxes;
+  boxes.reserve(items.size());
+  for (const BvhItem &item : items)
+    boxes.push_back(item.bounds);
+  HostBuildDevice device(threads);
+  const ClusterTree tree =
+      buildClusterTree(device, {nullptr, nullptr, 0, std::uint32_t(items.size())}, boxes.data());
+  return {take<RtslBvhNode>(device, tree.nodes, tree.nodeCount),
+          take<std::uint32_t>(device, tree.contents, tree.itemCount), tree.cost};
+}
+
+} // namespace
+
 Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind) {
   Bvh bvh;
   if (kind == TreeKind::Fast && items.count != 0) {
@@ -99,21 +113,6 @@ Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind
          [&](std::size_t i) { bvh.items[i] = device::build::treeItem(items, tree.contents[i]); });
   return bvh;
 }
-
-/// The tree of boxes by joining neighbours.
-WideTree fastTree(const std::vector<BvhItem> &items, unsigned threads) {
-  std::vector<RtslBox> boxes;
-  boxes.reserve(items.size());
-  for (const BvhItem &item : items)
-    boxes.push_back(item.bounds);
-  HostBuildDevice device(threads);
-  const ClusterTree tree =
-      buildClusterTree(device, {nullptr, nullptr, 0, std::uint32_t(items.size())}, boxes.data());
-  return {take<RtslBvhNode>(device, tree.nodes, tree.nodeCount),
-          take<std::uint32_t>(device, tree.contents, tree.itemCount), tree.cost};
-}
-
-} // namespace
 
 Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads, TreeKind kind) {
   WideTree tree = kind == TreeKind::Fast && !items.empty()
@@ -149,10 +148,6 @@ Bvh buildBvh(const RtslLaunch &launch, unsigned threads, TreeKind kind) {
   for (const auto &[number, items] : trees.ofMeshes)
     bvh.addMeshTree(number, buildTree(items.of(launch), threads, kind));
   return bvh;
-}
-
-Bvh buildBvh(const Scene &scene, unsigned threads, TreeKind kind) {
-  return buildBvh(scene.launch(), threads, kind);
 }
 
 } // namespace rtsl::runtime

@@ -5,7 +5,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/accel/TreeKind.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/trees/Items.h"
 #include "runtime/scene/Scene.h"
 
 #include <vector>
@@ -35,18 +37,16 @@ struct BvhItem {
   const RtslMesh *mesh = nullptr; // of a triangle, which does not move
 };
 
-/// How trees are built.
-enum class TreeKind : std::uint8_t {
-  Good, // top down by the surface area heuristic (BinaryTree.h): the fewest nodes for a ray
-  Fast, // by joining neighbours (ClusterTree.h), as on a GPU: built sooner
-};
-
 /// `threads` 0: one per core.
 Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads = 0,
              TreeKind kind = TreeKind::Good);
 
 /// The trees of a scene whose pointers are valid here (TreeItems.h).
 Bvh buildBvh(const RtslLaunch &launch, unsigned threads = 0, TreeKind kind = TreeKind::Good);
-Bvh buildBvh(const Scene &scene, unsigned threads = 0, TreeKind kind = TreeKind::Good);
+inline Bvh buildBvh(const Scene &scene, unsigned threads = 0, TreeKind kind = TreeKind::Good) {
+  return buildBvh(scene.launch(), threads, kind);
+}
+/// One of these trees.
+Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind);
 
 } // namespace rtsl::runtime

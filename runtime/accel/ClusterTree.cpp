@@ -34,6 +34,7 @@ std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
   const std::size_t sums = std::max<std::size_t>(n, std::size_t(digits) * tileCount(build.count));
   Block block(start);
   block.place(build.boxes, 2 * n);
+  block.place(build.heights, 2 * n);
   block.place(build.children, n);
   block.place(build.choices, n);
   block.place(build.costs, n);
@@ -53,6 +54,9 @@ std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
   build.wide = reinterpret_cast<WideNode *>(build.keys[0]);
   return block.size();
 }
+
+/// Usual are 20 to 70.
+constexpr std::uint32_t manyRounds = 150;
 
 class Builder {
 public:
@@ -95,13 +99,16 @@ public:
 
   void cluster() {
     run(BuildStep::MakeLeaf, build.count);
-    Round round{0, build.count};
+    Round round{0, build.count, false};
     while (round.clusters > 1) {
-      run(BuildStep::FindNearest, round.clusters, round.number);
+      run(BuildStep::FindNearest, round.clusters, round.number, round.isInPairs);
       run(BuildStep::CountCluster, round.clusters);
       sumBefore(round.clusters);
-      run(BuildStep::MoveCluster, round.clusters, round.number);
-      round = {round.number + 1, std::uint32_t(sumOfAll())};
+      run(BuildStep::MoveCluster, round.clusters, round.number, round.isInPairs);
+      const auto left = std::uint32_t(sumOfAll());
+      const bool isInPairs =
+          round.isInPairs || left == round.clusters || round.number == manyRounds;
+      round = {round.number + 1, left, isInPairs};
     }
   }
 
@@ -171,7 +178,8 @@ private:
     Costs costs;
     device.download(&box, addressOf(build.boxes + build.count + root - 1), sizeof box);
     device.download(&costs, addressOf(build.costs + root - 1), sizeof costs);
-    return costs.of[1] / halfArea(box);
+    const float cost = costs.of[1] / halfArea(box);
+    return cost > 0 && cost < device::infinity ? cost : 0;
   }
 
   BuildDevice &device;
@@ -191,6 +199,16 @@ ClusterTree buildClusterTree(BuildDevice &device, const Items &items, const Rtsl
   builder.sort();
   builder.cluster();
   return builder.widen();
+}
+
+void moveNodes(BuildDevice &device, BuildDevice::Address nodes, std::uint32_t count,
+               std::uint32_t firstNode, std::uint32_t firstItem) {
+  TreeBuild build{};
+  build.nodes = reinterpret_cast<RtslBvhNode *>(nodes);
+  const BuildDevice::Address address = device.allocate(sizeof build, "building the tree");
+  device.upload(address, &build, sizeof build);
+  device.run(BuildStep::MoveNode, address, count, firstNode, firstItem);
+  device.release(address);
 }
 
 std::size_t clusterTreeScratch(std::uint32_t items) {

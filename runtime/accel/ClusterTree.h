@@ -30,11 +30,14 @@ public:
   virtual void release(Address address) = 0;
   virtual void upload(Address to, const void *from, std::size_t bytes) = 0;
   virtual void download(void *to, Address from, std::size_t bytes) = 0;
+  virtual void copy(Address to, Address from, std::size_t bytes) = 0; // within the device
   /// The lanes of a warp.
   virtual std::uint32_t lanes() const = 0;
   /// Runs a step of the build at an address for threads 0 to count - 1, with these numbers.
   virtual void run(BuildStep step, Address build, std::uint32_t count, std::uint32_t a = 0,
                    std::uint32_t b = 0, std::uint32_t c = 0) = 0;
+  /// Until all steps are done.
+  virtual void wait() = 0;
 };
 
 /// A tree in the memory of a device; its nodes begin with the root, and its items with 0.
@@ -49,6 +52,10 @@ struct ClusterTree {
 /// items, only their numbers in `contents`. Throws OutOfMemory, and what the device throws.
 ClusterTree buildClusterTree(BuildDevice &device, const device::build::Items &items,
                              const RtslBox *boxes = nullptr);
+
+/// Adds to the first nodes and items of nodes on a device.
+void moveNodes(BuildDevice &device, BuildDevice::Address nodes, std::uint32_t count,
+               std::uint32_t firstNode, std::uint32_t firstItem);
 
 /// Bytes that the build of so many items takes while it runs, without the tree.
 std::size_t clusterTreeScratch(std::uint32_t items);

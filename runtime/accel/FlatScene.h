@@ -15,6 +15,7 @@
 namespace rtsl::runtime {
 
 class Scene;
+struct Bvh;
 
 struct FlatScene {
   std::vector<std::uint8_t> bytes;
@@ -35,6 +36,10 @@ struct FlatScene {
   }
   void setLaunch(const RtslLaunch &launch) { std::memcpy(bytes.data(), &launch, sizeof launch); }
 
+  bool hasTrees() const { return launch().nodeCount != 0; }
+  /// Before it is relocated.
+  void removeTrees();
+
   /// Sets the pointers for a scene at `address`, which is a multiple of 64.
   void relocate(std::uint64_t address) {
     for (std::uint64_t place : pointers) {
@@ -46,8 +51,11 @@ struct FlatScene {
   }
 };
 
-/// The scene with a tree for the device traversal. Width, height, depth and seed of its launch are
-/// 0, and nothing depends on addresses: the same scene gives the same bytes.
+/// The scene, without trees. Width, height, depth and seed of its launch are 0, and nothing depends
+/// on addresses: the same scene gives the same bytes.
 FlatScene flatten(const Scene &scene);
+
+/// With trees for the device traversal, at its end. Nor do these depend on anything else.
+FlatScene flatten(const Scene &scene, const Bvh &bvh);
 
 } // namespace rtsl::runtime

@@ -64,6 +64,10 @@ void HostBuildDevice::download(void *to, Address from, std::size_t bytes) {
   std::memcpy(to, reinterpret_cast<const void *>(from), bytes);
 }
 
+void HostBuildDevice::copy(Address to, Address from, std::size_t bytes) {
+  std::memcpy(reinterpret_cast<void *>(to), reinterpret_cast<const void *>(from), bytes);
+}
+
 void HostBuildDevice::run(BuildStep step, Address address, std::uint32_t count, std::uint32_t a,
                           std::uint32_t b, std::uint32_t c) {
   using namespace device::build;

@@ -35,4 +35,11 @@ SceneTrees treesOf(const RtslLaunch &launch) {
   return trees;
 }
 
+std::uint64_t itemCount(const SceneTrees &trees) {
+  std::uint64_t count = trees.world.count;
+  for (const auto &[number, items] : trees.ofMeshes)
+    count += items.count;
+  return count;
+}
+
 } // namespace rtsl::runtime

@@ -30,5 +30,7 @@ struct SceneTrees {
   std::map<std::uint32_t, TreeItems> ofMeshes; // by number in RtslLaunch::meshTrees
 };
 SceneTrees treesOf(const RtslLaunch &launch);
+/// Of all of them.
+std::uint64_t itemCount(const SceneTrees &trees);
 
 } // namespace rtsl::runtime

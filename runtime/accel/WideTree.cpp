@@ -33,7 +33,8 @@ public:
                      [&](std::size_t i) { costs[i] = chooseBelow(roots[i]); });
     for (std::size_t i = 0; i < roots.size(); ++i)
       known[roots[i]] = costs[i];
-    costOfTree = chooseBelow(0).of[1] / halfArea(tree.nodes[0].bounds);
+    const float cost = chooseBelow(0).of[1] / halfArea(tree.nodes[0].bounds);
+    costOfTree = cost > 0 && cost < device::infinity ? cost : 0;
   }
 
   float cost() const { return costOfTree; }

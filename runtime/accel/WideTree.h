@@ -19,7 +19,7 @@ struct WideTree {
   std::vector<RtslBvhNode> nodes;      // the root first; there always is one
   std::vector<std::uint32_t> contents; // NumberedBox::number of the items
   // By the surface area heuristic: the nodes and items that a ray is expected to be tested with, of
-  // the rays that enter the box of the root.
+  // the rays that enter the box of the root. 0: unknown, as areas are 0 or too large.
   float cost = 0;
 };
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 namespace rtsl::runtime {
 
@@ -22,7 +23,8 @@ RayCounters &rayCounters();
 /// RtslLaunch::host points to one of these.
 class HostScene : public ProgramHost {
 public:
-  HostScene(const Scene &scene, bool useEmbree, unsigned threads);
+  HostScene(const Scene &scene, bool useEmbree, unsigned threads,
+            std::optional<TreeKind> tree = {});
 
   /// The launch with our own tree. With Embree it is built on first use, such as for a ray that
   /// Embree cannot trace (EmbreeScene::canFollow).
@@ -30,6 +32,9 @@ public:
 
   /// Has our own tree been built?
   bool hasOwnTree() const { return launch.host != nullptr; }
+
+  /// Of our own tree, if it has been built.
+  const std::optional<TreeFigures> &treeFigures() const { return figures; }
 
   /// rtsl_traverse.
   std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
@@ -44,11 +49,13 @@ private:
 
   const Scene &scene;
   const unsigned threads;
+  const std::optional<TreeKind> tree;
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal
   // the same, if rays with the usual mask and root see all instances
   const EmbreeScene *seenByAll = nullptr;
   mutable std::once_flag built;
   mutable Bvh bvh;
+  mutable std::optional<TreeFigures> figures;
   mutable RtslLaunch launch{};
 };
 

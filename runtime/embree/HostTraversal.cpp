@@ -1,8 +1,11 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/embree/HostScene.h"
 
+#include "runtime/accel/TreeItems.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/embree/EmbreeRay.h"
+
+#include <chrono>
 
 namespace rtsl::runtime {
 
@@ -11,8 +14,9 @@ RayCounters &rayCounters() {
   return counters;
 }
 
-HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
-    : ProgramHost{scene.program().slots}, scene(scene), threads(threads) {
+HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads,
+                     std::optional<TreeKind> tree)
+    : ProgramHost{scene.program().slots}, scene(scene), threads(threads), tree(tree) {
   if (!useEmbree) {
     deviceLaunch();
     return;
@@ -24,8 +28,13 @@ HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads)
 
 const RtslLaunch &HostScene::deviceLaunch() const {
   std::call_once(built, [this] {
-    bvh = buildBvh(scene, threads);
     launch = scene.launch();
+    const auto start = std::chrono::steady_clock::now();
+    const TreeKind kind = treeKind(tree, itemCount(treesOf(launch)));
+    bvh = buildBvh(launch, threads, kind);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    figures = TreeFigures{kind, std::uint32_t(bvh.nodes.size()), std::uint32_t(bvh.items.size()),
+                          bvh.cost, seconds.count()};
     launch.host = this;
     bvh.install(launch);
   });

@@ -62,6 +62,7 @@ struct CudaDevice::Functions {
   int (*hostFree)(void *);
   int (*copyToDevice)(Address to, const void *from, std::size_t bytes);
   int (*copyToHost)(void *to, Address from, std::size_t bytes);
+  int (*copyWithin)(Address to, Address from, std::size_t bytes);
   int (*copyToDeviceAsync)(Address to, const void *from, std::size_t bytes, void *stream);
   int (*copyToHostAsync)(void *to, Address from, std::size_t bytes, void *stream);
   int (*streamCreate)(void **stream, unsigned flags);
@@ -114,6 +115,7 @@ void CudaDevice::open() {
   find(f.hostFree, "cuMemFreeHost");
   find(f.copyToDevice, "cuMemcpyHtoD_v2");
   find(f.copyToHost, "cuMemcpyDtoH_v2");
+  find(f.copyWithin, "cuMemcpyDtoD_v2");
   find(f.copyToDeviceAsync, "cuMemcpyHtoDAsync_v2");
   find(f.copyToHostAsync, "cuMemcpyDtoHAsync_v2");
   find(f.streamCreate, "cuStreamCreate");
@@ -235,6 +237,10 @@ void CudaDevice::download(void *to, Address from, std::size_t bytes) {
   check(functions->copyToHost(to, from, bytes), "cuMemcpyDtoH");
 }
 
+void CudaDevice::copy(Address to, Address from, std::size_t bytes) {
+  check(functions->copyWithin(to, from, bytes), "cuMemcpyDtoD");
+}
+
 void CudaDevice::openMeanwhile() {
   check(functions->contextSetCurrent(context), "cuCtxSetCurrent"); // of this thread
   if (!stream)
@@ -259,14 +265,22 @@ void CudaDevice::downloadMeanwhile(void *to, Address from, std::size_t bytes) {
 
 void CudaDevice::load(const std::string &ptx, unsigned maxRegisters) {
   if (module)
-    check(functions->moduleUnload(module), "cuModuleUnload");
+    unload(module);
   module = nullptr;
+  module = compile(ptx.c_str(), maxRegisters);
+}
+
+void CudaDevice::unload(Module code) {
+  check(functions->moduleUnload(code), "cuModuleUnload");
+}
+
+CudaDevice::Module CudaDevice::compile(const char *ptx, unsigned maxRegisters) {
+  Module code = nullptr;
   std::string log(4096, '\0');
   const auto value = [](std::uintptr_t number) { return reinterpret_cast<void *>(number); };
   int options[] = {ErrorLogBuffer, ErrorLogBufferBytes, MaxRegisters};
   void *values[] = {log.data(), value(log.size() - 1), value(maxRegisters)};
-  const int status =
-      functions->moduleLoad(&module, ptx.c_str(), maxRegisters ? 3 : 2, options, values);
+  const int status = functions->moduleLoad(&code, ptx, maxRegisters ? 3 : 2, options, values);
   log.resize(log.find('\0'));
   if (status == UnsupportedPtxVersion)
     fail("the CUDA driver is too old for the program's PTX");
@@ -274,11 +288,12 @@ void CudaDevice::load(const std::string &ptx, unsigned maxRegisters) {
     fail(fmt::format("{} (sm_{}) does not take the program's code: {}", deviceName,
                      computeCapability, log.empty() ? "it was made for a newer GPU" : log));
   check(status, "cuModuleLoadDataEx");
+  return code;
 }
 
-CudaDevice::Kernel CudaDevice::kernel(const char *name) const {
+CudaDevice::Kernel CudaDevice::kernel(const char *name, Module code) const {
   Kernel kernel;
-  check(functions->moduleGetFunction(&kernel.function, module, name), "cuModuleGetFunction");
+  check(functions->moduleGetFunction(&kernel.function, code, name), "cuModuleGetFunction");
   check(functions->functionGetAttribute(&kernel.registers, RegisterCount, kernel.function),
         "cuFuncGetAttribute");
   check(functions->functionGetAttribute(&kernel.localBytes, LocalSizeBytes, kernel.function),
@@ -296,14 +311,23 @@ int CudaDevice::blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) con
 double CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
                           void **arguments) {
   check(functions->eventRecord(events[0], nullptr), "cuEventRecord");
-  check(functions->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1, 0, nullptr,
-                          arguments, nullptr),
-        "cuLaunchKernel");
+  launchLater(kernel, blocks, threadsPerBlock, arguments);
   check(functions->eventRecord(events[1], nullptr), "cuEventRecord");
-  check(functions->synchronize(), "cuCtxSynchronize");
+  wait();
   float milliseconds = 0;
   check(functions->eventElapsedTime(&milliseconds, events[0], events[1]), "cuEventElapsedTime");
   return double(milliseconds) * 1e-3;
+}
+
+void CudaDevice::launchLater(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
+                             void **arguments) {
+  check(functions->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1, 0, nullptr,
+                          arguments, nullptr),
+        "cuLaunchKernel");
+}
+
+void CudaDevice::wait() {
+  check(functions->synchronize(), "cuCtxSynchronize");
 }
 
 } // namespace rtsl::runtime

@@ -36,6 +36,8 @@ public:
   void clear(Address address, std::size_t bytes);
   void upload(Address to, const void *from, std::size_t bytes);
   void download(void *to, Address from, std::size_t bytes);
+  /// Within the device, after what was launched.
+  void copy(Address to, Address from, std::size_t bytes);
   /// Copies of up to mostBytesMeanwhile bytes while a kernel runs, without waiting for the kernel.
   /// Called from another thread than launch().
   void uploadMeanwhile(Address to, const void *from, std::size_t bytes);
@@ -51,12 +53,23 @@ public:
     int registers = 0;  // of a thread
     int localBytes = 0; // of a thread: spills and arrays
   };
-  Kernel kernel(const char *name) const;
+  Kernel kernel(const char *name) const { return kernel(name, module); }
+  /// Code beside that of load(), until it is unloaded.
+  using Module = void *;
+  Module compile(const char *ptx, unsigned maxRegisters = 0);
+  void unload(Module code);
+  Kernel kernel(const char *name, Module code) const;
   /// How many blocks of the kernel run at once on a multiprocessor.
   int blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const;
   /// Runs a kernel and waits for it. `arguments` points to as many pointers to arguments as it has.
   /// Returns the seconds that the kernel took, by the device's clock.
   double launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock, void **arguments);
+  /// Runs a kernel after those launched before, without waiting for it. An error is reported by a
+  /// later call.
+  void launchLater(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
+                   void **arguments);
+  /// Waits for all kernels.
+  void wait();
 
 private:
   struct Functions;
@@ -70,7 +83,8 @@ private:
   void *library = nullptr;
   Functions *functions = nullptr;
   int device = 0;
-  void *context = nullptr, *module = nullptr;
+  void *context = nullptr;
+  Module module = nullptr;
   // For copies while a kernel runs: a stream that does not wait for the kernel, and page-locked
   // host memory.
   void *stream = nullptr, *pageLocked = nullptr;

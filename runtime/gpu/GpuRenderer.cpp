@@ -1,5 +1,6 @@
 #include "runtime/gpu/GpuRenderer.h"
 
+#include "runtime/gpu/GpuBuildDevice.h"
 #include "support/Error.h"
 
 #include <fmt/format.h>
@@ -46,7 +47,6 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
                          const RenderOptions &options)
     : Megakernel(std::move(scene), options), device(device) {
   const Clock::time_point start = Clock::now();
-  figures.treeNodes = launch().nodeCount;
   device.load(code.ptx, code.maxRegisters);
   kernel = device.kernel("rtsl_render");
   sumKernel = device.kernel("rtsl_sum");
@@ -62,7 +62,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
     release();
     throw;
   }
-  figures.uploadSeconds = buildSeconds;
+  figures.uploadSeconds = buildSeconds - (trees ? trees->seconds : 0);
   buildSeconds += figures.loadSeconds;
 }
 
@@ -95,6 +95,10 @@ void GpuRenderer::upload(Address to, const void *from, std::uint64_t bytes) {
 
 void GpuRenderer::download(void *to, Address from, std::uint64_t bytes) {
   device.download(to, from, bytes);
+}
+
+std::unique_ptr<BuildDevice> GpuRenderer::buildDevice() {
+  return std::make_unique<GpuBuildDevice>(device);
 }
 
 Megakernel::Address GpuRenderer::clearedPixels() {

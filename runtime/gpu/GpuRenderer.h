@@ -25,8 +25,6 @@ struct GpuStatistics {
   std::uint64_t laneBytes = 0;
   double loadSeconds = 0;   // the driver's compiler, on PTX that it has not seen
   double uploadSeconds = 0; // the scene
-  double treeSeconds = 0;   // building its trees on the host, if that was not done before
-  std::uint32_t treeNodes = 0;
 };
 
 class GpuRenderer final : public Megakernel {
@@ -46,6 +44,8 @@ private:
   Address allocate(std::uint64_t bytes, const char *what) override;
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
+  std::unique_ptr<BuildDevice> buildDevice() override;
+  void own(Address address) override { memory.push_back(address); }
   Address clearedPixels() override;
   void fetchPixels() override;
   std::uint64_t sliceBytes() override;

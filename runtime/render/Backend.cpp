@@ -54,6 +54,7 @@ Image Backend::render(RenderStatistics *statistics) {
     throw;
   }
   said.buildSeconds = buildSeconds;
+  said.tree = trees;
   said.isUnfinished = said.pixels < pixelCount();
   Image image = std::exchange(picture, Image());
   if (said.isUnfinished && !options.keepsUnfinished)

@@ -59,6 +59,7 @@ protected:
   std::uint32_t samplesOfPixel = 0; // run() renders each pixel until it has so many
   PixelSums *sums = nullptr;        // run() goes on with them; null: pixels begin without samples
   double buildSeconds = 0;          // spent by constructors of backends
+  std::optional<TreeFigures> trees; // RenderStatistics::tree
 
 private:
   virtual std::uint32_t channels() const = 0;

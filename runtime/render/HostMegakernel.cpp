@@ -1,5 +1,6 @@
 #include "runtime/render/HostMegakernel.h"
 
+#include "runtime/accel/HostBuildDevice.h"
 #include "runtime/device/engines/SampleSums.h"
 #include "support/Error.h"
 
@@ -45,6 +46,14 @@ void HostMegakernel::upload(Address to, const void *from, std::uint64_t bytes) {
 
 void HostMegakernel::download(void *to, Address from, std::uint64_t bytes) {
   std::memcpy(to, reinterpret_cast<const void *>(from), bytes);
+}
+
+std::unique_ptr<BuildDevice> HostMegakernel::buildDevice() {
+  return std::make_unique<HostBuildDevice>(options.threads);
+}
+
+void HostMegakernel::own(Address address) {
+  memory.emplace_back(reinterpret_cast<std::uint8_t *>(address));
 }
 
 Megakernel::Address HostMegakernel::clearedPixels() { // of a new picture

@@ -29,6 +29,8 @@ private:
   Address allocate(std::uint64_t bytes, const char *what) override;
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
+  std::unique_ptr<BuildDevice> buildDevice() override;
+  void own(Address address) override;
   Address clearedPixels() override;
   void fetchPixels() override {} // they are those of the picture
   std::uint64_t sliceBytes() override { return std::uint64_t(64) << 20; }

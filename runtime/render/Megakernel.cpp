@@ -59,6 +59,8 @@ void Megakernel::prepare() {
   const Address sceneAddress = allocate(scene.bytes.size(), "the scene");
   scene.relocate(sceneAddress);
   upload(sceneAddress, scene.bytes.data(), scene.bytes.size());
+  if (!scene.hasTrees())
+    buildTreesAt(sceneAddress);
   outputs = std::move(scene.outputs);
   scene = {};
   buildSeconds += std::chrono::duration<double>(Clock::now() - start).count();
@@ -89,6 +91,23 @@ void Megakernel::prepare() {
   job.lanes = reinterpret_cast<std::uint8_t *>(
       allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
   jobAddress = allocate(sizeof job, "the launch");
+}
+
+/// For a scene without trees that was copied there.
+void Megakernel::buildTreesAt(Address sceneAddress) {
+  RtslLaunch launch = scene.launch();
+  // The small ones are built of the scene's copy here, whose pointers must all lead there.
+  scene.relocate(reinterpret_cast<Address>(scene.bytes.data()) - sceneAddress);
+  const RtslLaunch here = scene.launch();
+  const TreeKind kind = treeKind(options.tree, itemCount(treesOf(here)));
+  const std::unique_ptr<BuildDevice> device = buildDevice();
+  const DeviceTrees made = buildTrees(*device, kind, here, sceneAddress, options.threads);
+  for (const Address address : {made.nodes, made.items, made.meshTrees})
+    if (address)
+      own(address);
+  made.install(launch);
+  upload(sceneAddress, &launch, sizeof launch);
+  trees = made.figures;
 }
 
 void Megakernel::begin() {

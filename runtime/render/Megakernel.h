@@ -7,12 +7,14 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/accel/DeviceTrees.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/render/Backend.h"
 #include "runtime/render/PixelSums.h"
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -47,6 +49,9 @@ private:
   virtual Address allocate(std::uint64_t bytes, const char *what) = 0;
   virtual void upload(Address to, const void *from, std::uint64_t bytes) = 0;
   virtual void download(void *to, Address from, std::uint64_t bytes) = 0;
+  /// What builds trees where the scene is, and takes over memory that it allocated.
+  virtual std::unique_ptr<BuildDevice> buildDevice() = 0;
+  virtual void own(Address memory) = 0;
   /// The address of the pixels on the device, which are set to 0.
   virtual Address clearedPixels() = 0;
   /// Copies them to `picture`.
@@ -75,6 +80,7 @@ private:
   void placeOwnSums();
   void placeOpenPixels();
   std::uint32_t samplesAtOnce() const;
+  void buildTreesAt(Address sceneAddress);
 
   FlatScene scene; // empty after prepare()
   std::vector<FlatScene::Output> outputs;

@@ -1,6 +1,7 @@
 //===- RenderOptions.h - options and results of a rendering ---------------===//
 #pragma once
 
+#include "runtime/accel/TreeKind.h"
 #include "runtime/device/ray/Abi.h"
 
 #include <atomic>
@@ -44,6 +45,7 @@ struct RenderOptions {
   std::uint32_t seed = 1;
   std::uint32_t threads = 0; // 0: all cores
   Traversal traversal = Traversal::Embree;
+  std::optional<TreeKind> tree; // of the traversal of GPUs; nothing: treeKind decides
 
   /// False, for a launch that writes buffers: the megakernel neither keeps nor adds up samples, and
   /// the picture is black. Not for renderings in passes.
@@ -81,6 +83,7 @@ struct RenderStatistics {
   std::uint64_t openPixels = 0;          // of an adaptive rendering: those that need more samples
   bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
   double buildSeconds = 0;               // acceleration structures
+  std::optional<TreeFigures> tree;       // of the traversal of GPUs, if there is one
   double renderSeconds = 0;              // samples
   double kernelSeconds = 0;              // of these, on a GPU, by its own clock; otherwise 0
   std::uint64_t badRays = 0;             // not finite or without a direction: they saw color 0

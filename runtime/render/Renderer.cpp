@@ -129,7 +129,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
     throw Error(ErrorCode::Internal, "the program has no code for samples");
   try {
     self->host = std::make_unique<HostScene>(scene, options.traversal == Traversal::Embree,
-                                             threadCount(options));
+                                             threadCount(options), options.tree);
     if (options.traversal == Traversal::Device)
       self->launch = self->host->deviceLaunch();
     makePicture(program.colorComponents);
@@ -283,6 +283,7 @@ void Renderer::run(Watch &watch) {
 }
 
 RenderStatistics Renderer::finish() {
+  trees = self->host->treeFigures(); // with Embree it is built for the first ray that needs it
   self->totals.samplesNotFinite = self->notFinite.total();
   self->totals.notFinite = self->notFinite.take();
   return std::move(self->totals);

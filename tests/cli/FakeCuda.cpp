@@ -4,12 +4,16 @@
 // until it is stopped, again and again ("endless").
 #include "runtime/device/engines/SampleSums.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/trees/Clusters.h"
+#include "runtime/device/trees/Sort.h"
+#include "runtime/device/trees/Widen.h"
 
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <string>
 #include <thread>
@@ -127,8 +131,34 @@ int sum(const RtslJob &job) {
   return Success;
 }
 
-/// What the driver gives out as kernels.
-const char *const kernels[] = {"rtsl_render", "rtsl_sum"};
+/// What the driver gives out as kernels: those of programs, and those that build trees.
+const char *const kernels[] = {
+    "rtsl_render",
+    "rtsl_sum",
+#define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
+#include "runtime/device/trees/Steps.def"
+};
+constexpr std::size_t programKernels = 2;
+
+/// A step of a build, on warps of one lane.
+int buildStep(std::size_t number, const rtsl::device::build::TreeBuild &build, std::uint32_t count,
+              std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  using namespace rtsl::device::build;
+  if (!isAllocated(&build, sizeof build))
+    return IllegalAddress;
+  const std::string name = kernels[programKernels + number];
+  for (const char *const ofWarps :
+       {"CountDigits", "MoveByDigit", "SumTile", "SumTilesBefore", "SumElementsBefore"})
+    if (name == std::string("rtsl_build_") + ofWarps)
+      count /= 32;
+  std::size_t step = 0;
+#define RTSL_BUILD_STEP(name, call)                                                                \
+  if (number == step++)                                                                            \
+    for (std::uint32_t i = 0; i < count; ++i)                                                      \
+      call;
+#include "runtime/device/trees/Steps.def"
+  return Success;
+}
 
 } // namespace
 
@@ -225,6 +255,13 @@ int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
   std::memcpy(to, reinterpret_cast<void *>(from), bytes);
   return Success;
 }
+int cuMemcpyDtoD_v2(std::uint64_t to, std::uint64_t from, std::size_t bytes) {
+  if (!isAllocated(reinterpret_cast<void *>(to), bytes) ||
+      !isAllocated(reinterpret_cast<void *>(from), bytes))
+    return InvalidValue;
+  std::memcpy(reinterpret_cast<void *>(to), reinterpret_cast<void *>(from), bytes);
+  return Success;
+}
 int cuStreamCreate(void **stream, unsigned flags) {
   *stream = &allocations;
   return flags == 1 ? Success : InvalidValue; // it must not wait for the kernel
@@ -265,8 +302,10 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
   }
   const char *ptx = static_cast<const char *>(image);
   *module = &allocations;
-  for (const char *kernel : kernels)
-    if (!std::strstr(ptx, (std::string(".entry ") + kernel + "(").c_str()))
+  const bool builds = std::strstr(ptx, ".entry rtsl_build_");
+  for (std::size_t i = 0; i < std::size(kernels); ++i)
+    if (builds == (i >= programKernels) &&
+        !std::strstr(ptx, (std::string(".entry ") + kernels[i] + "(").c_str()))
       return InvalidValue;
   return Success;
 }
@@ -294,6 +333,16 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
                    unsigned, unsigned, void *, void **arguments, void **) {
   if (is("fault"))
     return Success; // it shows when the kernel is waited for
+  const auto kernel = std::size_t(static_cast<const char *const *>(function) - kernels);
+  if (kernel >= programKernels) {
+    const auto number = [&](int i) { return *static_cast<const std::uint32_t *>(arguments[i]); };
+    const std::uint32_t count = number(1);
+    if (blocks != (count + threads - 1) / threads)
+      return InvalidValue;
+    return buildStep(kernel - programKernels,
+                     **static_cast<const rtsl::device::build::TreeBuild **>(arguments[0]), count,
+                     number(2), number(3), number(4));
+  }
   const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
   return function == &kernels[0] ? render(job, blocks, threads) : sum(job);
 }

@@ -67,6 +67,16 @@ std::string unfinishedText(const runtime::RenderStatistics &statistics,
                      statistics.pixels, pixels);
 }
 
+const char *nameOf(runtime::TreeKind kind) {
+  return kind == runtime::TreeKind::Fast ? "fast" : "good";
+}
+
+std::string treeText(const runtime::TreeFigures &tree) {
+  const std::string cost = tree.cost > 0 ? fmt::format(", cost {:.3g}", tree.cost) : "";
+  return fmt::format("{} tree: {} nodes for {} items{}, built in {:.0f} ms", nameOf(tree.kind),
+                     tree.nodes, tree.items, cost, tree.seconds * 1e3);
+}
+
 std::string gpuText(const runtime::GpuStatistics &gpu) {
   return fmt::format("{}: {} registers and {} local bytes per thread, {} blocks of {} threads, {} "
                      "bytes for the rays of each; code loaded in {:.0f} ms, scene in {:.0f} ms",

@@ -31,6 +31,12 @@ std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statist
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options);
 
+/// "fast" or "good"
+const char *nameOf(runtime::TreeKind kind);
+
+/// "fast trees: 15,977 nodes for 99,950 items, cost 7.06, built in 4 ms"
+std::string treeText(const runtime::TreeFigures &tree);
+
 /// "NVIDIA H100: 80 registers and 2400 local bytes per thread, ..."
 std::string gpuText(const runtime::GpuStatistics &gpu);
 

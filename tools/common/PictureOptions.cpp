@@ -74,4 +74,15 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format) 
                         output + "` is to be");
 }
 
+void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree) {
+  using Tree = std::optional<runtime::TreeKind>;
+  addChoice(command, "--tree", tree,
+            Choices<Tree>{{"auto", std::nullopt},
+                          {"fast", runtime::TreeKind::Fast},
+                          {"good", runtime::TreeKind::Good}},
+            "the tree for the traversal of GPUs: good, with the least cost for a ray; fast, built "
+            "sooner, and on the GPU if there is one; auto: by the number of triangles. The picture "
+            "is the same");
+}
+
 } // namespace rtsl::tool

@@ -28,4 +28,7 @@ void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFo
 /// options are read.
 void checkPictureName(const std::string &output, runtime::PictureFormat format);
 
+/// Adds --tree.
+void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree);
+
 } // namespace rtsl::tool

@@ -39,6 +39,7 @@ struct Options {
   std::optional<std::uint32_t> samples, depth, seed;
   std::optional<tool::PictureSize> size;
   std::optional<runtime::Window> crop;
+  std::optional<runtime::TreeKind> tree;
   std::uint32_t threads = 0, registers = 0;
   bool quiet = false, json = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
@@ -55,6 +56,7 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
+  render.tree = options.tree.value_or(runtime::TreeKind::Fast); // if the package has none
   render.cancel = tool::catchInterruptions();
   render.keepsUnfinished = true;
   return render;
@@ -92,6 +94,11 @@ std::string toJson(const runtime::Package &package, const runtime::RenderOptions
         " \"loadSeconds\": {}, \"uploadSeconds\": {}, \"kernelSeconds\": {}",
         gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
         gpu->uploadSeconds, statistics.kernelSeconds);
+  if (const auto &tree = statistics.tree)
+    text +=
+        fmt::format(",\n \"tree\": {{\"kind\": \"{}\", \"seconds\": {}, \"nodes\": {}, "
+                    "\"items\": {}, \"cost\": {}}}",
+                    tool::nameOf(tree->kind), tree->seconds, tree->nodes, tree->items, tree->cost);
   return text + "}\n";
 }
 
@@ -123,6 +130,8 @@ void report(const Options &options, const runtime::Package &package,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr, "{}\n", tool::gpuText(*gpu));
+  if (statistics.tree)
+    fmt::print(stderr, "{}\n", tool::treeText(*statistics.tree));
   if (const std::string text = tool::badRaysText(statistics); !text.empty())
     fmt::print(stderr, "{}\n", text);
 }
@@ -164,7 +173,9 @@ int render(const Options &options) {
   refuseToOverwrite(options.output, {options.package});
   if (!options.reference.empty())
     refuseToOverwrite(options.output, {options.reference});
-  const runtime::Package package = runtime::readPackage(options.package);
+  runtime::Package package = runtime::readPackage(options.package);
+  if (options.tree == runtime::TreeKind::Fast)
+    package.scene.removeTrees();
   const runtime::RenderOptions render = renderOptions(options, package);
   const std::optional<runtime::Image> reference = readReference(options, package, render);
   runtime::RenderStatistics statistics;
@@ -199,6 +210,7 @@ void addOptions(CLI::App &app, Options &options) {
                   "where to render: gpu, the first CUDA device; host, all cores");
   tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel,
                  "samples per pixel");
+  tool::addTreeOption(app, options.tree);
   tool::addSizeOption(app, options.size);
   tool::addCropOption(app, options.crop);
   tool::addWhole(app, "--depth", options.depth, 0, runtime::maxRayDepth,

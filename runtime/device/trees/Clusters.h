@@ -3,8 +3,9 @@
 // Parallel locally-ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering
 // for Bounding Volume Hierarchy Construction", 2018): in each round every cluster finds, among its
 // neighbours on the curve, the one with which its box would be the smallest, and those that find
-// each other become one. A round adds one level at most, so when no more rounds are left than
-// halving needs, clusters are joined in pairs.
+// each other become one. The height of a tree is limited: clusters that are too high for their
+// number are not joined, so that joining all in pairs always is possible, which is what happens
+// when no others are left, or after many rounds.
 //
 // The functions are steps, as in Sort.h.
 //
@@ -22,37 +23,44 @@ constexpr uint32_t searchRadius = 8;
 struct Round {
   uint32_t number;
   uint32_t clusters;
+  bool isInPairs; // each cluster is joined with the next one
 
   uint32_t from() const { return number & 1; }
   uint32_t to() const { return from() ^ 1; }
-  bool mustHalve() const {
-    uint32_t needed = 0; // rounds
-    while ((uint64_t(1) << needed) < clusters)
-      ++needed;
-    return number + needed >= mostRounds;
+  /// No cluster is higher, before the round and after it, by which it may have gained one. Halving
+  /// then needs no more levels than mostHeight.
+  uint32_t heightLimit() const {
+    uint32_t levels = 0; // that halving needs
+    while ((uint64_t(1) << levels) < clusters)
+      ++levels;
+    return mostHeight - levels;
   }
 };
 
 inline void makeLeaf(const TreeBuild &build, uint32_t i) {
   build.boxes[i] = build.boxes[build.count + build.itemOf(i)];
   build.clusters[0][i] = i;
+  build.heights[i] = 0;
 }
 
 /// Of equal ones, the neighbour whose number differs in lower bits: so that in a row of equal boxes
 /// all find each other in pairs. Some always do.
 inline void findNearest(const TreeBuild &build, uint32_t i, Round round) {
-  if (round.mustHalve()) {
+  if (round.isInPairs) {
     build.nearest[i] = (i ^ 1) < round.clusters ? i ^ 1 : i;
     return;
   }
   const uint32_t *const clusters = build.clustersOf(round.from());
   const RtslBox box = build.boxes[clusters[i]];
+  const uint32_t limit = round.heightLimit();
+  const bool mayBeTooHigh = round.number >= limit; // a round adds one at most
   const uint32_t first = i < searchRadius ? 0 : i - searchRadius;
   const uint32_t last = i + searchRadius < round.clusters ? i + searchRadius : round.clusters - 1;
   float least = infinity;
   uint32_t nearest = i, difference = ~0u;
   for (uint32_t other = first; other <= last; ++other) {
-    if (other == i)
+    if (other == i || (mayBeTooHigh && (build.heights[clusters[i]] >= limit ||
+                                        build.heights[clusters[other]] >= limit)))
       continue;
     RtslBox joined = build.boxes[clusters[other]];
     extend(joined, box);
@@ -87,6 +95,8 @@ inline void joinNodes(const TreeBuild &build, uint32_t node, uint32_t left, uint
   RtslBox box = build.boxes[left];
   extend(box, build.boxes[right]);
   build.boxes[node] = box;
+  const uint8_t leftHeight = build.heights[left], rightHeight = build.heights[right];
+  build.heights[node] = uint8_t((leftHeight > rightHeight ? leftHeight : rightHeight) + 1);
   const uint32_t i = node - build.count;
   build.children[i] = {left, right};
   build.costs[i] =

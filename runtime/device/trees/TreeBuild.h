@@ -8,7 +8,7 @@
 namespace rtsl::device::build {
 
 /// No path from the root of the binary tree is longer, and so none of the wide one.
-constexpr uint32_t mostRounds = 63;
+constexpr uint32_t mostHeight = 63;
 
 /// Of the place of an item on the curve.
 constexpr uint32_t bitsOfAxis = 20, sortPasses = 3 * bitsOfAxis / digitBits;
@@ -34,6 +34,7 @@ struct TreeBuild {
   // the others follow in the order of rounds, the root last. Before the leaves are made the box of
   // item i is that of node n + i.
   RtslBox *boxes;   // 2 n
+  uint8_t *heights; // 2 n: levels below
   Pair *children;   // of node n + i
   Choice *choices;  // of node n + i
   Costs *costs;     // of node n + i

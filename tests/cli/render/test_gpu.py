@@ -110,7 +110,8 @@ class Gpu(Case):
             r"^a\.exr: 32x18, 2 spp; compiled in \d+ ms, rendered in .* samples/s\)\n"
             r"Fake 1000: 40 registers and 40 local bytes per thread, 5 blocks of 128 threads, \d+ "
             r"bytes for the rays of "
-            r"each; code loaded in \d+ ms, scene in \d+ ms\n$",
+            r"each; code loaded in \d+ ms, scene in \d+ ms\n"
+            r"good tree: \d+ nodes for \d+ items, cost [\d.]+, built in \d+ ms\n$",
         )
 
     def test_every_example_goes_there(self):

@@ -114,9 +114,9 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 7;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 7, and this program reads format "
-                            "6: use a newer rtsl-run");
+  newer[8] = 8;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 8, and this program reads format "
+                            "7: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;

@@ -1,9 +1,11 @@
 //===- PackCommand.cpp - rtslc pack ---------------------------------------===//
+#include "runtime/accel/BvhBuilder.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "tools/common/PictureOptions.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
 #include "tools/rtslc/common/ScenePackage.h"
@@ -22,8 +24,16 @@ struct PackOptions {
   CommonOptions common;
   std::string scene, output;
   std::vector<std::string> overrides;
+  std::optional<runtime::TreeKind> tree;
   bool quiet = false;
 };
+
+/// A package is rendered many times, so it has good trees, unless fast ones are requested: they
+/// are built where it is rendered.
+runtime::FlatScene flatten(const runtime::Scene &scene, std::optional<runtime::TreeKind> tree) {
+  return tree == runtime::TreeKind::Fast ? runtime::flatten(scene)
+                                         : runtime::flatten(scene, runtime::buildBvh(scene));
+}
 
 void packScene(const PackOptions &options, Messages &messages) {
   checkOutputs(options.output, options.common.dependencies, {options.scene});
@@ -50,7 +60,7 @@ void packScene(const PackOptions &options, Messages &messages) {
     return;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
-  package.scene = runtime::flatten(*scene);
+  package.scene = flatten(*scene, options.tree);
 
   const runtime::NativeCode code(package.host);
   const std::uint32_t chain = package.scene.launch().referenceChain;
@@ -62,10 +72,11 @@ void packScene(const PackOptions &options, Messages &messages) {
   writeDependencies(options.common.dependencies, options.output, {options.scene}, filesRead);
   if (!options.quiet && !options.common.jsonDiagnostics)
     fmt::print(stderr,
-               "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB\n",
+               "{}: {:.2f} MiB; PTX {} kB for {} and newer, host code {} kB, scene {:.2f} MiB{}\n",
                options.output, double(bytes.size()) / (1 << 20), package.ptx.size() / 1000,
                options.common.compile.gpu, package.host.bytes.size() / 1000,
-               double(package.scene.bytes.size()) / (1 << 20));
+               double(package.scene.bytes.size()) / (1 << 20),
+               package.scene.hasTrees() ? "" : " without trees");
 }
 
 int pack(const PackOptions &options) {
@@ -91,6 +102,7 @@ void addPackCommand(CLI::App &app, Action &action) {
       ->required()
       ->type_name("PACKAGE");
   addSetOption(*command, options->overrides);
+  addTreeOption(*command, options->tree);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);

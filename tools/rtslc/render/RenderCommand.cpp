@@ -257,6 +257,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addWhole(*command, "--seed", options->seed, 0, 0xffffffff, "seed of the random numbers");
   addSetOption(*command, options->overrides);
   addTraversalOption(*command, options->traversal);
+  addTreeOption(*command, options->tree);
   addTargetOption(*command, options->target);
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");

@@ -34,6 +34,7 @@ struct RenderCommandOptions {
   std::optional<double> frame;  // empty: the scene's
   std::optional<Frames> frames; // a picture for each
   runtime::Traversal traversal = runtime::Traversal::Embree;
+  std::optional<runtime::TreeKind> tree;
   bool json = false;
   bool quiet = false;
   bool watches = false;          // for changes of files

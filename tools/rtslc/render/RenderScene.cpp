@@ -56,6 +56,7 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
   render.traversal = options.traversal;
+  render.tree = options.tree;
   render.keepsUnfinished = true;
   render.isAdaptive = options.isAdaptive;
   if (options.exceptions)

@@ -80,6 +80,8 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
   for (std::uint32_t i = 1; i < RTSL_EXCEPTIONS; ++i)
     if (statistics.exceptions[i])
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
+  if (statistics.tree)
+    document["tree"] = tool::toJson(*statistics.tree);
   if (summary.gpu)
     (document["gpu"] = tool::toJson(*summary.gpu))["kernelSeconds"] = statistics.kernelSeconds;
   return document.dump(2) + "\n";
@@ -109,6 +111,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     fmt::print(stderr, "noise: {:.4g}\n", summary.error);
   if (summary.gpu)
     fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
+  if (statistics.tree)
+    fmt::print(stderr, "{}\n", treeText(*statistics.tree));
   for (const std::string &text : exceptionTexts(statistics, render))
     fmt::print(stderr, "{}\n", text);
   if (const std::string text = tool::badRaysText(statistics); !text.empty())

@@ -6,10 +6,9 @@
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
 #include "tools/common/OptionValues.h"
+#include "tools/common/Outcome.h"
 #include "tools/rtslc/common/GpuArchitectures.h"
 #include "tools/rtslc/common/ScenePackage.h"
-
-#include <chrono>
 
 namespace rtsl::tool {
 
@@ -58,14 +57,10 @@ public:
     const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
     const std::uint64_t laneBytes =
         host.entries().laneBytes(options.maxDepth, scene.launch().referenceChain);
-    const auto start = std::chrono::steady_clock::now();
-    runtime::FlatScene flat = runtime::flatten(scene);
-    const std::chrono::duration<double> treeTime = std::chrono::steady_clock::now() - start;
     auto renderer = std::make_unique<runtime::GpuRenderer>(
-        device, runtime::GpuCode{package.ptx, laneBytes, package.registers}, std::move(flat),
-        options);
+        device, runtime::GpuCode{package.ptx, laneBytes, package.registers},
+        runtime::flatten(scene), options);
     figures = renderer->gpu();
-    figures->treeSeconds = treeTime.count();
     return renderer;
   }
 
@@ -80,6 +75,16 @@ private:
 
 } // namespace
 
+nlohmann::ordered_json toJson(const runtime::TreeFigures &tree) {
+  nlohmann::ordered_json document = {{"kind", nameOf(tree.kind)},
+                                     {"seconds", tree.seconds},
+                                     {"nodes", tree.nodes},
+                                     {"items", tree.items}};
+  if (tree.cost > 0)
+    document["cost"] = tree.cost;
+  return document;
+}
+
 nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
   return {{"device", gpu.device},
           {"registers", gpu.registers},
@@ -88,9 +93,7 @@ nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
           {"threadsPerBlock", gpu.threadsPerBlock},
           {"laneBytes", gpu.laneBytes},
           {"loadSeconds", gpu.loadSeconds},
-          {"uploadSeconds", gpu.uploadSeconds},
-          {"treeSeconds", gpu.treeSeconds},
-          {"treeNodes", gpu.treeNodes}};
+          {"uploadSeconds", gpu.uploadSeconds}};
 }
 
 void addTargetOption(CLI::App &command, TargetName &target) {

@@ -38,7 +38,8 @@ public:
 
 enum class TargetName : std::uint8_t { Host, HostMegakernel, Gpu };
 
-/// What ran on the GPU, for --json.
+/// The trees that were built, and what ran on the GPU, for --json.
+nlohmann::ordered_json toJson(const runtime::TreeFigures &tree);
 nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu);
 
 /// Adds --target.

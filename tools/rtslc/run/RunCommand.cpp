@@ -119,6 +119,7 @@ runtime::RenderOptions renderOptions(const RunOptions &options,
     render.samplesPerPixel = 1;
   render.threads = options.threads;
   render.traversal = options.traversal;
+  render.tree = options.tree;
   render.cancel = catchInterruptions();
   return render;
 }
@@ -276,6 +277,8 @@ std::string toJson(const RunOptions &options, const Launches &all) {
                                     {"raysTooDeep", launch.statistics.raysTooDeep}});
     if (options.repeats > 0)
       document["launches"].back()["repeats"] = launch.repeatSeconds;
+    if (launch.statistics.tree)
+      document["launches"].back()["tree"] = tool::toJson(*launch.statistics.tree);
     if (launch.gpu)
       document["launches"].back()["gpu"] = tool::toJson(*launch.gpu);
   }
@@ -398,6 +401,7 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
   addWhole(command, "--threads", options.threads, 1, runtime::mostThreads,
            "threads; default: all cores");
   addTraversalOption(command, options.traversal);
+  addTreeOption(command, options.tree);
   addTargetOption(command, options.target);
   addWhole(command, "--repeat", options.repeats, 0, mostRepeats,
            "run each launch N more times, and print how long these took; outputs are those of the "

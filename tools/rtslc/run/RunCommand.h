@@ -23,6 +23,7 @@ struct RunOptions {
   std::uint32_t threads = 0;
   std::uint32_t repeats = 0; // further runs of each launch, to measure it
   runtime::Traversal traversal = runtime::Traversal::Embree;
+  std::optional<runtime::TreeKind> tree;
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
   bool json = false, quiet = false, prints = false, exceptions = false;

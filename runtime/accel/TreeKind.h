@@ -1,0 +1,30 @@
+//===- TreeKind.h - how trees are built -----------------------------------===//
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace rtsl::runtime {
+
+enum class TreeKind : std::uint8_t {
+  Good, // top down by the surface area heuristic (BinaryTree.h): the fewest nodes for a ray
+  Fast, // by joining neighbours (ClusterTree.h), on a GPU if there is one: built sooner
+};
+
+/// Trees of fewer items are built in a tenth of a second whatever builds them.
+constexpr std::uint64_t manyItems = 1 << 18;
+
+/// What is built for a rendering if nothing is requested, for trees of so many items together.
+inline TreeKind treeKind(std::optional<TreeKind> requested, std::uint64_t items) {
+  return requested.value_or(items < manyItems ? TreeKind::Good : TreeKind::Fast);
+}
+
+/// What the trees of a scene took, and how good they are.
+struct TreeFigures {
+  TreeKind kind = TreeKind::Good;
+  std::uint32_t nodes = 0, items = 0;
+  float cost = 0;     // of the tree of the world (WideTree::cost)
+  double seconds = 0; // to build them; 0: they were there
+};
+
+} // namespace rtsl::runtime

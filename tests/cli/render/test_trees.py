@@ -1,0 +1,111 @@
+"""--tree: pictures have the same bits whatever built the trees, on every target; and what was built
+is said."""
+
+import json
+import os
+import subprocess
+import unittest
+
+from harness import EXAMPLES, FINE, SECONDS, Case
+
+RTSL_RUN = os.environ["RTSL_RUN"]
+SMALL = ("--size", "32x18", "--spp", "2")
+
+
+class Trees(Case):
+    level = "-O0"
+
+    def run_package(self, *arguments):
+        environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"]}
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *SMALL, *arguments],
+            cwd=self.folder,
+            timeout=SECONDS,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertEqual(done.returncode, FINE, done.stderr[:4000])
+        return done.stdout, done.stderr
+
+    def tree_of(self, *arguments):
+        out = self.run_package("--json", *arguments)[0]
+        return json.loads(out).get("tree")
+
+    def bumpy_scene(self):
+        """A surface of 9,800 triangles."""
+        side = 71
+        lines = [
+            f"v {x / 35 - 1} {y / 35 - 1} {(x * 7919 + y * 104729) % 101 / 500}"
+            for y in range(side)
+            for x in range(side)
+        ]
+        for y in range(side - 1):
+            for x in range(side - 1):
+                i = y * side + x + 1
+                lines += [f"f {i} {i + 1} {i + side}", f"f {i + 1} {i + side + 1} {i + side}"]
+        self.write("bumpy.obj", "\n".join(lines) + "\n")
+        self.glass_scene()
+        scene = json.loads((self.folder / "scene.json").read_text())
+        for one in scene["objects"]:
+            if "mesh" in one:
+                one["mesh"] = "bumpy.obj"
+        self.write("scene.json", json.dumps(scene))
+
+    def test_the_examples_have_the_same_bits(self):
+        for scene in sorted(EXAMPLES.glob("*/scene.json")):
+            with self.subTest(scene=scene):
+                self.run_rtslc("pack", str(scene), "-o", "x.rtslpkg", "-q", "-O0")
+                self.run_package("--target=host", "--tree=good")
+                (self.folder / "out.exr").rename(self.folder / "good.exr")
+                self.run_package("--target=host", "--tree=fast", "--compare", "good.exr")
+
+    def test_packages_without_trees_get_them(self):
+        self.bumpy_scene()
+        self.run_rtslc("pack", "scene.json", "-o", "good.rtslpkg", "-q", "-O0")
+        _, error = self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "--tree=fast", "-O0")
+        self.assertIn("without trees", error)
+        sizes = [(self.folder / f"{name}.rtslpkg").stat().st_size for name in ("x", "good")]
+        self.assertLess(sizes[0] + 9800 * 48, sizes[1])
+        fast, good = self.tree_of("--target=host"), self.tree_of("--target=host", "--tree=good")
+        self.assertEqual((fast["kind"], good["kind"]), ("fast", "good"))
+        self.assertGreater(fast["cost"], good["cost"] * 0.9)
+        self.assertLess(fast["cost"], good["cost"] * 1.3)
+        (self.folder / "out.exr").rename(self.folder / "first.exr")
+        # The device builds the same tree as the host.
+        gpu = self.tree_of("--target=gpu")
+        for name in ("kind", "nodes", "items", "cost"):
+            self.assertEqual(gpu[name], fast[name])
+        (self.folder / "good.rtslpkg").rename(self.folder / "x.rtslpkg")
+        self.assertIsNone(self.tree_of("--target=host", "--compare", "first.exr"))
+        again = self.tree_of("--target=host", "--tree=fast", "--compare", "first.exr")
+        self.assertEqual(again["nodes"], fast["nodes"])
+
+    def test_every_target_says_what_it_built(self):
+        self.bumpy_scene()
+        for target in ("--target=host-megakernel", "--traversal=device"):
+            for kind in ("fast", "good", "auto"):
+                out, _ = self.run_rtslc(
+                    "render",
+                    "scene.json",
+                    "-o",
+                    f"{kind}.exr",
+                    *SMALL,
+                    target,
+                    f"--tree={kind}",
+                    "--json",
+                )
+                tree = json.loads(out)["tree"]
+                self.assertEqual(tree["kind"], "good" if kind == "auto" else kind)
+                self.assertGreater(tree["cost"], 1)
+                self.assertGreaterEqual(tree["seconds"], 0)
+                self.assert_same_bits(f"{kind}.exr", "fast.exr")
+        _, error = self.run_rtslc(
+            "render", "scene.json", "-o", "a.exr", *SMALL, "--traversal=device", "--tree=fast"
+        )
+        self.assertRegex(error, r"fast tree: \d+ nodes for \d+ items, cost [\d.]+, built in \d+ ms")
+
+
+if __name__ == "__main__":
+    unittest.main()
