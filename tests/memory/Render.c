@@ -69,17 +69,20 @@ int main(int argc, char **argv) {
   RtslJob job = {0};
   job.launch = &launch;
   job.status = &status;
-  job.samplesPerPixel = options[2];
+  job.width = launch.width;
+  job.height = launch.height;
+  job.samplesPerPixel = job.sampleCount = options[2];
   job.laneBytes = (rtsl_lane_bytes(launch.maxDepth, launch.referenceChain) + 63) / 64 * 64;
   job.lanes = aligned_alloc(64, job.laneBytes);
-  const uint64_t floats = (uint64_t)launch.width * launch.height * launch.colorComponents;
-  job.pixels = malloc(floats * sizeof *job.pixels);
+  const uint64_t floats =
+      (uint64_t)launch.width * launch.height * job.sampleCount * launch.colorComponents;
+  job.samples = malloc(floats * sizeof *job.samples);
   rtsl_run_lane(&job, 0);
-  __msan_check_mem_is_initialized(job.pixels, floats * sizeof *job.pixels);
+  __msan_check_mem_is_initialized(job.samples, floats * sizeof *job.samples);
 
   double sum = 0;
   for (uint64_t i = 0; i < floats; ++i)
-    sum += job.pixels[i];
+    sum += job.samples[i];
   printf("mean %.9g\n", sum / (double)floats);
   return 0;
 }
