@@ -2,6 +2,7 @@
 #include "report/Measurement.h"
 
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -115,23 +116,21 @@ std::vector<Row> readTable(const std::string &path) {
   lines.pop_back(); // after the last line end: nothing, or a truncated line
   if (lines.empty())
     return {};
-  const auto refuse = [&](std::size_t line, const char *why) {
-    throw Error(ErrorCode::BadImage, why, Place{path, std::uint32_t(line + 1), 1, 1});
+  const auto refuse = [&](std::size_t line, const Message &why) {
+    throw Error(why, Place{path, std::uint32_t(line + 1), 1, 1});
   };
   if (lines.front() + "\n" != headerOf<Row>())
-    refuse(
-        0,
-        "this is not a table of this version's report; choose another folder, or pass `--fresh`");
+    refuse(0, message::reportTableOfOtherVersion());
   std::vector<Row> rows;
   for (std::size_t line = 1; line < lines.size(); ++line) {
     const std::vector<std::string> cells = split(lines[line], ',');
     const auto &columns = columnsOf(static_cast<const Row *>(nullptr));
     if (cells.size() != columns.size())
-      refuse(line, "the number of values in this line is not the number of columns");
+      refuse(line, message::reportColumnCount());
     Row row;
     for (std::size_t i = 0; i < columns.size(); ++i)
       if (!columns[i].read(row, cells[i]))
-        refuse(line, "a value of this line cannot be read");
+        refuse(line, message::reportBadValue());
     rows.push_back(std::move(row));
   }
   return rows;

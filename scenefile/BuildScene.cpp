@@ -7,6 +7,7 @@
 #include "scenefile/graph/Variables.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -201,20 +202,15 @@ private:
       return zeros({width}, member.type, what);
     if (member.type.bufferRank == 2)
       return zeros({height, width}, member.type, what);
-    throw Error(
-        ErrorCode::MissingMember,
-        fmt::format("{}, a `{}`, needs a size: {{\"size\": [...]}}", what, member.type.name),
-        description.rayGeneration->place);
+    throw Error(message::bufferSizeMissing(what, member.type.name),
+                description.rayGeneration->place);
   }
 
   /// The buffer of this name, made on first use.
   Value namedBuffer(const JsonValue &json, const ValueType &type, const std::string &what) {
     const auto described = description.buffers.find(json.string);
     if (described == description.buffers.end()) {
-      Error error(
-          ErrorCode::UnknownName,
-          fmt::format("{} is a `{}`, and no buffer is named `{}`", what, type.name, json.string),
-          json.place());
+      Error error(message::noSuchBuffer(what, type.name, json.string), json.place());
       std::vector<std::string> names;
       for (const auto &buffer : description.buffers)
         names.push_back(buffer.first);
@@ -234,9 +230,7 @@ private:
                  .first;
     }
     if (made->second.type.name != type.name)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("{} is a `{}`, and the buffer `{}` a `{}`", what, type.name,
-                              json.string, made->second.type.name),
+      throw Error(message::bufferTypeMismatch(what, type.name, json.string, made->second.type.name),
                   json.place());
     Value value = made->second.value;
     return value.at(json.place());
@@ -259,9 +253,7 @@ private:
       std::size_t notFinite = 0;
       runtime::Texels texels = images.take(number, notFinite);
       if (notFinite != 0)
-        scene.addWarning({fmt::format("{}: {} numbers of the image are not finite, and count as 0",
-                                      name, notFinite),
-                          image.place()});
+        scene.addWarning({message::imageNotFinite(name, notFinite), image.place()});
       return samplers[number] = scene.addObject(
                  className,
                  runtime::samplerValues(
@@ -316,10 +308,7 @@ private:
       if (isImage(json))
         return Value::reference(addImage(json, imageClass(json), what)).at(json.place());
       if (type && isImageClass(type->className) && !json.find("class"))
-        throw Error(ErrorCode::MissingKey,
-                    fmt::format("{} is a `{}`: an image needs a `file`, `slices` or `raw`", what,
-                                type->className),
-                    json.place());
+        throw Error(message::imageSourceMissing(what, type->className), json.place());
       ObjectDescription object = objectInPlace(json, what);
       return Value::reference(add(object, object.className.text)).at(json.place());
     }
@@ -328,15 +317,13 @@ private:
         return Value::reference(0).at(json.place());
       break;
     }
-    throw Error(ErrorCode::WrongType, fmt::format("{} cannot be null", what), json.place());
+    throw Error(message::cannotBeNull(what), json.place());
   }
 
   static void refuseUnlessReference(const JsonValue &json, const ValueType *type,
                                     const std::string &what) {
     if (type && type->kind != ValueType::Kind::Reference)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("{} is a `{}`, not {}", what, type->name, describe(json.kind)),
-                  json.place());
+      throw Error(message::typeMismatch(what, type->name, describe(json.kind)), json.place());
   }
 
   /// Is there an object of this name, with whatever variables?
@@ -350,10 +337,8 @@ private:
   RtslRef named(const std::string &name, const Place &place) {
     const ObjectDescription *object = findObject(description, name);
     if (!object) {
-      Error error(ErrorCode::UnknownName,
-                  fmt::format("no {}{}texture or material is named `{}`",
-                              description.images.empty() ? "" : "image, ",
-                              description.helpers.empty() ? "" : "helper, ", name),
+      Error error(message::noSuchObject(description.images.empty() ? "" : "image, ",
+                                        description.helpers.empty() ? "" : "helper, ", name),
                   place);
       if (const std::string near = closestName(name, allNames()); !near.empty())
         error.fix(near);
@@ -362,8 +347,7 @@ private:
     const std::pair key(name, variables.takenBy(*object));
     if (const auto found = made.find(key); found != made.end()) {
       if (found->second == 0)
-        throw Error(ErrorCode::ReferenceCycle,
-                    fmt::format("`{}` refers to itself indirectly", name), place);
+        throw Error(message::objectCycle(name), place);
       return found->second;
     }
     if (refused.count(name))
@@ -473,10 +457,7 @@ private:
     const ClassInfo &classInfo = scene.classOf(object);
     if (classInfo.root == root)
       return;
-    throw Error(ErrorCode::WrongClass,
-                fmt::format("`{}` is a `{}`, an `{}`, where {} is needed", name.text,
-                            classInfo.name, classInfo.root, what),
-                name.place);
+    throw Error(message::wrongClass(name.text, classInfo.name, classInfo.root, what), name.place);
   }
 
   /// The mention of the file that an error of loading a mesh is about.

@@ -2,6 +2,7 @@
 
 #include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -93,10 +94,8 @@ private:
     const std::string identity = identityOf(file);
     if (const auto above = std::find(open.begin(), open.end(), identity); above != open.end()) {
       std::vector<std::string> cycle(shown.begin() + (above - open.begin()), shown.end());
-      throw Error(ErrorCode::ReferenceCycle,
-                  cycle.size() == 1 ? fmt::format("`{}` includes itself", cycle.front())
-                                    : fmt::format("these files include one another: `{}`",
-                                                  fmt::join(cycle, "`, `")),
+      throw Error(cycle.size() == 1 ? message::includesItself(cycle.front())
+                                    : message::includeCycle(fmt::join(cycle, "`, `")),
                   path.place());
     }
     if (std::find(known.begin(), known.end(), identity) != known.end())
@@ -153,9 +152,7 @@ private:
       else if (meeting == Meeting::Keys)
         *same = {withFile(key, more), std::move(member)};
       else
-        throw Error(ErrorCode::DuplicateKey,
-                    fmt::format("`{}` of `{}` is defined twice", key.text, before.first.text),
-                    more.place(key))
+        throw Error(message::definedTwice(key.text, before.first.text), more.place(key))
             .related(value.place(same->first), "the other one is here");
     }
   }
@@ -192,14 +189,10 @@ private:
 void checkVersion(const JsonValue &root) {
   const JsonValue *version = root.find("rtsl");
   if (!version)
-    throw Error(ErrorCode::MissingKey,
-                "a scene begins with `\"rtsl\": 1`, the version of the format", root.place());
+    throw Error(message::versionMissing(), root.place());
   expect(*version, Kind::Number, "`rtsl`");
   if (version->number != 1)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("version {:g} of the scene format is not supported, only 1 is",
-                            version->number),
-                version->place());
+    throw Error(message::versionUnsupported(version->number), version->place());
 }
 
 std::vector<std::string> expandIncludes(JsonValue &root, const std::string &file,

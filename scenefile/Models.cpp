@@ -5,6 +5,7 @@
 #include "scenefile/gltf/Parts.h"
 #include "scenefile/graph/TransformReader.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -174,8 +175,7 @@ private:
     if (const JsonValue *found = mention.find("transform")) {
       const runtime::MovingTransform read = readTransform(*found);
       if (read.moves())
-        throw Error(ErrorCode::NotSupported, "a camera does not move, but its transform has keys",
-                    found->place());
+        throw Error(message::movingCamera(), found->place());
       transform = read.still();
     }
     const gltf::File &opened = modelsOf(scene).open(file, path.place());

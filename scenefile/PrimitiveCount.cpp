@@ -1,6 +1,7 @@
 #include "scenefile/PrimitiveCount.h"
 
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -32,14 +33,9 @@ std::uint32_t primitivesOf(const GeometryDescription &geometry, const runtime::S
     std::memcpy(&buffer, scene.record(primitive) + member->offset, sizeof buffer);
     if (buffer.size[0] != 0)
       return buffer.size[0];
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("the buffer `{}` is empty: there would be no primitives", member->name),
-                geometry.count->place());
+    throw Error(message::countBufferEmpty(member->name), geometry.count->place());
   }
-  Error error(ErrorCode::UnknownName,
-              fmt::format("`count` is a number or the name of a buffer, and `{}` has no member "
-                          "`{}` that is one",
-                          classInfo.name, geometry.count->string),
+  Error error(message::noSuchCountBuffer(classInfo.name, geometry.count->string),
               geometry.count->place());
   std::vector<std::string> names;
   for (const MemberInfo &one : classInfo.members)

@@ -3,6 +3,7 @@
 
 #include "scenefile/Models.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -114,8 +115,7 @@ bool isGiven(const ObjectDescription &object, const std::string &member) {
 ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) {
   const JsonValue *className = json.find("class");
   if (!className || className->kind != Kind::String)
-    throw Error(ErrorCode::MissingKey, fmt::format("{}: an object needs a `class`", what),
-                json.place());
+    throw Error(message::classMissing(what), json.place());
   ObjectDescription object;
   object.className = {className->string, className->place()};
   object.place = json.place();
@@ -127,9 +127,7 @@ ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) 
   }
   if (object.constructor && object.constructor->kind != Kind::Array &&
       object.constructor->kind != Kind::Object)
-    throw Error(ErrorCode::WrongType,
-                "`constructor` is a list of arguments or an object of arguments by name",
-                object.constructor->place());
+    throw Error(message::constructorNotArguments(), object.constructor->place());
   return object;
 }
 
@@ -139,9 +137,7 @@ double numberOfRoot(const JsonValue &json, const SceneDescription &description,
   const auto found = std::find(roots.begin(), roots.end(), json.string);
   if (found != roots.end())
     return double(found - roots.begin());
-  Error error(ErrorCode::WrongType,
-              fmt::format("{} is an `int`, and no root is named `{}`", what, json.string),
-              json.place());
+  Error error(message::noSuchRoot(what, json.string), json.place());
   if (const std::string near = closestName(json.string, roots); !near.empty())
     error.fix(near);
   throw error;

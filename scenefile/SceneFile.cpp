@@ -14,6 +14,7 @@
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -131,11 +132,8 @@ private:
         return camera;
       names.push_back(known);
     }
-    Error error(ErrorCode::UnknownName,
-                names.empty() ? fmt::format("there is no camera `{}`: the scene has no `cameras`",
-                                            name.string)
-                              : fmt::format("there is no camera `{}`; there are `{}`", name.string,
-                                            fmt::join(names, "`, `")),
+    Error error(names.empty() ? message::noCameras(name.string)
+                              : message::noSuchCamera(name.string, fmt::join(names, "`, `")),
                 name.place());
     if (const std::string near = closestName(name.string, names); !near.empty())
       error.fix(near);
@@ -146,8 +144,7 @@ private:
     if (!root.find("cameras"))
       require(root, "camera", what);
     else if (root.find("cameras")->members.empty() && !root.find("camera"))
-      throw Error(ErrorCode::MissingKey, fmt::format("{} needs a camera in `cameras`", what),
-                  root.find("cameras")->place());
+      throw Error(message::cameraMissing(what), root.find("cameras")->place());
   }
 
   /// Requires the object that starts samples.
@@ -174,7 +171,7 @@ private:
     expect(value, Kind::String, "an import");
     ImportDescription import{{value.string, value.place()}, ""};
     if (value.string.empty())
-      throw Error(ErrorCode::OutOfRange, "an import has no name", value.place());
+      throw Error(message::importNameEmpty(), value.place());
     const std::string extension = ".rtsl";
     bool isFile = value.string.size() > extension.size() &&
                   value.string.compare(value.string.size() - extension.size(), extension.size(),
@@ -198,18 +195,13 @@ private:
     const JsonValue &className = expect(require(value, "class", what), Kind::String, "`class`");
     object.className = {className.string, className.place()};
     if (className.string.empty())
-      throw Error(ErrorCode::UnknownClass, "a class has no name", className.place());
+      throw Error(message::classNameEmpty(), className.place());
     for (const auto &[key, member] : value.members) {
       if (key.text == "class")
         continue;
       if (key.text == "constructor") {
         if (member.kind != Kind::Array && member.kind != Kind::Object)
-          throw Error(
-              ErrorCode::WrongType,
-              fmt::format(
-                  "`constructor` is a list of arguments or an object of arguments by name, not {}",
-                  describe(member.kind)),
-              member.place());
+          throw Error(message::constructorWrongKind(describe(member.kind)), member.place());
         object.constructor = &member;
         continue;
       }
@@ -227,9 +219,7 @@ private:
           refuseTakenName(key.text, value.place(key));
           expect(member, Kind::Object, fmt::format("`{}`", key.text));
           if (!isImage(member))
-            throw Error(ErrorCode::MissingKey,
-                        fmt::format("the image `{}` needs a `file`, `slices` or `raw`", key.text),
-                        member.place());
+            throw Error(message::namedImageSourceMissing(key.text), member.place());
           scene.images[key.text] = readObject(member, fmt::format("`{}`", key.text));
         });
     });
@@ -278,10 +268,7 @@ private:
       for (const auto &[key, member] : value.members)
         errors.attempt([&, &key = key, &member = member] {
           if (!isBuffer(member))
-            throw Error(
-                ErrorCode::MissingKey,
-                fmt::format("the buffer `{}` needs a `size`, or a file: `buffer`", key.text),
-                member.place());
+            throw Error(message::namedBufferSourceMissing(key.text), member.place());
           scene.buffers[key.text] = &member;
         });
     });
@@ -304,9 +291,7 @@ private:
     if (!passes || scene.passes.empty())
       return;
     if (libraryEngine || root.find("rayGeneration"))
-      throw Error(ErrorCode::UnknownKey,
-                  libraryEngine ? "a scene with `passes` has no other engine"
-                                : "a scene has `rayGeneration` or `passes`, not both",
+      throw Error(libraryEngine ? message::engineAndPasses() : message::rayGenerationAndPasses(),
                   libraryEngine ? libraryEngine->place() : root.find("rayGeneration")->place());
     scene.rayGeneration = scene.passes.back().rayGeneration;
     scene.render = scene.passes.back().render;
@@ -327,8 +312,7 @@ private:
   void refuseTakenName(const std::string &name, const Place &place) const {
     const auto refuse = [&](const auto &objects, const char *what) {
       if (auto other = objects.find(name); other != objects.end())
-        throw Error(ErrorCode::DuplicateKey,
-                    fmt::format("`{}` is already the name of a {}", name, what), place)
+        throw Error(message::nameTaken(name, what), place)
             .related(other->second.place, fmt::format("the {}", what));
     };
     refuse(scene.images, "image");
@@ -343,10 +327,7 @@ private:
     } else if (value.kind == Kind::Object) {
       reference.object = std::make_shared<ObjectDescription>(readObject(value, what));
     } else {
-      throw Error(
-          ErrorCode::WrongType,
-          fmt::format("{} is a name or an object with a class, not {}", what, describe(value.kind)),
-          value.place());
+      throw Error(message::notNameOrObject(what, describe(value.kind)), value.place());
     }
     return reference;
   }
@@ -406,9 +387,7 @@ private:
       if (const JsonValue *attributes = value.find("attributes")) {
         geometry.attributes = readAttributes(*attributes);
         if (geometry.mesh.empty())
-          throw Error(ErrorCode::UnknownKey,
-                      "`attributes` are for a `mesh`: a primitive has scratch members",
-                      attributes->place());
+          throw Error(message::attributesWithoutMesh(), attributes->place());
       }
     });
     return geometry;
@@ -417,9 +396,7 @@ private:
   static void readBackFaces(const JsonValue &value, GeometryDescription &geometry) {
     expect(value, Kind::Boolean, "`backFaces`");
     if (geometry.mesh.empty())
-      throw Error(ErrorCode::UnknownKey,
-                  "`backFaces` is for a `mesh`: `intersect` of a primitive decides what is hit",
-                  value.place());
+      throw Error(message::backFacesWithoutMesh(), value.place());
     geometry.hasBackFaces = value.boolean;
   }
 
@@ -432,18 +409,14 @@ private:
     else if (geometry.mesh.empty() && readInteger(*count, 1, 0x7fffffff, "`count`"))
       geometry.count = count;
     else
-      throw Error(ErrorCode::UnknownKey, "`count` is for a `primitive`: a mesh has its triangles",
-                  count->place());
+      throw Error(message::countWithoutPrimitive(), count->place());
   }
 
   void readShape(const JsonValue &value, const std::string &what,
                  GeometryDescription &geometry) const {
     const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
     if (!primitive == !mesh)
-      throw Error(primitive ? ErrorCode::UnknownKey : ErrorCode::MissingKey,
-                  fmt::format(primitive ? "{} is a `primitive` or a `mesh`, not both"
-                                        : "{} needs a `primitive` or a `mesh`",
-                              what),
+      throw Error(primitive ? message::primitiveAndMesh(what) : message::noPrimitiveOrMesh(what),
                   value.place());
     if (primitive)
       geometry.primitive = readObject(*primitive, "`primitive`");
@@ -454,9 +427,7 @@ private:
       if (const JsonValue *coordinates = value.find("textureCoordinates")) {
         expect(*coordinates, Kind::String, "`textureCoordinates`");
         if (coordinates->string != "file" && coordinates->string != "barycentric")
-          throw Error(ErrorCode::OutOfRange,
-                      fmt::format("`textureCoordinates` are `file` or `barycentric`, not `{}`",
-                                  coordinates->string),
+          throw Error(message::unknownTextureCoordinates(coordinates->string),
                       coordinates->place());
         geometry.isBarycentric = coordinates->string == "barycentric";
       }
@@ -485,9 +456,7 @@ private:
   void readShutter(const JsonValue &value) {
     const std::vector<double> times = readNumbers(value, 2, "`shutter`");
     if (!(0 <= times[0] && times[0] <= times[1] && times[1] <= 1))
-      throw Error(ErrorCode::OutOfRange,
-                  "`shutter` is two times from 0 to 1: when it opens, and when it closes",
-                  value.place());
+      throw Error(message::badShutter(), value.place());
     scene.shutter = {float(times[0]), float(times[1])};
   }
 
@@ -505,8 +474,7 @@ private:
       return value;
     }
     if (value.kind != Kind::Array)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("{} is a color, not {}", what, describe(value.kind)), value.place());
+      throw Error(message::notColor(what, describe(value.kind)), value.place());
     readNumbers(value, value.elements.size(), what);
     return value;
   }
@@ -523,9 +491,7 @@ private:
       if (std::find(ofLibrary.begin(), ofLibrary.end(), engine->string) != ofLibrary.end())
         libraryEngine = engine;
       else if (engine->string != "classic" && engine->string != "programs")
-        throw Error(ErrorCode::NotSupported,
-                    fmt::format("there is no engine `{}`; there are `classic`, `programs`, `{}`",
-                                engine->string, fmt::join(ofLibrary, "`, `")),
+        throw Error(message::noSuchEngine(engine->string, fmt::join(ofLibrary, "`, `")),
                     engine->place());
       if (engine->string != "classic")
         render.engine = runtime::Engine::Programs;

@@ -3,6 +3,7 @@
 
 #include "scenefile/files/BufferFiles.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -24,17 +25,11 @@ static std::uint32_t lengthOfBuffer(const JsonValue &name, const SceneDescriptio
     return static_cast<std::uint32_t>(value->elements.size());
   const auto buffer = value ? scene.bufferValues.find(value) : scene.bufferValues.end();
   if (buffer == scene.bufferValues.end())
-    throw Error(ErrorCode::UnknownName,
-                fmt::format("`size` is two numbers, one, or the name of a buffer that the scene "
-                            "gives, and `{}` is none",
-                            name.string),
-                name.place());
+    throw Error(message::noSuchSizeBuffer(name.string), name.place());
   try {
     const std::size_t length = lengthOf(buffer->second);
     if (length == 0 || length > runtime::mostLaunchWidth)
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("a launch of the size of `{}` has {} indices; it may have 1 to {}",
-                              name.string, length, runtime::mostLaunchWidth));
+      throw Error(message::launchSizeOutOfRange(name.string, length, runtime::mostLaunchWidth));
     return static_cast<std::uint32_t>(length);
   } catch (Error &error) {
     error.place = name.place();

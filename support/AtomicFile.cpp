@@ -1,6 +1,7 @@
 #include "support/AtomicFile.h"
 
 #include "support/EndlessInput.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -22,10 +23,8 @@ constexpr const char *standardOutput = "-";
 
 [[noreturn]] void throwUnwritable(const std::string &path, int error) {
   if (path == standardOutput)
-    throw Error(ErrorCode::FileUnwritable,
-                fmt::format("cannot write to standard output: {}", std::strerror(error)));
-  throw Error(ErrorCode::FileUnwritable,
-              fmt::format("cannot write `{}`: {}", path, std::strerror(error)), Place{path});
+    throw Error(message::cannotWriteStandardOutput(std::strerror(error)));
+  throw Error(message::cannotWrite(path, std::strerror(error)), Place{path});
 }
 
 constexpr std::string_view temporarySuffix = ".tmp";
@@ -219,12 +218,8 @@ void refuseToOverwrite(const std::string &output, const std::vector<std::string>
         read.st_dev != written.st_dev || read.st_ino != written.st_ino)
       continue;
     const std::string what = isStandardOutput ? "standard output" : fmt::format("`{}`", output);
-    Error error(ErrorCode::OverwritesInput,
-                input == output
-                    ? fmt::format("{} is an input and would be overwritten", what)
-                    : fmt::format("{} is the same file as the input `{}`, which would be "
-                                  "overwritten",
-                                  what, input),
+    Error error(input == output ? message::overwritesInput(what)
+                                : message::overwritesSameFile(what, input),
                 Place{isStandardOutput ? "<stdout>" : output});
     error.note("write to another file");
     throw error;
@@ -254,15 +249,15 @@ public:
 std::string readFile(const std::string &path) {
   const OpenFile open(path);
   const std::string name = open.isStandardInput ? "<stdin>" : path;
-  const auto refuse = [&](ErrorCode code, const char *why) {
-    throw Error(code, fmt::format("cannot read `{}`: {}", name, why), Place{name});
+  const auto refuse = [&](const char *why) {
+    throw Error(message::cannotRead(name, why), Place{name});
   };
+  if (open.file < 0 && (errno == ENOENT || errno == ENOTDIR))
+    throw Error(message::fileMissing(name, std::strerror(errno)), Place{name});
   if (open.file < 0)
-    refuse(errno == ENOENT || errno == ENOTDIR ? ErrorCode::FileNotFound
-                                               : ErrorCode::FileUnreadable,
-           std::strerror(errno));
+    refuse(std::strerror(errno));
   if (const char *why = whyNoInput(open.file))
-    refuse(ErrorCode::FileUnreadable, why);
+    refuse(why);
   std::string bytes;
   struct stat status;
   if (::fstat(open.file, &status) == 0 && status.st_size > 0)
@@ -273,7 +268,7 @@ std::string readFile(const std::string &path) {
     if (count < 0 && errno == EINTR)
       continue;
     if (count < 0)
-      refuse(ErrorCode::FileUnreadable, std::strerror(errno));
+      refuse(std::strerror(errno));
     if (count == 0)
       return bytes;
     bytes.append(chunk, std::size_t(count));

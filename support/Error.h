@@ -1,7 +1,6 @@
 //===- Error.h - what the runtime throws ----------------------------------===//
 //
-// Messages are lower case, active, without a full stop, with `backticks` round names, like the
-// compiler's.
+// ErrorMessages.h declares the messages.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -73,10 +72,16 @@ struct RelatedPlace {
   std::string text;
 };
 
+/// What an error says: a row of the table, as a rule (support/ErrorMessages.h).
+struct Message {
+  ErrorCode code;
+  std::string text;
+};
+
 class Error : public std::runtime_error {
 public:
-  Error(ErrorCode code, const std::string &message, std::optional<Place> place = std::nullopt)
-      : std::runtime_error(message), code(code), place(std::move(place)) {}
+  explicit Error(const Message &message, std::optional<Place> place = std::nullopt)
+      : std::runtime_error(message.text), code(message.code), place(std::move(place)) {}
 
   /// Suggests a replacement for the text at `place`.
   Error &fix(std::string text) {

@@ -2,6 +2,7 @@
 #include "support/WorkerThreads.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -68,11 +69,7 @@ bool start(Worker &worker, std::uint64_t stackBytes) {
 }
 
 [[noreturn]] void refuse(std::uint64_t stackBytes) {
-  throw Error(
-      ErrorCode::OutOfMemory,
-      fmt::format("the rays of one sample take {:.1f} MiB of stack, and there is not enough "
-                  "memory: reduce the depth limit or the local variables of shaders",
-                  double(stackBytes) / (1 << 20)));
+  throw Error(message::noMemoryForStack(double(stackBytes) / (1 << 20)));
 }
 
 } // namespace

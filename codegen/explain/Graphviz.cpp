@@ -2,6 +2,7 @@
 #include "codegen/explain/Graphviz.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include "llvm/ADT/SmallString.h"
 #include "llvm/Support/FileSystem.h"
@@ -42,13 +43,12 @@ struct TemporaryFile {
   std::string read() const {
     auto buffer = llvm::MemoryBuffer::getFile(path);
     if (!buffer)
-      throw Error(ErrorCode::FileUnreadable,
-                  "cannot read a temporary file: " + buffer.getError().message());
+      throw Error(message::temporaryUnreadable(buffer.getError().message()));
     return (*buffer)->getBuffer().str();
   }
 
   [[noreturn]] static void refuseToWrite(std::error_code error) {
-    throw Error(ErrorCode::FileUnwritable, "cannot write a temporary file: " + error.message());
+    throw Error(message::temporaryUnwritable(error.message()));
   }
 
   llvm::SmallString<128> path;
@@ -59,7 +59,7 @@ struct TemporaryFile {
 static std::string runDot(const std::string &graph) {
   const llvm::ErrorOr<std::string> program = llvm::sys::findProgramByName("dot");
   if (!program)
-    throw Error(ErrorCode::FileNotFound, "cannot find `dot` of Graphviz, which draws the graph")
+    throw Error(message::graphvizMissing())
         .note("install Graphviz (on Debian: `apt-get install graphviz`), or use `--format=dot`");
 
   TemporaryFile in, out, messages;
@@ -70,9 +70,8 @@ static std::string runDot(const std::string &graph) {
   const int status =
       llvm::sys::ExecuteAndWait(*program, {*program, "-Tsvg"}, std::nullopt, streams, 0, 0, &error);
   if (status != 0)
-    throw Error(ErrorCode::FileUnreadable,
-                "`" + *program + "` failed: " +
-                    (error.empty() ? llvm::StringRef(messages.read()).rtrim().str() : error));
+    throw Error(message::graphvizFails(
+        *program, error.empty() ? llvm::StringRef(messages.read()).rtrim().str() : error));
   return out.read();
 }
 
@@ -97,7 +96,7 @@ std::string drawGraph(const std::string &graph, const std::string &title) {
   const std::size_t root = document.find("<svg");
   const std::size_t content = root == std::string::npos ? root : document.find('>', root);
   if (content == std::string::npos)
-    throw Error(ErrorCode::FileUnreadable, "`dot` has not printed an SVG document");
+    throw Error(message::graphvizNoSvg());
   return document.substr(root, content + 1 - root) + "\n<title>" + title + "</title>\n" + style +
          document.substr(document.find_first_not_of('\n', content + 1));
 }

@@ -34,7 +34,7 @@ struct CodeInfo {
   const char *name;   // "unknownName"
   const char *number; // "E0201"
   Severity severity;
-  const char *message;                      // fmt format string
+  const char *message; // fmt format string; of the runtime's: what the messages have in common
   const char *warning = nullptr;            // "unused-variable", as in `-W`; null for errors
   WarningGroup group = WarningGroup::Usual; // of a warning
 };
@@ -111,6 +111,11 @@ public:
   template <typename... Args>
   Diagnostic &report(Code code, SourceRange range, const Args &...args) {
     return add(code, range, fmt::format(fmt::runtime(info(code).message), args...));
+  }
+
+  /// Records an error or warning of the runtime, which has formatted its message.
+  Diagnostic &reportText(Code code, SourceRange range, std::string message) {
+    return add(code, range, std::move(message));
   }
 
   /// Takes the messages of `other`, sorted by position: those of several steps over the same text.

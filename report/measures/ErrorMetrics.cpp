@@ -1,5 +1,6 @@
 //===- ErrorMetrics.cpp ---------------------------------------------------===//
 #include "report/measures/ErrorMetrics.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +15,8 @@ namespace {
 void requireSameShape(const runtime::Image &reference, const runtime::Image &test) {
   if (reference.width != test.width || reference.height != test.height ||
       reference.channels != test.channels)
-    throw Error(
-        ErrorCode::BadImage,
-        fmt::format("the reference has {}x{} pixels of {} channels, the picture {}x{} of {}",
-                    reference.width, reference.height, reference.channels, test.width, test.height,
-                    test.channels));
+    throw Error(message::picturesDiffer(reference.width, reference.height, reference.channels,
+                                        test.width, test.height, test.channels));
 }
 
 double relativeSquaredError(double reference, double test) {

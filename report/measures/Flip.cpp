@@ -2,6 +2,7 @@
 #include "report/measures/Flip.h"
 
 #include "report/measures/ParallelRows.h"
+#include "support/ErrorMessages.h"
 
 #include <algorithm>
 #include <array>
@@ -316,11 +317,11 @@ Plane<Color> opponentPlane(const runtime::Image &image, OnScreen onScreen) {
 
 void requireComparable(const runtime::Image &reference, const runtime::Image &test) {
   if (reference.channels != 3 || test.channels != 3)
-    throw Error(ErrorCode::BadImage, "FLIP compares pictures in RGB");
+    throw Error(message::flipNeedsRgb());
   if (reference.width != test.width || reference.height != test.height)
-    throw Error(ErrorCode::BadImage, "FLIP compares pictures of one size");
+    throw Error(message::flipNeedsOneSize());
   if (reference.pixels.empty())
-    throw Error(ErrorCode::BadImage, "an empty picture has no error");
+    throw Error(message::emptyPictureCompared());
 }
 
 //===-- tone mapping ------------------------------------------------------===//

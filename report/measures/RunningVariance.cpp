@@ -1,5 +1,6 @@
 //===- RunningVariance.cpp ------------------------------------------------===//
 #include "report/measures/RunningVariance.h"
+#include "support/ErrorMessages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,7 @@ void RunningVariance::add(const runtime::Image &picture) {
     smallest.assign(picture.pixels.size(), std::numeric_limits<float>::infinity());
     largest.assign(picture.pixels.size(), -std::numeric_limits<float>::infinity());
   } else if (picture.pixels.size() != means.size()) {
-    throw Error(ErrorCode::BadImage, "pictures of two shapes have no common variance");
+    throw Error(message::varianceNeedsOneShape());
   }
   ++count;
   for (std::size_t i = 0; i < means.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "runtime/device/trees/Sort.h"
 #include "runtime/device/trees/Widen.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -47,8 +48,7 @@ HostBuildDevice::~HostBuildDevice() = default;
 BuildDevice::Address HostBuildDevice::allocate(std::size_t bytes, const char *what) {
   void *const memory = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
   if (!memory)
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough memory for {}: {} bytes", what, bytes));
+    throw Error(message::noMemoryFor(what, bytes));
   return reinterpret_cast<Address>(memory);
 }
 

@@ -2,6 +2,7 @@
 #include "rtsl/rtsl.h"
 
 #include "rtsl/runtime.h"
+#include "support/ErrorMessages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +108,7 @@ const char *rtslError(void) {
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
-      throw rtsl::Error(rtsl::ErrorCode::IncompleteScene, "there are no shaders");
+      throw rtsl::Error(rtsl::message::noShaders());
     return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}, {}, {}};
   });
 }
@@ -160,7 +161,7 @@ static runtime::Transform finiteTransform(const double *transform) {
   if (!transform)
     return {};
   if (!std::all_of(transform, transform + 12, [](double x) { return std::isfinite(x); }))
-    throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "the transform is not finite");
+    throw rtsl::Error(rtsl::message::transformNotFinite());
   return transformOf(transform);
 }
 
@@ -175,15 +176,13 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
 /// Throws OutOfRange unless they are the times of keys.
 static std::vector<float> keyTimes(const float *first, std::uint32_t count, std::size_t stride) {
   if (count < 2)
-    throw rtsl::Error(rtsl::ErrorCode::OutOfRange,
-                      "a transform that moves needs at least two keys");
+    throw rtsl::Error(rtsl::message::transformNeedsKeys());
   std::vector<float> times;
   for (std::uint32_t i = 0; i < count; ++i) {
     float time;
     std::memcpy(&time, reinterpret_cast<const char *>(first) + i * stride, sizeof time);
     if (!(time >= 0 && time <= 1) || (i > 0 && !(time > times.back())))
-      throw rtsl::Error(rtsl::ErrorCode::OutOfRange,
-                        "the times of keys ascend, and are between 0 and 1");
+      throw rtsl::Error(rtsl::message::keyTimesNotAscending());
     times.push_back(time);
   }
   return times;
@@ -211,7 +210,7 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
     const auto orientation = [](const RtslPlacementKey &key) {
       const double *q = key.rotation; // x, y, z, w
       if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0)
-        throw rtsl::Error(rtsl::ErrorCode::OutOfRange, "a quaternion of length 0 is no rotation");
+        throw rtsl::Error(rtsl::message::zeroQuaternion());
       return runtime::Quaternion{q[3], q[0], q[1], q[2]};
     };
     for (std::uint32_t i = 0; i < count; ++i) {

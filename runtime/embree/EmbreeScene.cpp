@@ -3,6 +3,7 @@
 #include "runtime/embree/EmbreeRay.h"
 #include "runtime/embree/HostScene.h"
 #include "runtime/program/ProgramHost.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -274,9 +275,9 @@ void noteError(void *self, RTCError code, const char *text) {
 
 void check(const Implementation &implementation) {
   if (implementation.error == RTC_ERROR_OUT_OF_MEMORY)
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
+    throw Error(message::noMemoryForTree());
   if (implementation.error != RTC_ERROR_NONE)
-    throw Error(ErrorCode::Internal, fmt::format("Embree fails: {}", implementation.errorText));
+    throw Error(message::embreeFails(implementation.errorText));
 }
 
 void attach(EmbreeLevel &level, std::size_t count, RTCBoundsFunction bounds,
@@ -398,8 +399,8 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   if (!self->device) {
     const RTCError error = rtcGetDeviceError(nullptr);
     if (error == RTC_ERROR_OUT_OF_MEMORY)
-      throw Error(ErrorCode::OutOfMemory, "not enough memory for Embree to start");
-    throw Error(ErrorCode::Internal, fmt::format("Embree does not start (error {})", int(error)));
+      throw Error(message::noMemoryForEmbree());
+    throw Error(message::embreeDoesNotStart(int(error)));
   }
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
 

@@ -1,4 +1,5 @@
 #include "runtime/geometry/AssimpFile.h"
+#include "support/ErrorMessages.h"
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -109,8 +110,7 @@ void append(Mesh &whole, const aiMesh &part, const Transform &transform, bool no
   mesh.apply(transform);
   std::size_t offset = whole.vertexCount();
   if (offset + vertices > 0xffffffffu)
-    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` has more than 2^32 vertices", path),
-                Place{path});
+    throw Error(message::meshTooLarge(path), Place{path});
   for (std::uint32_t &index : mesh.indices)
     index += std::uint32_t(offset);
   auto join = [](auto &to, auto &from) {
@@ -151,11 +151,8 @@ Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
     while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
       reason.pop_back();
     if (reason.find("bad_alloc") != std::string::npos) // assimp catches the reader's exceptions
-      throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path),
-                  Place{path});
-    throw Error(ErrorCode::BadMesh,
-                fmt::format("cannot read mesh `{}`: {}", path,
-                            reason.empty() ? "the file is damaged" : reason),
+      throw Error(message::noMemoryForMesh(path), Place{path});
+    throw Error(message::meshDamaged(path, reason.empty() ? "the file is damaged" : reason),
                 Place{path});
   }
 

@@ -1,4 +1,5 @@
 #include "runtime/geometry/Mesh.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -39,39 +40,35 @@ constexpr float largestCoordinate = 1e18f;
 constexpr std::uint32_t mostAttributeComponents = 16; // of a color
 constexpr auto FloatKind = NamedAttribute::Kind::Float;
 
-[[noreturn]] void throwBad(const std::string &name, const std::string &what) {
-  throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` {}", name, what), Place{name});
-}
-
 void validateAttribute(const Mesh &mesh, const NamedAttribute &attribute, const std::string &name) {
   const char *what = attribute.ofTriangles ? "triangles" : "vertices";
   const std::size_t count = attribute.ofTriangles ? mesh.triangleCount() : mesh.vertexCount();
   if (attribute.components < 1 || attribute.components > mostAttributeComponents)
-    throwBad(name, fmt::format("has an attribute `{}` of {} numbers; at most {} are possible",
-                               attribute.name, attribute.components, mostAttributeComponents));
+    throw Error(message::attributeTooWide(name, attribute.name, attribute.components,
+                                          mostAttributeComponents),
+                Place{name});
   if (attribute.words.size() != attribute.components * count)
-    throwBad(name, fmt::format("has {} numbers of the attribute `{}` for {} {} with {} each",
-                               attribute.words.size(), attribute.name, count, what,
-                               attribute.components));
+    throw Error(message::attributeSize(name, attribute.words.size(), attribute.name, count, what,
+                                       attribute.components),
+                Place{name});
   if (const std::uint32_t needed = componentsOf(attribute.space);
       needed != 0 && (attribute.components != needed || attribute.kind != FloatKind))
-    throwBad(name,
-             fmt::format("has an attribute `{}` of {} numbers: a {} has {} floats", attribute.name,
-                         attribute.components, nameOf(attribute.space), needed));
+    throw Error(message::attributeNotOfSpace(name, attribute.name, attribute.components,
+                                             nameOf(attribute.space), needed),
+                Place{name});
   if (attribute.kind != FloatKind) {
     if (!attribute.ofTriangles)
-      throwBad(name, fmt::format("has an attribute `{}` of integers for each vertex: numbers of "
-                                 "vertices are interpolated, so integers are for each triangle",
-                                 attribute.name));
+      throw Error(message::attributeIntegersOfVertices(name, attribute.name), Place{name});
     return;
   }
   for (std::size_t i = 0; i < attribute.words.size(); ++i) {
     float number;
     std::memcpy(&number, &attribute.words[i], sizeof number);
     if (!std::isfinite(number))
-      throwBad(name, fmt::format("has an attribute `{}` that is not finite at {} {}",
-                                 attribute.name, attribute.ofTriangles ? "triangle" : "vertex",
-                                 i / attribute.components));
+      throw Error(message::attributeNotFinite(name, attribute.name,
+                                              attribute.ofTriangles ? "triangle" : "vertex",
+                                              i / attribute.components),
+                  Place{name});
   }
 }
 
@@ -79,19 +76,16 @@ void validateAttribute(const Mesh &mesh, const NamedAttribute &attribute, const 
 
 void addInFileOrder(Mesh &mesh, NamedAttribute attribute, const std::string &file) {
   if (!mesh.order.isKnown)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("the order of the vertices of `{}` is not known: numbers of them can "
-                            "be given for OBJ and PLY files and for a `part` of a glTF file",
-                            file));
+    throw Error(message::vertexOrderUnknown(file));
   if (attribute.components < 1 || attribute.components > mostAttributeComponents)
-    throwBad(file, fmt::format("has an attribute `{}` of {} numbers; at most {} are possible",
-                               attribute.name, attribute.components, mostAttributeComponents));
+    throw Error(message::attributeTooWide(file, attribute.name, attribute.components,
+                                          mostAttributeComponents),
+                Place{file});
   const std::size_t given = attribute.words.size() / attribute.components;
   const std::size_t count = attribute.ofTriangles ? mesh.order.faceCount : mesh.order.vertexCount;
   if (given != count)
-    throw Error(ErrorCode::BadMesh,
-                fmt::format("the attribute `{}` has {} values, and `{}` has {} {}", attribute.name,
-                            given, file, count, attribute.ofTriangles ? "faces" : "vertices"));
+    throw Error(message::attributeValueCount(attribute.name, given, file, count,
+                                             attribute.ofTriangles ? "faces" : "vertices"));
   const auto &places = attribute.ofTriangles ? mesh.order.faces : mesh.order.vertices;
   if (!places.empty()) {
     std::vector<std::uint32_t> words;
@@ -119,12 +113,11 @@ Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const Mesh &key = keys[i];
     if (key.vertexCount() != result.vertexCount())
-      throwBad(names[i], fmt::format("has {} vertices, but the first key of its object, `{}`, has "
-                                     "{}",
-                                     key.vertexCount(), names[0], result.vertexCount()));
+      throw Error(
+          message::meshKeyVertices(names[i], key.vertexCount(), names[0], result.vertexCount()),
+          Place{names[i]});
     if (key.indices != result.indices)
-      throwBad(names[i],
-               fmt::format("has other triangles than the first key of its object, `{}`", names[0]));
+      throw Error(message::meshKeyTriangles(names[i], names[0]), Place{names[i]});
   }
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const auto append = [](std::vector<float> &to, const std::vector<float> &values) {
@@ -140,45 +133,41 @@ Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
 
 void validateMesh(const Mesh &mesh, const std::string &name) {
   if (mesh.positions.size() % 3 != 0 || mesh.indices.size() % 3 != 0)
-    throwBad(name, "has an incomplete vertex or triangle");
+    throw Error(message::meshIncomplete(name), Place{name});
   if (mesh.indices.empty())
-    throwBad(name, "has no triangles");
+    throw Error(message::meshWithoutTriangles(name), Place{name});
   std::size_t vertices = mesh.vertexCount();
   if (vertices > 0xffffffffu || mesh.triangleCount() > 0x7fffffffu)
-    throwBad(name, "is too large: at most 2^32 vertices and 2^31 triangles");
+    throw Error(message::meshCountsTooLarge(name), Place{name});
   if (mesh.positions.size() != 3 * vertices * mesh.keyCount())
-    throwBad(name, fmt::format("has {} positions of vertices for {} keys",
-                               mesh.positions.size() / 3, mesh.keyCount()));
+    throw Error(message::meshPositionCount(name, mesh.positions.size() / 3, mesh.keyCount()),
+                Place{name});
   if (!mesh.normals.empty() && mesh.normals.size() != mesh.positions.size())
-    throwBad(name, fmt::format("has {} normals for {} vertices", mesh.normals.size() / 3,
-                               mesh.positions.size() / 3));
+    throw Error(message::meshNormalCount(name, mesh.normals.size() / 3, mesh.positions.size() / 3),
+                Place{name});
   if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * vertices)
-    throwBad(name, fmt::format("has {} texture coordinates for {} vertices", mesh.uvs.size() / 2,
-                               vertices));
+    throw Error(message::meshUvCount(name, mesh.uvs.size() / 2, vertices), Place{name});
   const char axes[] = "xyz";
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     float p = mesh.positions[i];
     if (!std::isfinite(p))
-      throwBad(name, fmt::format("has a vertex that is not finite: {} of vertex {} is {}",
-                                 axes[i % 3], i / 3, p));
+      throw Error(message::vertexNotFinite(name, axes[i % 3], i / 3, p), Place{name});
     if (std::fabs(p) > largestCoordinate)
-      throwBad(name,
-               fmt::format("has a vertex too far out: {} of vertex {} is {:g}, more than {:g}",
-                           axes[i % 3], i / 3, p, largestCoordinate));
+      throw Error(message::vertexTooFar(name, axes[i % 3], i / 3, p, largestCoordinate),
+                  Place{name});
   }
   for (std::size_t i = 0; i < mesh.normals.size(); ++i)
     if (!std::isfinite(mesh.normals[i]))
-      throwBad(name, fmt::format("has a normal that is not finite at vertex {}", i / 3));
+      throw Error(message::normalNotFinite(name, i / 3), Place{name});
   for (std::size_t i = 0; i < mesh.uvs.size(); ++i)
     if (!std::isfinite(mesh.uvs[i]))
-      throwBad(name,
-               fmt::format("has a texture coordinate that is not finite at vertex {}", i / 2));
+      throw Error(message::uvNotFinite(name, i / 2), Place{name});
   for (const NamedAttribute &attribute : mesh.attributes)
     validateAttribute(mesh, attribute, name);
   for (std::size_t i = 0; i < mesh.indices.size(); ++i)
     if (mesh.indices[i] >= vertices)
-      throwBad(name, fmt::format("has an index out of range: triangle {} uses vertex {} of {}",
-                                 i / 3, mesh.indices[i], vertices));
+      throw Error(message::meshIndexOutOfRange(name, i / 3, mesh.indices[i], vertices),
+                  Place{name});
 }
 
 } // namespace rtsl::runtime

@@ -11,6 +11,7 @@
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -30,20 +31,18 @@ namespace {
 void checkReadable(const std::string &path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0)
-    throw Error(errno == ENOENT || errno == ENOTDIR ? ErrorCode::FileNotFound
-                                                    : ErrorCode::FileUnreadable,
-                fmt::format("cannot read mesh `{}`: {}", path, std::strerror(errno)), Place{path});
+    throw Error(errno == ENOENT || errno == ENOTDIR
+                    ? message::meshMissing(path, std::strerror(errno))
+                    : message::meshUnreadable(path, std::strerror(errno)),
+                Place{path});
   if (S_ISDIR(status.st_mode))
-    throw Error(ErrorCode::FileUnreadable,
-                fmt::format("cannot read mesh `{}`: it is a folder", path), Place{path});
+    throw Error(message::meshIsFolder(path), Place{path});
   if (::access(path.c_str(), R_OK) != 0)
-    throw Error(ErrorCode::FileUnreadable,
-                fmt::format("cannot read mesh `{}`: {}", path, std::strerror(errno)), Place{path});
+    throw Error(message::meshUnreadable(path, std::strerror(errno)), Place{path});
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
-    throw Error(ErrorCode::FileUnreadable,
-                fmt::format("cannot read mesh `{}`: it is a device", path), Place{path});
+    throw Error(message::meshIsDevice(path), Place{path});
   if (S_ISREG(status.st_mode) && status.st_size == 0)
-    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` is empty", path), Place{path});
+    throw Error(message::meshEmpty(path), Place{path});
 }
 
 /// With the dot, in lower case.
@@ -75,13 +74,9 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
     return mesh;
   const std::string damage = isPly ? findPlyDamage(bytes) : "";
   if (!damage.empty())
-    throw Error(ErrorCode::BadMesh, fmt::format("mesh `{}` {}", path, damage), Place{path});
+    throw Error(message::meshHasDamage(path, damage), Place{path});
   if (isRead)
-    throw Error(ErrorCode::BadMesh,
-                fmt::format("cannot read mesh `{}` from a pipe: it is damaged, or has something in "
-                            "it that can only be read from a file",
-                            path),
-                Place{path});
+    throw Error(message::meshUnreadableFromPipe(path), Place{path});
   return std::nullopt;
 }
 
@@ -96,15 +91,11 @@ Mesh loadMesh(const std::string &path, const MeshRequest &request) {
       return std::move(*mesh);
     }
     if (extension.empty() || !isReadByAssimp(extension))
-      throw Error(
-          ErrorCode::UnsupportedFormat,
-          fmt::format("cannot read mesh `{}`: no reader for `{}` files; OBJ, PLY and glTF work",
-                      path, path.substr(path.size() - extension.size())),
-          Place{path});
+      throw Error(message::meshFormatUnknown(path, path.substr(path.size() - extension.size())),
+                  Place{path});
     return readByAssimp(path, request);
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory, fmt::format("not enough memory to read mesh `{}`", path),
-                Place{path});
+    throw Error(message::noMemoryForMesh(path), Place{path});
   }
 }
 

@@ -1,4 +1,5 @@
 #include "runtime/gpu/CudaDriver.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -34,10 +35,6 @@ enum JitOption { MaxRegisters = 0, ErrorLogBuffer = 5, ErrorLogBufferBytes = 6 }
 
 std::string version(int number) {
   return fmt::format("{}.{}", number / 1000, number % 1000 / 10);
-}
-
-[[noreturn]] void fail(const std::string &message) {
-  throw Error(ErrorCode::NoDevice, message);
 }
 
 } // namespace
@@ -87,14 +84,13 @@ template <typename Function>
 void CudaDevice::find(Function &function, const char *name) {
   function = reinterpret_cast<Function>(dlsym(library, name));
   if (!function)
-    fail(fmt::format("the CUDA driver is too old: it lacks `{}`; install version {} or newer", name,
-                     version(oldestDriver)));
+    throw Error(message::driverLacks(name, version(oldestDriver)));
 }
 
 void CudaDevice::open() {
   library = dlopen("libcuda.so.1", RTLD_NOW | RTLD_LOCAL);
   if (!library)
-    fail(fmt::format("there is no CUDA driver: {}", dlerror()));
+    throw Error(message::noDriver(dlerror()));
   functions = new Functions;
   Functions &f = *functions;
   find(f.init, "cuInit");
@@ -136,13 +132,12 @@ void CudaDevice::open() {
   int driver = 0;
   check(f.driverGetVersion(&driver), "cuDriverGetVersion");
   if (driver < oldestDriver)
-    fail(fmt::format("the CUDA driver is too old: it is of version {}; install {} or newer",
-                     version(driver), version(oldestDriver)));
+    throw Error(message::driverTooOld(version(driver), version(oldestDriver)));
   const int status = f.init(0);
   int count = 0;
   if (status == NoDevice ||
       (status == Success && (f.deviceGetCount(&count) != Success || count == 0)))
-    fail("there is a CUDA driver, but no device");
+    throw Error(message::noGpu());
   check(status, "cuInit");
   check(f.deviceGet(&device, 0), "cuDeviceGet");
   char text[256] = {};
@@ -197,11 +192,8 @@ void CudaDevice::check(int status, const char *call) const {
   const char *text = nullptr;
   if (functions->getErrorString(status, &text) != Success || !text)
     text = "unknown error";
-  const std::string message =
-      fmt::format("the GPU failed in {}: {} (status {})", call, text, status);
-  if (status == runtime::OutOfMemory)
-    throw Error(ErrorCode::OutOfMemory, message);
-  throw Error(ErrorCode::Internal, message);
+  throw Error(status == runtime::OutOfMemory ? message::gpuOutOfMemory(call, text, status)
+                                             : message::gpuFails(call, text, status));
 }
 
 std::size_t CudaDevice::freeMemory() const {
@@ -214,9 +206,8 @@ CudaDevice::Address CudaDevice::allocate(std::size_t bytes, const char *what) {
   Address address = 0;
   const int status = functions->memoryAllocate(&address, std::max<std::size_t>(bytes, 1));
   if (status == runtime::OutOfMemory)
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough GPU memory for {}: {:.1f} MiB, of which {:.1f} are free",
-                            what, double(bytes) / (1 << 20), double(freeMemory()) / (1 << 20)));
+    throw Error(
+        message::noGpuMemory(what, double(bytes) / (1 << 20), double(freeMemory()) / (1 << 20)));
   check(status, "cuMemAlloc");
   return address;
 }
@@ -283,10 +274,10 @@ CudaDevice::Module CudaDevice::compile(const char *ptx, unsigned maxRegisters) {
   const int status = functions->moduleLoad(&code, ptx, maxRegisters ? 3 : 2, options, values);
   log.resize(log.find('\0'));
   if (status == UnsupportedPtxVersion)
-    fail("the CUDA driver is too old for the program's PTX");
+    throw Error(message::driverTooOldForPtx());
   if (status == NoBinaryForGpu || status == InvalidPtx)
-    fail(fmt::format("{} (sm_{}) does not take the program's code: {}", deviceName,
-                     computeCapability, log.empty() ? "it was made for a newer GPU" : log));
+    throw Error(message::gpuRefusesCode(deviceName, computeCapability,
+                                        log.empty() ? "it was made for a newer GPU" : log));
   check(status, "cuModuleLoadDataEx");
   return code;
 }

@@ -2,6 +2,7 @@
 
 #include "runtime/gpu/GpuBuildDevice.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -32,12 +33,9 @@ unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel,
   const std::uint64_t affordable = device.freeMemory() / 10 * 8 / (threadsPerBlock * laneBytes);
   const std::uint64_t blocks = std::min({running, wanted, affordable});
   if (blocks == 0)
-    throw Error(
-        ErrorCode::OutOfMemory,
-        fmt::format("not enough GPU memory for rays in flight: {:.1f} MiB for {} of them, and "
-                    "{:.1f} are free",
-                    double(threadsPerBlock * laneBytes) / (1 << 20), threadsPerBlock,
-                    double(device.freeMemory()) / (1 << 20)));
+    throw Error(message::noGpuMemoryForRays(double(threadsPerBlock * laneBytes) / (1 << 20),
+                                            threadsPerBlock,
+                                            double(device.freeMemory()) / (1 << 20)));
   return unsigned(blocks);
 }
 

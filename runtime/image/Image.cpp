@@ -3,6 +3,7 @@
 #include "language/ColorBasis.h"
 #include "runtime/image/ImageFormats.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -30,11 +31,7 @@ PictureFormat formatOf(const std::string &path, PictureFormat requested) {
     return PictureFormat::Png;
   if (extension == "exr")
     return PictureFormat::Exr;
-  throw Error(
-      ErrorCode::UnsupportedFormat,
-      fmt::format("cannot determine the format of `{}`: a picture's name ends in `.png` or `.exr`",
-                  path),
-      Place{path});
+  throw Error(message::pictureFormatUnknown(path), Place{path});
 }
 
 } // namespace
@@ -43,9 +40,8 @@ Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels
   try {
     return Image(width, height, channels);
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough memory for the picture: {} bytes",
-                            std::uint64_t(width) * height * channels * sizeof(float)));
+    throw Error(
+        message::noMemoryForPicture(std::uint64_t(width) * height * channels * sizeof(float)));
   }
 }
 
@@ -76,8 +72,7 @@ void writeImage(const std::string &path, const Image &image, PictureFormat forma
   format = formatOf(path, format);
   if (image.width == 0 || image.height == 0 || image.channels == 0 ||
       image.pixels.size() != std::size_t(image.width) * image.height * image.channels)
-    throw Error(ErrorCode::BadImage, fmt::format("cannot write `{}`: the picture is empty", path),
-                Place{path});
+    throw Error(message::emptyPictureWritten(path), Place{path});
   writeFileAtomically(path, format == PictureFormat::Png ? encodePng(image, path)
                                                          : encodeExr(image, {}, path));
 }

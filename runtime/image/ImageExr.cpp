@@ -5,6 +5,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/image/ImageFormats.h"
+#include "support/ErrorMessages.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -137,8 +138,7 @@ std::string encodeExr(const Image &image, const std::vector<Layer> &layers,
     }
     return std::move(output.bytes);
   } catch (const std::exception &error) {
-    throw Error(ErrorCode::FileUnwritable, fmt::format("cannot write `{}`: {}", path, error.what()),
-                Place{path});
+    throw Error(message::cannotWrite(path, error.what()), Place{path});
   }
 }
 
@@ -159,8 +159,7 @@ Image decodeExr(const std::string &bytes, const std::string &path) {
     file.readPixels(window.min.y, window.max.y);
     return image;
   } catch (const std::exception &error) {
-    throw Error(ErrorCode::BadImage, fmt::format("cannot read `{}`: {}", path, error.what()),
-                Place{path});
+    throw Error(message::imageDamaged(path, error.what()), Place{path});
   }
 }
 

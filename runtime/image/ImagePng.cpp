@@ -1,5 +1,6 @@
 //===- ImagePng.cpp - PNG by libpng ---------------------------------------===//
 #include "runtime/image/ImageFormats.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <png.h>
@@ -117,8 +118,7 @@ std::string encodePng(const Image &given, const std::string &path) {
   PngError error;
   std::string out;
   if (!write(error, out, image, rows))
-    throw Error(ErrorCode::FileUnwritable,
-                fmt::format("cannot write `{}`: {}", path, error.message), Place{path});
+    throw Error(message::cannotWrite(path, error.message), Place{path});
   return out;
 }
 
@@ -128,8 +128,7 @@ Pixels decodePngPixels(const std::string &bytes, const std::string &path) {
   Pixels pixels;
   std::vector<png_bytep> rows;
   if (!read(error, source, pixels, rows))
-    throw Error(ErrorCode::BadImage, fmt::format("cannot read `{}`: {}", path, error.message),
-                Place{path});
+    throw Error(message::imageDamaged(path, error.message), Place{path});
   return pixels;
 }
 

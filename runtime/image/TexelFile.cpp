@@ -4,6 +4,7 @@
 #include "runtime/image/ImageFormats.h"
 #include "runtime/image/openimageio/ImageReader.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 #include "support/ProgramFolder.h"
 
 #include <dlfcn.h>
@@ -25,12 +26,11 @@ void requireReadable(const std::string &path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status))
-    throw Error(ErrorCode::FileNotFound, fmt::format("there is no file `{}`", path));
+    throw Error(message::noSuchFile(path));
   if (fs::is_directory(status))
-    throw Error(ErrorCode::FileUnreadable, fmt::format("`{}` is a folder", path));
+    throw Error(message::isFolder(path));
   if (!std::ifstream(path, std::ios::binary))
-    throw Error(ErrorCode::FileUnreadable,
-                fmt::format("cannot read `{}`: {}", path, std::strerror(errno)));
+    throw Error(message::cannotRead(path, std::strerror(errno)));
 }
 
 ReadImageFile openReader() {
@@ -45,8 +45,7 @@ ReadImageFile openReader() {
   // Never closed: its libraries start threads of their own.
   void *library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
   if (!library)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("images cannot be read: {} (is OpenImageIO installed?)", dlerror()));
+    throw Error(message::noImageLibrary(dlerror()));
   return reinterpret_cast<ReadImageFile>(dlsym(library, readImageFileSymbol));
 }
 
@@ -89,17 +88,12 @@ Pixels readByOpenImageIO(const std::string &path, const std::string *bytes, bool
   case ImageFile::Problem::None:
     break;
   case ImageFile::Problem::Bad:
-    throw Error(ErrorCode::BadImage,
-                fmt::format("cannot read `{}`: {}", path,
-                            file.message[0] ? file.message : "it is no image of a known format"));
+    throw Error(message::imageDamaged(path, file.message[0] ? file.message
+                                                            : "it is no image of a known format"));
   case ImageFile::Problem::TooLarge:
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("the image `{}` of {} x {} pixels is too large: it may have {} GiB",
-                            path, file.width, file.height, mostImageBytes >> 30));
+    throw Error(message::imageFileTooLarge(path, file.width, file.height, mostImageBytes >> 30));
   case ImageFile::Problem::NoMemory:
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("no memory for the image `{}` of {} x {} pixels", path, file.width,
-                            file.height));
+    throw Error(message::noMemoryForImage(path, file.width, file.height));
   }
   pixels.width = file.width;
   pixels.height = file.height;
@@ -122,10 +116,7 @@ Pixels inSpace(Pixels pixels, ColorSpace space, bool isEncoded, const std::strin
   const bool isFloat =
       pixels.format == TexelFormat::Float16 || pixels.format == TexelFormat::Float32;
   if (space == ColorSpace::Srgb && isFloat)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("`{}` has colors in floating point, which are linear: sRGB is for 8 "
-                            "and 16 bits",
-                            name));
+    throw Error(message::floatImageNotSrgb(name));
   if (space != ColorSpace::ByFile)
     isEncoded = space == ColorSpace::Srgb;
   if (isEncoded && pixels.format == TexelFormat::Unorm8)

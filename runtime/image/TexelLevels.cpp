@@ -1,6 +1,7 @@
 //===- TexelLevels.cpp - the smaller levels of an image -------------------===//
 #include "runtime/image/Texels.h"
 
+#include "support/ErrorMessages.h"
 #include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
@@ -90,10 +91,7 @@ void addLevels(Texels &texels) {
   const std::uint32_t channelBytes = bytesOf(texels.format);
   const std::uint64_t words = (total * texels.channels * channelBytes + 3) / 4;
   if (total > 0x7fffffff || words > 0x7fffffff)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("an image of {} x {} x {} texels is too large for smaller levels: "
-                            "choose the filter `bilinear`",
-                            texels.width, texels.height, texels.depth));
+    throw Error(message::levelsTooLarge(texels.width, texels.height, texels.depth));
   texels.words.resize(words, 0);
   auto *bytes = reinterpret_cast<std::uint8_t *>(texels.words.data());
   for (std::size_t i = 0; i < levels.size(); ++i)

@@ -1,6 +1,7 @@
 #include "runtime/image/Texels.h"
 
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -38,10 +39,7 @@ void allocate(Texels &texels) {
   const std::uint64_t count = isTooLarge ? 0 : rows * texels.width;
   const std::uint64_t words = (count * texels.channels * bytesOf(texels.format) + 3) / 4;
   if (isTooLarge || words > most)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("an image of {} x {} x {} texels is too large: it may have 2^31 - 1 "
-                            "texels and 8 GiB",
-                            texels.width, texels.height, texels.depth));
+    throw Error(message::texelsTooMany(texels.width, texels.height, texels.depth));
   texels.words.assign(words, 0);
 }
 
@@ -106,10 +104,8 @@ Texels readRawTexels(const std::string &path, Texels shape) {
   const std::size_t expected = std::size_t(shape.width) * shape.height * shape.depth *
                                shape.channels * bytesOf(shape.format);
   if (bytes.size() != expected)
-    throw Error(ErrorCode::BadImage,
-                fmt::format("`{}` has {} bytes, and {} x {} x {} texels of {} bytes take {}", path,
-                            bytes.size(), shape.width, shape.height, shape.depth,
-                            shape.channels * bytesOf(shape.format), expected));
+    throw Error(message::rawImageSize(path, bytes.size(), shape.width, shape.height, shape.depth,
+                                      shape.channels * bytesOf(shape.format), expected));
   std::memcpy(shape.words.data(), bytes.data(), bytes.size());
   return shape;
 }

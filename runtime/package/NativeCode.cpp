@@ -1,6 +1,7 @@
 #include "runtime/package/NativeCode.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -15,14 +16,12 @@ NativeCode::NativeCode(const NativeImage &image)
       stackBytes(image.stackBytes) {
   memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED)
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the package's code");
+    throw Error(message::noMemoryForPackageCode());
   std::memcpy(memory, image.bytes.data(), size);
   if (::mprotect(memory, size, PROT_READ | PROT_EXEC) != 0) {
     const int error = errno;
     ::munmap(memory, size);
-    throw Error(
-        ErrorCode::NotSupported,
-        fmt::format("the system refuses to run the package's code: {}", std::strerror(error)));
+    throw Error(message::packageCodeRefused(std::strerror(error)));
   }
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/render/Crc64.h"
 #include "support/AtomicFile.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -149,31 +150,25 @@ public:
   }
 
 private:
-  template <typename... Arguments>
-  [[noreturn]] void refuse(fmt::format_string<Arguments...> text, Arguments &&...arguments) const {
-    throw Error(
-        ErrorCode::BadPackage,
-        fmt::format("`{}` {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)),
-        Place{name});
-  }
-  [[noreturn]] void refuseDamaged() const { refuse("is damaged: pack the scene again"); }
+  [[noreturn]] void refuse(const Message &why) const { throw Error(why, Place{name}); }
+  [[noreturn]] void refuseDamaged() const { refuse(message::packageDamaged(name)); }
 
   /// Is it a package, of ours, whole and unharmed?
   void checkFile() {
     Header header;
     if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
-      refuse("is not a package of rtslc");
+      refuse(message::notPackage(name));
     if (file.size() < sizeof header)
-      refuse("is truncated: it ends inside of its header");
+      refuse(message::packageHeaderTruncated(name));
     std::memcpy(&header, file.data(), sizeof header);
     if (header.version != formatVersion)
-      refuse("is a package of format {}, and this program reads format {}: {}", header.version,
-             formatVersion,
-             header.version > formatVersion ? "use a newer rtsl-run" : "pack the scene again");
+      refuse(message::packageFormat(name, header.version, formatVersion,
+                                    header.version > formatVersion ? "use a newer rtsl-run"
+                                                                   : "pack the scene again"));
     if (file.size() < header.fileBytes)
-      refuse("is truncated: it has {} bytes of {}", file.size(), header.fileBytes);
+      refuse(message::packageTruncated(name, file.size(), header.fileBytes));
     if (file.size() > header.fileBytes)
-      refuse("is damaged: {} bytes follow its end", file.size() - header.fileBytes);
+      refuse(message::packageTooLong(name, file.size() - header.fileBytes));
     if (header.checksum != checksumOf(file))
       refuseDamaged();
     sectionCount = header.sectionCount;
@@ -204,8 +199,7 @@ private:
     if (bytes.size() < sizeof ours)
       refuseDamaged();
     if (std::memcmp(bytes.data(), &ours, sizeof ours) != 0)
-      refuse("was made by {}, whose programs do not fit this rtsl-run: use the one of that version",
-             compiler);
+      refuse(message::packageOfOtherVersion(name, compiler));
     Info info;
     if (bytes.size() != sizeof info)
       refuseDamaged();

@@ -2,6 +2,7 @@
 
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <chrono>
 #include <utility>
@@ -58,7 +59,7 @@ Image Backend::render(RenderStatistics *statistics) {
   said.isUnfinished = said.pixels < pixelCount();
   Image image = std::exchange(picture, Image());
   if (said.isUnfinished && !options.keepsUnfinished)
-    throw Error(ErrorCode::Cancelled, "rendering was cancelled");
+    throw Error(message::renderingCancelled());
   if (statistics)
     *statistics = std::move(said);
   return image;

@@ -3,6 +3,7 @@
 #include "runtime/render/Crc64.h"
 #include "support/AtomicFile.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -155,35 +156,29 @@ private:
   std::string_view bytes;
 };
 
-template <typename... Arguments>
-[[noreturn]] void refuse(const std::string &path, fmt::format_string<Arguments...> text,
-                         Arguments &&...arguments) {
-  throw Error(ErrorCode::BadCheckpoint,
-              fmt::format("cannot go on from `{}`: {}", path,
-                          fmt::format(text, std::forward<Arguments>(arguments)...)),
-              Place{path})
+[[noreturn]] void refuse(const std::string &path, const Message &why) {
+  throw Error(why, Place{path})
       .note("it is left as it was; to begin anew, delete it or name another file");
 }
 
 [[noreturn]] void refuseDamaged(const std::string &path) {
-  refuse(path, "it is damaged");
+  refuse(path, message::checkpointDamaged(path));
 }
 
 /// Is it a checkpoint of this version, whole and unharmed?
 Header checkFile(std::string_view file, const std::string &path, const std::string &producer) {
   Header header;
   if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
-    refuse(path, "it is no checkpoint of rtslc");
+    refuse(path, message::notCheckpoint(path));
   if (file.size() < sizeof header)
-    refuse(path, "it is cut short: it ends inside of its header");
+    refuse(path, message::checkpointHeaderTruncated(path));
   std::memcpy(&header, file.data(), sizeof header);
   if (header.version != formatVersion)
-    refuse(path, "it is a checkpoint of format {}, and this program has format {}", header.version,
-           formatVersion);
+    refuse(path, message::checkpointFormat(path, header.version, formatVersion));
   if (file.size() < header.fileBytes)
-    refuse(path, "it is cut short: it has {} bytes of {}", file.size(), header.fileBytes);
+    refuse(path, message::checkpointTruncated(path, file.size(), header.fileBytes));
   if (file.size() > header.fileBytes)
-    refuse(path, "it is damaged: {} bytes follow its end", file.size() - header.fileBytes);
+    refuse(path, message::checkpointTooLong(path, file.size() - header.fileBytes));
   Header withoutChecksum = header;
   withoutChecksum.checksum = 0;
   if (header.checksum != crc64(file.substr(sizeof header), crc64(bytesOf(withoutChecksum))) ||
@@ -191,7 +186,7 @@ Header checkFile(std::string_view file, const std::string &path, const std::stri
     refuseDamaged(path);
   const std::string theirs(header.producer, strnlen(header.producer, sizeof header.producer));
   if (theirs != producer)
-    refuse(path, "it was written by {}, and this is {}", theirs, producer);
+    refuse(path, message::checkpointOfOtherVersion(path, theirs, producer));
   return header;
 }
 
@@ -202,13 +197,12 @@ void compare(const Identity &theirs, const Identity &ours, const std::string &pa
     const Dependence &there = i < theirs.dependences.size() ? theirs.dependences[i] : nothing,
                      &here = i < ours.dependences.size() ? ours.dependences[i] : nothing;
     if (there.what != here.what)
-      refuse(path, "its picture depends on {}, where this one depends on {}", there.what,
-             here.what);
+      refuse(path, message::checkpointOfOtherParts(path, there.what, here.what));
     if (there.value == here.value)
       continue;
     if (there.isContent)
-      refuse(path, "{} has changed since it was written", here.what);
-    refuse(path, "{} is {} there and {} here", here.what, there.value, here.value);
+      refuse(path, message::checkpointInputChanged(path, here.what));
+    refuse(path, message::checkpointOfOtherValue(path, here.what, there.value, here.value));
   }
 }
 

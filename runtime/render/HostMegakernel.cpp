@@ -3,6 +3,7 @@
 #include "runtime/accel/HostBuildDevice.h"
 #include "runtime/device/engines/SampleSums.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -35,8 +36,7 @@ std::uint64_t HostMegakernel::laneBytes(const RtslLaunch &launch) {
 Megakernel::Address HostMegakernel::allocate(std::uint64_t bytes, const char *what) {
   memory.emplace_back(static_cast<std::uint8_t *>(std::aligned_alloc(cacheLine, inLines(bytes))));
   if (!memory.back())
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough memory for {}: {} bytes", what, bytes));
+    throw Error(message::noMemoryFor(what, bytes));
   return reinterpret_cast<Address>(memory.back().get());
 }
 

@@ -3,6 +3,7 @@
 #include "runtime/device/engines/Slice.h"
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -28,9 +29,7 @@ void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *stat
 
 RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options) {
   if (status.problem != RTSL_PROBLEM_NONE)
-    throw Error(ErrorCode::Internal,
-                fmt::format("rays of depth {} overflow the stack that was made for them",
-                            options.maxDepth));
+    throw Error(message::rayStackOverflow(options.maxDepth));
   RenderStatistics statistics;
   statistics.samplesNotFinite = status.samplesNotFinite;
   statistics.pixelsWithoutSample = status.pixelsWithoutSample;
@@ -76,11 +75,7 @@ void Megakernel::prepare() {
   clearedPixels(); // allocates them before the rays, whose number adapts to the free memory
   const std::uint64_t bytesAtOnce = pixelCount() * colorComponents * sizeof(float);
   if (pixelCount() > mostInSlice)
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("{} pixels are more than the {} that this target renders: choose a part "
-                    "of the picture",
-                    pixelCount(), mostInSlice));
+    throw Error(message::tooManyPixelsForTarget(pixelCount(), mostInSlice));
   const std::uint64_t mostByMemory =
       options.wantsPicture ? sliceBytes() / bytesAtOnce : mostInSlice;
   mostSamples =

@@ -1,6 +1,7 @@
 #include "runtime/render/PixelSums.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool i
       sums.closed.resize(pixels);
     }
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the sums of the pixels");
+    throw Error(message::noMemoryForPixelSums());
   }
   return sums;
 }

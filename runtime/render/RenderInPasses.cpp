@@ -3,6 +3,7 @@
 #include "runtime/render/Backend.h"
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -90,12 +91,10 @@ void Backend::takeSums(PartialRendering &rendering) {
   if (rendering.sums.pixels() != pixelCount() ||
       rendering.sums.isAdaptive() != options.isAdaptive ||
       rendering.sums.colors.size() != pixelCount() * channels() * rendering.sums.halves())
-    throw Error(ErrorCode::OutOfRange, "a rendering goes on only with the sums of as many pixels");
+    throw Error(message::sumsOfOtherPixels());
   const std::uint32_t most = countSamples(rendering.sums).most;
   if (most > options.samplesPerPixel)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("the rendering has {} samples per pixel already, more than {}", most,
-                            options.samplesPerPixel));
+    throw Error(message::tooManySamplesAlready(most, options.samplesPerPixel));
 }
 
 /// Renders until each pixel has `samplesOfPixel` samples, or, if there are checkpoints, until it is

@@ -1,6 +1,7 @@
 #include "runtime/render/RenderOptions.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,7 @@ namespace rtsl::runtime {
 static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowest,
                        std::uint64_t highest) {
   if (value < lowest || value > highest)
-    throw Error(ErrorCode::OutOfRange, fmt::format("the {} must lie between {} and {}, not be {}",
-                                                   what, lowest, highest, value));
+    throw Error(message::optionOutOfRange(what, lowest, highest, value));
 }
 
 void checkOptions(const RenderOptions &options) {
@@ -22,11 +22,8 @@ void checkOptions(const RenderOptions &options) {
   if (const std::optional<Window> &crop = options.crop;
       crop && (crop->x0 >= crop->x1 || crop->y0 >= crop->y1 || crop->x1 > options.width ||
                crop->y1 > options.height))
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("the crop {},{},{},{} is no part of a picture of {}x{} pixels: it takes "
-                    "columns x0 to x1 - 1 and rows y0 to y1 - 1 of x0,y0,x1,y1",
-                    crop->x0, crop->y0, crop->x1, crop->y1, options.width, options.height));
+    throw Error(message::cropOutside(crop->x0, crop->y0, crop->x1, crop->y1, options.width,
+                                     options.height));
   checkRange("number of samples per pixel", options.samplesPerPixel, 1, mostSamplesPerPixel);
   // Each level of trace takes stack of the thread.
   checkRange("depth", options.maxDepth, 0, maxRayDepth);

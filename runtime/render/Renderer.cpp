@@ -4,6 +4,7 @@
 #include "runtime/embree/HostScene.h"
 #include "runtime/render/HostThreads.h"
 #include "runtime/render/Watch.h"
+#include "support/ErrorMessages.h"
 #include "support/FirstFew.h"
 
 #include <algorithm>
@@ -126,7 +127,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
   self->launch = scene.launch();
   const Program &program = scene.program();
   if (!program.sample)
-    throw Error(ErrorCode::Internal, "the program has no code for samples");
+    throw Error(message::noCodeForSamples());
   try {
     self->host = std::make_unique<HostScene>(scene, options.traversal == Traversal::Embree,
                                              threadCount(options), options.tree);
@@ -134,7 +135,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
       self->launch = self->host->deviceLaunch();
     makePicture(program.colorComponents);
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory, "not enough memory for the scene's acceleration structure");
+    throw Error(message::noMemoryForTree());
   }
   self->launch.host = self->host.get();
   self->launch.width = options.width;

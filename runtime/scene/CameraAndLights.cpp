@@ -1,6 +1,7 @@
 #include "runtime/scene/CameraAndLights.h"
 
 #include "runtime/scene/ValueStore.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +15,7 @@ void setColor(std::uint32_t colorComponents, const std::vector<float> &color, fl
               const char *what) {
   std::vector<float> components = colorFromNumbers(color, colorComponents);
   if (components.empty())
-    throw Error(ErrorCode::WrongType,
-                fmt::format("the {} is a color: it takes 1, 3 or {} numbers, not {}", what,
-                            colorComponents, color.size()));
+    throw Error(message::colorTakesNumbers(what, colorComponents, color.size()));
   std::copy(components.begin(), components.end(), to);
 }
 
@@ -69,11 +68,11 @@ std::vector<RtslRef> CameraAndLights::all() const {
 
 void CameraAndLights::requireCamera(Engine engine) const {
   if (engine == Engine::Classic && camera == 0)
-    throw Error(ErrorCode::IncompleteScene, "the scene has no camera");
+    throw Error(message::noCamera());
   if (engine == Engine::Programs && rayGeneration == 0)
-    throw Error(ErrorCode::IncompleteScene, "the scene has no ray generation");
+    throw Error(message::noRayGeneration());
   if (engine == Engine::Either && camera == 0 && rayGeneration == 0)
-    throw Error(ErrorCode::IncompleteScene, "the scene has neither a ray generation nor a camera");
+    throw Error(message::nothingToRender());
 }
 
 void CameraAndLights::fill(RtslLaunch &launch) const {

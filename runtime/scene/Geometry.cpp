@@ -1,4 +1,5 @@
 #include "runtime/scene/Geometry.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -39,13 +40,9 @@ bool checkBounds(const RtslBox &given, const Objects::Object &info, What what) {
   int flatSides = 0;
   for (int i = 0; i < 3; ++i) {
     if (std::isnan(given.lower[i]) || std::isnan(given.upper[i]))
-      throw Error(ErrorCode::DegenerateGeometry,
-                  fmt::format("the bounds of {} are not numbers (in {})", what(), axes[i]),
-                  info.place);
+      throw Error(message::boundsNotNumbers(what(), axes[i]), info.place);
     if (given.lower[i] > given.upper[i])
-      throw Error(ErrorCode::DegenerateGeometry,
-                  fmt::format("the bounds of {} are inverted: {} runs from {} to {}", what(),
-                              axes[i], given.lower[i], given.upper[i]),
+      throw Error(message::boundsInverted(what(), axes[i], given.lower[i], given.upper[i]),
                   info.place);
     flatSides += given.lower[i] == given.upper[i];
   }
@@ -60,9 +57,9 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
   const std::string what = fmt::format("primitive `{}`", info.name);
   if (!checkBounds(box, info, [&] { return what; })) {
     const bool isPoint = std::equal(box.lower, box.lower + 3, box.upper);
-    warnings.push_back({fmt::format("{} is {}: no ray can hit it", what,
-                                    isPoint ? "a single point" : "a line without width"),
-                        info.place});
+    warnings.push_back(
+        {message::invisiblePrimitive(what, isPoint ? "a single point" : "a line without width"),
+         info.place});
   }
   return box;
 }
@@ -71,14 +68,9 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
 
 void Geometry::setShutter(float open, float close) {
   if (!(0 <= open && open <= close && close <= 1))
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("the shutter opens at a time from 0 to 1 and closes at a later one, not "
-                    "at {} and {}",
-                    open, close));
+    throw Error(message::shutterTimesGiven(open, close));
   if (needs & (RTSL_HAS_MOTION | RTSL_HAS_MESH_KEYS))
-    throw Error(ErrorCode::NotSettable,
-                "the shutter must be set before anything that moves is added");
+    throw Error(message::shutterTooLate());
   needs |= RTSL_HAS_SHUTTER;
   shutterOpen = open;
   shutterClose = close;
@@ -126,8 +118,7 @@ std::uint32_t Geometry::addMotion(const MovingTransform &transform) {
 RtslInstance Geometry::place(const Placement &placement, const std::string &name,
                              const std::optional<rtsl::Place> &where) {
   if (placement.selection >= selections.size())
-    throw Error(ErrorCode::UnknownName,
-                fmt::format("the scene has no selection number {}", placement.selection), where);
+    throw Error(message::noSuchSelection(placement.selection), where);
   RtslInstance instance{};
   instance.mask = placement.mask;
   instance.roots = placement.roots;
@@ -141,7 +132,7 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
                                     std::string name, std::uint32_t items) {
   objects.requireRole(instance.material, "rt_Material", ifClassic(objects.program(), "shade"));
   if (treeItems + items > 0x7fffffffu)
-    throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives");
+    throw Error(message::tooManyPrimitives());
   instances.push_back(instance);
   RtslInstance &added = instances.back();
   added.needs |= objects.needsOf(instance.material);
@@ -161,8 +152,7 @@ std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, 
   objects.requireRole(primitive, "rt_Primitive", {"intersect", "computeBounds"});
   const Objects::Object &info = objects.at(primitive);
   if (count == 0)
-    throw Error(ErrorCode::OutOfRange, fmt::format("`{}` holds no primitives", info.name),
-                info.place);
+    throw Error(message::noPrimitivesIn(info.name), info.place);
   RtslInstance instance = place(placement, info.name, info.place);
   instance.primitive = primitive;
   instance.material = material;
@@ -192,14 +182,12 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
   const Objects::Object &info = objects.at(primitive);
   if (const auto known = sets.find(primitive); known != sets.end()) {
     if (known->second.count != count)
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("`{}` holds {} primitives in one instance and {} in another",
-                              info.name, known->second.count, count),
+      throw Error(message::primitiveCountsDiffer(info.name, known->second.count, count),
                   info.place);
     return known->second;
   }
   if (count > 0x7fffffffu - boxes.size())
-    throw Error(ErrorCode::OutOfMemory, "the scene has more than 2^31 primitives", info.place);
+    throw Error(message::tooManyPrimitives(), info.place);
   const std::vector<RtslBox> all = computeBounds(objects, primitive, count, launch());
   constexpr float inf = std::numeric_limits<float>::infinity();
   PrimitiveSet set{std::uint32_t(boxes.size()),
@@ -216,10 +204,7 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
     }
   }
   if (flat != 0)
-    warnings.push_back({fmt::format("{} of the {} primitives of `{}` are points or lines without "
-                                    "width: no ray can hit them",
-                                    flat, count, info.name),
-                        info.place});
+    warnings.push_back({message::invisiblePrimitives(flat, count, info.name), info.place});
   boxes.insert(boxes.end(), all.begin(), all.end());
   return sets.emplace(primitive, set).first->second;
 }
@@ -230,8 +215,7 @@ std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
   objects.requireRole(selector, "rt_Selector", {"visit"});
   const Objects::Object &info = objects.at(selector);
   if (above >= selections.size())
-    throw Error(ErrorCode::UnknownName, fmt::format("the scene has no selection number {}", above),
-                info.place);
+    throw Error(message::noSuchSelection(above), info.place);
   const auto first = std::uint32_t(selections.size());
   const std::uint32_t space = addTransform(transform, info.name, info.place);
   for (std::uint32_t child = 0; child < children; ++child)
@@ -268,7 +252,7 @@ const Bounds &Geometry::meshBounds(std::uint32_t mesh) {
 std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t mesh,
                                         RtslRef material, const Placement &placement) {
   if (mesh >= meshes.size())
-    throw Error(ErrorCode::UnknownName, fmt::format("the scene has no mesh number {}", mesh));
+    throw Error(message::noSuchMesh(mesh));
   RtslInstance instance = place(placement, meshes[mesh]->name, std::nullopt);
   instance.material = material;
   instance.mesh = mesh;

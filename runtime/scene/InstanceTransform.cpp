@@ -2,6 +2,7 @@
 
 #include "runtime/device/ray/Box.h"
 #include "runtime/geometry/Transform.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -35,21 +36,16 @@ RtslTransform rounded(const Transform &transform, const std::string &what,
     for (int row = 0; row < 3; ++row) {
       const float value = float(transform.columns[column][row]);
       if (!std::isfinite(value) || std::fabs(value) > largestSide)
-        throw Error(ErrorCode::DegenerateGeometry,
-                    fmt::format("{} is out of range: row {} of column {} is {}", what, row, column,
-                                transform.columns[column][row]),
+        throw Error(message::matrixOutOfRange(what, row, column, transform.columns[column][row]),
                     place);
       exact.columns[column][row] = double(value);
       (column == 3 ? result.translation[row] : result.linear[3 * column + row]) = value;
     }
   const LinearInverse inverse = invertLinear(exact);
   if (!(inverse.condition <= largestCondition))
-    throw Error(ErrorCode::DegenerateGeometry,
-                std::isinf(inverse.condition)
-                    ? fmt::format("{} flattens it", what)
-                    : fmt::format("{} nearly flattens it: its condition number is {:.2g}, more "
-                                  "than {:g}",
-                                  what, inverse.condition, largestCondition),
+    throw Error(std::isinf(inverse.condition)
+                    ? message::transformFlattensObject(what)
+                    : message::transformNearlyFlattens(what, inverse.condition, largestCondition),
                 place);
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)

@@ -2,6 +2,7 @@
 
 #include "runtime/scene/ValueStore.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,9 +115,7 @@ std::vector<std::uint32_t> convert(const NamedAttribute &attribute, const ValueT
   for (const NamedAttribute &attribute : mesh.attributes)
     names.push_back(attribute.name);
   std::sort(names.begin(), names.end());
-  Error error(ErrorCode::MissingMember,
-              fmt::format("`{}` has no attribute `{}`, which the material `{}` reads as a `{}`",
-                          name, wanted.name, material.name, wanted.type.name));
+  Error error(message::meshAttributeMissing(name, wanted.name, material.name, wanted.type.name));
   if (names.empty())
     error.note("it has no attributes; a scene can give them: `attributes`");
   else
@@ -159,11 +158,8 @@ void requireAttributes(const Mesh &mesh, const std::string &name, const Program 
     if (!attribute)
       throwMissing(mesh, name, read, material);
     if (!fits(*attribute, read.type, program))
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("the attribute `{}` of `{}` is {}, and the material `{}` reads it as "
-                              "a `{}`",
-                              read.name, name, describe(*attribute), material.name,
-                              read.type.name));
+      throw Error(message::meshAttributeMismatch(read.name, name, describe(*attribute),
+                                                 material.name, read.type.name));
   }
 }
 

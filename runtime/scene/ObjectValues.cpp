@@ -2,6 +2,7 @@
 
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -25,17 +26,13 @@ std::string listParameters(const ClassInfo &info) {
 /// The value of each parameter, in their order.
 std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const ObjectValues &values) {
   if (!classInfo.hasConstructor)
-    throw Error(ErrorCode::BadArguments,
-                fmt::format("class `{}` has no constructor; set its public members by name",
-                            classInfo.name),
-                values.place);
+    throw Error(message::noConstructor(classInfo.name), values.place);
   const std::vector<MemberInfo> &parameters = classInfo.parameters;
   std::vector<const Value *> arguments(parameters.size(), nullptr);
   if (auto *list = std::get_if<std::vector<Value>>(&values.constructor)) {
     if (list->size() != parameters.size())
-      throw Error(ErrorCode::BadArguments,
-                  fmt::format("the constructor of `{}` takes {} argument{}, not {}", classInfo.name,
-                              parameters.size(), parameters.size() == 1 ? "" : "s", list->size()),
+      throw Error(message::argumentCount(classInfo.name, parameters.size(),
+                                         parameters.size() == 1 ? "" : "s", list->size()),
                   values.place)
           .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
     for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -46,10 +43,8 @@ std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const Obje
           std::find_if(parameters.begin(), parameters.end(),
                        [&](const MemberInfo &parameter) { return parameter.name == one.name; });
       if (found == parameters.end()) {
-        Error error(
-            ErrorCode::BadArguments,
-            fmt::format("the constructor of `{}` has no parameter `{}`", classInfo.name, one.name),
-            one.place ? one.place : values.place);
+        Error error(message::noSuchParameter(classInfo.name, one.name),
+                    one.place ? one.place : values.place);
         std::vector<std::string> names;
         for (const MemberInfo &parameter : parameters)
           names.push_back(parameter.name);
@@ -59,8 +54,7 @@ std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const Obje
       }
       const Value *&argument = arguments[std::size_t(found - parameters.begin())];
       if (argument)
-        throw Error(ErrorCode::BadArguments, fmt::format("parameter `{}` is given twice", one.name),
-                    one.place ? one.place : values.place);
+        throw Error(message::parameterTwice(one.name), one.place ? one.place : values.place);
       argument = &one.value;
     }
   }
@@ -69,10 +63,7 @@ std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const Obje
     if (!arguments[i])
       missing += fmt::format("{}`{}`", missing.empty() ? "" : ", ", parameters[i].name);
   if (!missing.empty())
-    throw Error(
-        ErrorCode::BadArguments,
-        fmt::format("the constructor of `{}` misses an argument for {}", classInfo.name, missing),
-        values.place)
+    throw Error(message::argumentMissing(classInfo.name, missing), values.place)
         .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
   return arguments;
 }
@@ -84,9 +75,7 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
   auto found = std::find_if(classInfo.members.begin(), classInfo.members.end(),
                             [&](const MemberInfo &member) { return member.name == one.name; });
   if (found == classInfo.members.end()) {
-    Error error(ErrorCode::UnknownMember,
-                fmt::format("class `{}` has no member `{}`", classInfo.name, one.name),
-                one.place ? one.place : place);
+    Error error(message::noSuchMember(classInfo.name, one.name), one.place ? one.place : place);
     std::vector<std::string> names;
     for (const MemberInfo &member : classInfo.members)
       if (member.isPublic)
@@ -96,9 +85,7 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
     throw error;
   }
   if (!found->isPublic)
-    throw Error(ErrorCode::NotSettable,
-                fmt::format("member `{}` of `{}` is not public", one.name, classInfo.name),
-                one.place ? one.place : place);
+    throw Error(message::memberNotPublic(one.name, classInfo.name), one.place ? one.place : place);
   storeValue(found->type, one.value, record + found->offset, context,
              fmt::format("member `{}` of `{}`", one.name, name), place);
 }
@@ -151,20 +138,17 @@ void checkUnset(const ClassInfo &classInfo, const std::string &name, const Objec
       RtslRef reference;
       std::memcpy(&reference, record + member.offset, 4);
       if (reference == 0)
-        throw Error(ErrorCode::MissingMember,
-                    fmt::format("`{}` refers to nothing: set member `{}` of class `{}`, a `{}`{}",
-                                name, member.name, classInfo.name, member.type.className,
-                                elsewhere(", or", values)),
+        throw Error(message::referenceMissing(name, member.name, classInfo.name,
+                                              member.type.className, elsewhere(", or", values)),
                     values.place);
     }
   }
   if (missing.empty())
     return;
   const bool isOne = missing.size() == 1;
-  throw Error(ErrorCode::MissingMember,
-              fmt::format("{} {} of `{}` {} read, but not set and without a default: set {}{}",
-                          isOne ? "member" : "members", fmt::join(missing, ", "), name,
-                          isOne ? "is" : "are", isOne ? "it" : "them", elsewhere(", or", values)),
+  throw Error(message::membersMissing(isOne ? "member" : "members", fmt::join(missing, ", "), name,
+                                      isOne ? "is" : "are", isOne ? "it" : "them",
+                                      elsewhere(", or", values)),
               values.place);
 }
 

@@ -4,6 +4,7 @@
 #include "runtime/scene/ObjectValues.h"
 #include "runtime/scene/References.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -26,7 +27,7 @@ const ClassInfo &findClass(const Program &program, const std::string &className,
                            const std::optional<Place> &place) {
   if (const ClassInfo *classInfo = program.find(className))
     return *classInfo;
-  Error error(ErrorCode::UnknownClass, fmt::format("no class is named `{}`", className), place);
+  Error error(message::noSuchClass(className), place);
   std::vector<std::string> names;
   for (const ClassInfo &one : program.classes)
     names.push_back(one.name);
@@ -61,8 +62,7 @@ void callOutsideOfRays(const RtslLaunch &launch, RtslRef object,
 Objects::Objects(std::shared_ptr<const Program> program)
     : code(std::move(program)), records(firstRecord, 0) {
   if (code->colorComponents < 1 || code->colorComponents > RTSL_MAX_COLOR)
-    throw Error(ErrorCode::OutOfRange, fmt::format("a color has 1 to {} components, not {}",
-                                                   RTSL_MAX_COLOR, code->colorComponents));
+    throw Error(message::colorComponents(RTSL_MAX_COLOR, code->colorComponents));
 }
 
 void Objects::useProgram(std::shared_ptr<const Program> program) {
@@ -72,7 +72,7 @@ void Objects::useProgram(std::shared_ptr<const Program> program) {
                   [](const ClassInfo &a, const ClassInfo &b) {
                     return a.name == b.name && a.id == b.id && a.recordSize == b.recordSize;
                   }))
-    throw Error(ErrorCode::Internal, "the scene was made for another program");
+    throw Error(message::otherProgram());
   for (Object &object : objects)
     object.classInfo = &after[std::size_t(object.classInfo - before.data())];
   code = std::move(program);
@@ -83,8 +83,7 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
   const ClassInfo &classInfo = findClass(*code, className, values.place);
   std::size_t start = (records.size() + recordAlignment - 1) / recordAlignment * recordAlignment;
   if (start + classInfo.recordSize > std::numeric_limits<std::uint32_t>::max())
-    throw Error(ErrorCode::OutOfMemory, "the objects of the scene take more than 4 GiB",
-                values.place);
+    throw Error(message::objectsTooLarge(), values.place);
   std::size_t before = records.size();
   records.resize(start + std::max(classInfo.recordSize, 4u), 0);
   std::memcpy(records.data() + start, &classInfo.id, 4);
@@ -137,9 +136,7 @@ StoreContext Objects::storeContext() {
   };
   context.keep = [this](std::shared_ptr<Value::Words> words, bool isOutput) {
     const auto [block, isNew] = blocks.try_emplace(std::move(words), isOutput);
-    if (!isNew && (isOutput || block->second))
-      throw Error(ErrorCode::WrongType,
-                  "shares its elements with another member, and one of them is an output buffer");
+    return isNew || !(isOutput || block->second);
   };
   context.classMismatch = [this](RtslRef object,
                                  const std::string &className) -> const std::string * {
@@ -154,8 +151,7 @@ const Objects::Object &Objects::at(RtslRef reference) const {
       std::lower_bound(objects.begin(), objects.end(), reference,
                        [](const Object &object, RtslRef ref) { return object.reference < ref; });
   if (found == objects.end() || found->reference != reference)
-    throw Error(ErrorCode::UnknownName,
-                fmt::format("no object of the scene has the reference {}", reference));
+    throw Error(message::noSuchReference(reference));
   return *found;
 }
 
@@ -167,16 +163,10 @@ void Objects::requireRole(RtslRef reference, const std::string &root,
                           const std::vector<std::string> &methods) const {
   const Object &given = at(reference);
   if (given.classInfo->root != root)
-    throw Error(ErrorCode::WrongClass,
-                fmt::format("`{}` is a `{}`, where a `{}` is needed", given.name,
-                            given.classInfo->name, root),
-                given.place);
+    throw Error(message::wrongRootClass(given.name, given.classInfo->name, root), given.place);
   for (const std::string &method : methods)
     if (!hasMethod(*given.classInfo, method))
-      throw Error(ErrorCode::MissingMethod,
-                  fmt::format("class `{}` of `{}` does not define `{}`", given.classInfo->name,
-                              given.name, method),
-                  given.place);
+      throw Error(message::methodMissing(given.classInfo->name, given.name, method), given.place);
 }
 
 /// Counts the references that lead on from an object that is complete. Those that it refers to

@@ -2,6 +2,7 @@
 
 #include "language/ColorBasis.h"
 #include "runtime/scene/References.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -43,11 +44,11 @@ public:
   }
 
 private:
-  [[noreturn]] void fail(ErrorCode code, const Value &value, const std::string &message) const {
-    throw Error(code, fmt::format("{} {}", what, message), value.place ? value.place : fallback);
+  [[noreturn]] void fail(const Value &value, const Message &why) const {
+    throw Error(why, value.place ? value.place : fallback);
   }
   [[noreturn]] void wrongType(const ValueType &type, const Value &value) const {
-    fail(ErrorCode::WrongType, value, fmt::format("is a `{}`, not {}", type.name, describe(value)));
+    fail(value, message::typeMismatch(what, type.name, describe(value)));
   }
 
   /// Dimension `level` of a fixed-length array that takes `size` bytes.
@@ -59,8 +60,7 @@ private:
     if (value.kind != Value::Kind::List)
       wrongType(type, value);
     if (value.list.size() != count)
-      fail(ErrorCode::WrongType, value,
-           fmt::format("takes {} elements, not {}", count, value.list.size()));
+      fail(value, message::elementCount(what, count, value.list.size()));
     for (std::uint32_t i = 0; i < count; ++i)
       array(type, level + 1, value.list[i], to + std::size_t(i) * (size / count), size / count);
   }
@@ -94,20 +94,17 @@ private:
     if (type.kind == ValueType::Kind::Float) {
       float number = float(value.number);
       if (std::isinf(number) && !std::isinf(value.number))
-        fail(ErrorCode::OutOfRange, value,
-             fmt::format("cannot be {:g}: the largest float is 3.4e38", value.number));
+        fail(value, message::floatTooLarge(what, value.number));
       std::memcpy(to, &number, 4);
       return;
     }
     if (value.number != std::floor(value.number))
-      fail(ErrorCode::WrongType, value, fmt::format("takes whole numbers, not {:g}", value.number));
+      fail(value, message::notWhole(what, value.number));
     bool isSigned = type.kind == ValueType::Kind::Int;
     double lowest = isSigned ? -2147483648.0 : 0.0,
            highest = isSigned ? 2147483647.0 : 4294967295.0;
     if (!(value.number >= lowest && value.number <= highest))
-      fail(ErrorCode::OutOfRange, value,
-           fmt::format("cannot be {:.0f}: it lies between {:.0f} and {:.0f}", value.number, lowest,
-                       highest));
+      fail(value, message::integerOutOfRange(what, value.number, lowest, highest));
     std::uint32_t bits =
         isSigned ? std::uint32_t(std::int32_t(value.number)) : std::uint32_t(value.number);
     std::memcpy(to, &bits, 4);
@@ -132,9 +129,7 @@ private:
     if (value.kind != Value::Kind::List)
       wrongType(type, value);
     if (value.list.size() != count)
-      fail(ErrorCode::WrongType, value,
-           fmt::format("is a `{}` and takes {} numbers, not {}", type.name, count,
-                       value.list.size()));
+      fail(value, message::componentCount(what, type.name, count, value.list.size()));
     for (std::uint32_t i = 0; i < count; ++i)
       scalar(type, value.list[i], to + 4 * std::size_t(i));
   }
@@ -158,9 +153,9 @@ private:
       wrongType(type, value);
     std::vector<float> components = colorFromNumbers(numbers, count);
     if (components.empty())
-      fail(ErrorCode::WrongType, value,
-           fmt::format(
-               "is a color: it takes {}, not {} numbers",
+      fail(value,
+           message::colorComponentCount(
+               what,
                count == 3 ? "3 numbers or one for all"
                : count == 1
                    ? "one number, or 3 for red, green and blue"
@@ -175,20 +170,16 @@ private:
       wrongType(type, value);
     if (value.object != 0)
       if (const std::string *actual = context.classMismatch(value.object, type.className))
-        fail(ErrorCode::WrongClass, value,
-             fmt::format("takes a `{}`, not a `{}`", type.className, *actual));
+        fail(value, message::classMismatch(what, type.className, *actual));
     std::memcpy(to, &value.object, 4);
   }
 
   /// The fields in the order of the declaration.
   void structure(const ValueType &type, const Value &value, std::uint8_t *to) {
     if (type.fields.empty())
-      fail(ErrorCode::NotSupported, value,
-           fmt::format("is a `{}`, which a scene cannot set", type.name));
+      fail(value, message::typeNotSettable(what, type.name));
     if (value.kind != Value::Kind::List || value.list.size() != type.fields.size())
-      fail(ErrorCode::WrongType, value,
-           fmt::format("is a `{}` and takes a list of its {} members", type.name,
-                       type.fields.size()));
+      fail(value, message::structNeedsList(what, type.name, type.fields.size()));
     for (std::size_t i = 0; i < type.fields.size(); ++i) {
       std::string inner = fmt::format("`{}` in {}", type.fields[i].name, what);
       Store(context, inner, value.list[i].place ? value.list[i].place : fallback)
@@ -222,14 +213,12 @@ private:
         if (i == 0)
           length = elements[i]->list.size();
         else if (elements[i]->list.size() != length)
-          fail(ErrorCode::WrongType, *elements[i],
-               fmt::format("has rows of different lengths: {} and {}", length,
-                           elements[i]->list.size()));
+          fail(*elements[i], message::rowsDiffer(what, length, elements[i]->list.size()));
         for (const Value &inner : elements[i]->list)
           next.push_back(&inner);
       }
       if (length > 0xffffffffu)
-        fail(ErrorCode::OutOfRange, value, "has too many elements");
+        fail(value, message::tooManyElements(what));
       header.size[level] = std::uint32_t(length);
       elements = std::move(next);
     }
@@ -250,11 +239,8 @@ private:
       count *= size;
     if (holdsReferences(type) || sizes.size() != type.bufferRank || count * stride != double(bytes))
       wrongType(type, value);
-    try {
-      context.keep(value.words, type.isOutput);
-    } catch (const Error &error) {
-      fail(error.code, value, error.what());
-    }
+    if (!context.keep(value.words, type.isOutput))
+      fail(value, message::sharedOutputElements(what));
     RtslBuffer header{};
     std::copy(sizes.begin(), sizes.end(), header.size);
     writeHeader(header, value.words->data(), to);

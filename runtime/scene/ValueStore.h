@@ -15,8 +15,8 @@ struct StoreContext {
   /// Memory of the scene's own that stays where it is.
   std::function<std::uint8_t *(std::size_t bytes)> allocate;
   /// Keeps a block as long as the scene. `isOutput`: the member that it is for is an output buffer.
-  /// Throws WrongType if it shares the block with another member, and one of them is an output.
-  std::function<void(std::shared_ptr<Value::Words>, bool isOutput)> keep;
+  /// False if it shares the block with another member, and one of them is an output buffer.
+  std::function<bool(std::shared_ptr<Value::Words>, bool isOutput)> keep;
   /// Null if the object may stand where `className` is expected; otherwise the name of the class
   /// that it has.
   std::function<const std::string *(RtslRef object, const std::string &className)> classMismatch;

@@ -4,6 +4,7 @@
 #include "scenefile/files/PlyColumns.h"
 #include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,9 +45,7 @@ std::uint32_t wordOf(double number, const ValueType &type, const std::string &wh
     const double lowest = isSigned ? -2147483648.0 : 0.0;
     const double highest = isSigned ? 2147483647.0 : 4294967295.0;
     if (!(number >= lowest && number <= highest && number == std::floor(number)))
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("{} takes whole numbers from {:.0f} to {:.0f}, not {:g}", what,
-                              lowest, highest, number));
+      throw Error(message::wholeNumberOutOfRange(what, lowest, highest, number));
     return isSigned ? std::uint32_t(std::int32_t(number)) : std::uint32_t(number);
   }
   case ValueType::Kind::Bool:
@@ -54,8 +53,7 @@ std::uint32_t wordOf(double number, const ValueType &type, const std::string &wh
   default: {
     const float single = static_cast<float>(number);
     if (std::isinf(single) && !std::isinf(number))
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("{} cannot be {:g}: the largest float is 3.4e38", what, number));
+      throw Error(message::floatTooLarge(what, number));
     std::memcpy(&word, &single, sizeof word);
     return word;
   }
@@ -88,7 +86,7 @@ std::vector<std::uint32_t> sizesOf(const std::vector<std::size_t> &shape, std::s
   std::vector<std::uint32_t> sizes;
   for (std::size_t i = 0; i < rank; ++i) {
     if (shape[i] > std::numeric_limits<std::uint32_t>::max())
-      throw Error(ErrorCode::OutOfRange, fmt::format("{} has too many elements", what));
+      throw Error(message::tooManyElements(what));
     sizes.push_back(static_cast<std::uint32_t>(shape[i]));
   }
   return sizes;
@@ -104,14 +102,10 @@ std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &
   const bool isColor = type.kind == ValueType::Kind::Color && type.arraySizes.empty();
   if (shape.size() < type.bufferRank ||
       (given != numbers && !(isColor && (given == 1 || given == 3))))
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is a `{}`: {} with {} {} each are needed, and `{}` has the shape "
-                            "({})",
-                            what, type.name,
-                            type.bufferRank == 1 ? "1 dimension"
-                                                 : fmt::format("{} dimensions", type.bufferRank),
-                            numbers, numbers == 1 ? "number" : "numbers", file,
-                            fmt::join(shape, ", ")));
+    throw Error(message::bufferShape(
+        what, type.name,
+        type.bufferRank == 1 ? "1 dimension" : fmt::format("{} dimensions", type.bufferRank),
+        numbers, numbers == 1 ? "number" : "numbers", file, fmt::join(shape, ", ")));
   return given;
 }
 
@@ -139,15 +133,12 @@ Value readElements(const BufferDescription &buffer, const ValueType &type, std::
   if (shape.empty() && type.bufferRank == 1)
     shape.push_back(bytes.size() / stride);
   if (shape.size() != type.bufferRank)
-    throw Error(ErrorCode::WrongType, fmt::format("{} is a `{}`: `shape` takes {} sizes", what,
-                                                  type.name, type.bufferRank));
+    throw Error(message::bufferShapeRank(what, type.name, type.bufferRank));
   const auto count = std::accumulate(shape.begin(), shape.end(), 1.0,
                                      [](double a, auto b) { return a * double(b); });
   if (count * double(stride) != double(bytes.size()))
-    throw Error(ErrorCode::BadBuffer,
-                fmt::format("`{}` has {} bytes, and {} elements of {} bytes take {:.0f}",
-                            buffer.file, bytes.size(), fmt::join(shape, " x "), stride,
-                            count * double(stride)));
+    throw Error(message::bufferFileSize(buffer.file, bytes.size(), fmt::join(shape, " x "), stride,
+                                        count * double(stride)));
   auto words = std::make_shared<Value::Words>(bytes.size() / 4);
   std::memcpy(words->data(), bytes.data(), 4 * words->size());
   return Value::block(std::move(words), sizesOf(shape, shape.size(), what));
@@ -162,8 +153,7 @@ const JsonValue *findFor(bool isTaken, const JsonValue &buffer, const std::strin
                          const char *files) {
   for (const auto &[name, value] : buffer.members)
     if (name.text == key && !isTaken)
-      throw Error(ErrorCode::UnknownKey, fmt::format("`{}` is for {}", key, files),
-                  buffer.place(name));
+      throw Error(message::keyOfOtherFiles(key, files), buffer.place(name));
   return buffer.find(key);
 }
 
@@ -184,7 +174,7 @@ readBufferDescription(const JsonValue &buffer,
   BufferDescription description;
   if (const JsonValue *size = buffer.find("size"); size && !buffer.find("buffer")) {
     if (size->elements.empty() || size->elements.size() > 3)
-      throw Error(ErrorCode::OutOfRange, "`size` takes 1 to 3 numbers", size->place());
+      throw Error(message::sizeRank(), size->place());
     for (const JsonValue &one : size->elements)
       description.shape.push_back(readInteger(one, 0, 0xffffffff, "a number of `size`"));
     return description;
@@ -208,9 +198,8 @@ readBufferDescription(const JsonValue &buffer,
 Value zeros(const std::vector<std::uint32_t> &sizes, const ValueType &type,
             const std::string &what) {
   if (sizes.size() != type.bufferRank)
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is a `{}`: `size` takes {} number{}, not {}", what, type.name,
-                            type.bufferRank, type.bufferRank == 1 ? "" : "s", sizes.size()));
+    throw Error(message::bufferSizeRank(what, type.name, type.bufferRank,
+                                        type.bufferRank == 1 ? "" : "s", sizes.size()));
   const double bytes = std::accumulate(sizes.begin(), sizes.end(), double(type.elementSize),
                                        [](double a, std::uint32_t b) { return a * double(b); });
   try {
@@ -219,20 +208,18 @@ Value zeros(const std::vector<std::uint32_t> &sizes, const ValueType &type,
     auto words = std::make_shared<Value::Words>(static_cast<std::size_t>(bytes) / 4);
     return Value::block(std::move(words), sizes);
   } catch (const std::bad_alloc &) {
-    throw Error(ErrorCode::OutOfMemory,
-                fmt::format("not enough memory for {}: {:.1f} GiB", what, bytes / (1 << 30)));
+    throw Error(message::noMemoryForBuffer(what, bytes / (1 << 30)));
   }
 }
 
 Value readBuffer(const BufferDescription &buffer, const ValueType &type,
                  std::uint32_t colorComponents, const std::string &what) {
   if (type.bufferRank == 0)
-    throw Error(ErrorCode::WrongType, fmt::format("{} is a `{}`, not a buffer", what, type.name));
+    throw Error(message::notBuffer(what, type.name));
   if (buffer.file.empty())
     return zeros(buffer.shape, type, what);
   if (type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("{} is a `{}`, which a file cannot hold", what, type.name));
+    throw Error(message::typeNotInFile(what, type.name));
   const std::size_t numbers = numbersOf(type, colorComponents);
   const std::string extension = extensionOf(buffer);
   if (extension != ".npy" && extension != ".csv" && extension != ".ply")
@@ -268,9 +255,7 @@ std::size_t lengthOf(const BufferDescription &buffer) {
     return readCsv(buffer.file, buffer.columns).shape.front();
   if (extension == ".ply")
     return plyCount(buffer.file, buffer.element);
-  throw Error(ErrorCode::MissingKey,
-              fmt::format("`{}` has no format that says how many elements it has: give `shape`",
-                          buffer.file));
+  throw Error(message::shapeMissing(buffer.file));
 }
 
 } // namespace rtsl::scene

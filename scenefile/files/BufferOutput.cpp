@@ -2,6 +2,7 @@
 
 #include "support/AtomicFile.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -112,9 +113,7 @@ std::string csvOf(const OutputBuffer &buffer) {
 void writeBuffer(const std::string &path, const OutputBuffer &buffer) {
   const std::string extension = std::filesystem::path(path).extension().string();
   if (extension == ".csv" && buffer.type.kind == ValueType::Kind::Struct)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("`{}` cannot hold `{}`, a `{}`: its elements are structs", path,
-                            buffer.member, buffer.type.name))
+    throw Error(message::structsNotInFile(path, buffer.member, buffer.type.name))
         .note(".npy holds them");
   writeFileAtomically(
       path, extension == ".npy" ? npyOf(buffer)

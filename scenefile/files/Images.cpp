@@ -6,6 +6,7 @@
 #include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 #include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
@@ -51,9 +52,7 @@ Value choose(const JsonValue &json, const Choice<Value> (&choices)[count], const
       return value;
     names.emplace_back(name);
   }
-  Error error(ErrorCode::OutOfRange,
-              fmt::format("{} is `{}`, not `{}`", what, fmt::join(names, "`, `"), json.string),
-              json.place());
+  Error error(message::notOneOf(what, fmt::join(names, "`, `"), json.string), json.place());
   if (const std::string near = closestName(json.string, names); !near.empty())
     error.fix(near);
   throw error;
@@ -112,7 +111,7 @@ private:
       const JsonValue &slices = require(image, "slices", "an image of a sampler3D");
       expect(slices, Kind::Array, "`slices`");
       if (slices.elements.empty())
-        throw Error(ErrorCode::OutOfRange, "an image needs at least one slice", slices.place());
+        throw Error(message::noSlices(), slices.place());
       for (const JsonValue &slice : slices.elements)
         errors.attempt([&] { addFile(slice, "a slice"); });
     });
@@ -122,7 +121,7 @@ private:
     description.part = expect(value, Kind::String, "`part`").string;
     const JsonValue *file = image.find("file");
     if (!file || file->kind != Kind::String || !gltf::isModel(file->string))
-      throw Error(ErrorCode::UnknownKey, "`part` names an image in a glTF file", value.place());
+      throw Error(message::partWithoutModel(), value.place());
   }
 
   void readRaw() {
@@ -144,14 +143,14 @@ private:
     key("channels", [&](const JsonValue &value) {
       shape.channels = readInteger(value, 1, 4, "`channels`");
       if (shape.channels == 3)
-        throw Error(ErrorCode::OutOfRange, "`channels` is 1, 2 or 4", value.place());
+        throw Error(message::badChannelCount(), value.place());
     });
   }
 
   void readFilter(const JsonValue &value) {
     description.sampling.filter = choose(value, filters, "`filter`");
     if (isVolume && description.sampling.filter == Filter::Anisotropic)
-      throw Error(ErrorCode::NotSupported, "a sampler3D has no anisotropic filter", value.place());
+      throw Error(message::anisotropicVolume(), value.place());
   }
 
   /// One for all axes, or a list.
@@ -162,9 +161,7 @@ private:
     expect(value, Kind::Array, "`wrap`");
     const std::size_t axes = isVolume ? 3 : 2;
     if (value.elements.size() != axes)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("`wrap` takes one name, or {}, not {}", axes, value.elements.size()),
-                  value.place());
+      throw Error(message::wrapCount(axes, value.elements.size()), value.place());
     for (std::size_t i = 0; i < axes; ++i)
       wrap[i] = choose(value.elements[i], wraps, "`wrap`");
   }
@@ -199,9 +196,7 @@ runtime::Texels load(const ImageDescription &image, const SceneDescription &scen
     const runtime::Pixels &first = slices.front(), &slice = slices.back();
     if (slice.width != first.width || slice.height != first.height ||
         slice.channels != first.channels || slice.format != first.format)
-      throw Error(ErrorCode::BadImage,
-                  fmt::format("`{}` differs from the first slice, `{}`, in size or format", file,
-                              image.files.front()));
+      throw Error(message::slicesDiffer(file, image.files.front()));
   }
   return runtime::texelsOf(slices);
 }

@@ -3,6 +3,7 @@
 #include "runtime/scene/ValueStore.h"
 #include "scenefile/files/BufferFiles.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -26,11 +27,7 @@ NamedAttribute::Space readSpace(const JsonValue &value) {
   for (const NamedAttribute::Space space : spaces)
     if (value.string == nameOf(space))
       return space;
-  throw Error(
-      ErrorCode::OutOfRange,
-      fmt::format("`space` is `numbers`, `point`, `vector`, `normal` or `tangent`, not `{}`",
-                  value.string),
-      value.place());
+  throw Error(message::unknownSpace(value.string), value.place());
 }
 
 AttributeDescription readAttribute(const std::string &name, const Place &place,
@@ -50,16 +47,13 @@ AttributeDescription readAttribute(const std::string &name, const Place &place,
   if (const JsonValue *space = value.find("space"))
     attribute.space = readSpace(*space);
   else if (!attribute.values)
-    throw Error(ErrorCode::MissingKey, fmt::format("{} needs `values` or a `space`", what),
-                value.place());
+    throw Error(message::attributeWithoutValues(what), value.place());
   if (const JsonValue *per = value.find("per")) {
     expect(*per, Kind::String, "`per`");
     if (per->string != "vertex" && per->string != "face")
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("`per` is `vertex` or `face`, not `{}`", per->string), per->place());
+      throw Error(message::unknownPer(per->string), per->place());
     if (!attribute.values)
-      throw Error(ErrorCode::UnknownKey,
-                  "`per` is for `values`: a file says what its values are of", per->place());
+      throw Error(message::perWithoutValues(), per->place());
     attribute.ofFaces = per->string == "face";
   }
   return attribute;
@@ -107,16 +101,10 @@ NamedAttribute attributeFrom(const AttributeDescription &description, const Valu
   attribute.space = description.space;
   const std::string what = fmt::format("the attribute `{}`", description.name);
   if (attribute.kind != NamedAttribute::Kind::Float && !attribute.ofTriangles)
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is read as `{}`, and numbers of vertices are interpolated: its "
-                            "values can be \"per\": \"face\"",
-                            what, type.name),
-                description.place);
+    throw Error(message::integersOfVertices(what, type.name), description.place);
   const std::uint32_t needed = componentsOf(description.space);
   if (needed != 0 && (attribute.components != needed || type.kind != ValueType::Kind::Float))
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is a `{}`, and its `space` is `{}`: a `vec{}` is needed", what,
-                            type.name, nameOf(description.space), needed),
+    throw Error(message::spaceNeedsVector(what, type.name, nameOf(description.space), needed),
                 description.place);
   runtime::StoreContext context;
   context.colorComponents = colorComponents;

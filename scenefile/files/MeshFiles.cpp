@@ -2,6 +2,7 @@
 
 #include "scenefile/Models.h"
 #include "scenefile/gltf/Mesh.h"
+#include "support/ErrorMessages.h"
 #include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
@@ -42,10 +43,8 @@ void setSpaces(Mesh &mesh, const GeometryDescription &geometry) {
       if (!given.values && attribute.name == given.name) {
         const std::uint32_t needed = componentsOf(given.space);
         if (needed != 0 && needed != attribute.components)
-          throw Error(ErrorCode::WrongType,
-                      fmt::format("the attribute `{}` has {} numbers, and its `space` is `{}`: {} "
-                                  "are needed",
-                                  given.name, attribute.components, nameOf(given.space), needed),
+          throw Error(message::attributeNumberCount(given.name, attribute.components,
+                                                    nameOf(given.space), needed),
                       given.place);
         attribute.space = given.space;
       }

@@ -3,6 +3,7 @@
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,10 +20,6 @@
 namespace rtsl::scene {
 
 namespace {
-
-[[noreturn]] void fail(const std::string &path, const std::string &why) {
-  throw Error(ErrorCode::BadBuffer, fmt::format("cannot read `{}`: {}", path, why));
-}
 
 //===----------------------------------------------------------------------===//
 // .npy (https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html)
@@ -41,18 +38,18 @@ std::string_view valueOf(std::string_view header, std::string_view key) {
 std::vector<std::size_t> shapeOf(const std::string &path, std::string_view text) {
   std::vector<std::size_t> shape;
   if (text.empty() || text.front() != '(')
-    fail(path, "its header has no shape");
+    throw Error(message::npyWithoutShape(path));
   text.remove_prefix(1);
   while (true) {
     text.remove_prefix(std::min(text.find_first_not_of(", "), text.size()));
     if (text.empty())
-      fail(path, "its header has no shape");
+      throw Error(message::npyWithoutShape(path));
     if (text.front() == ')')
       return shape;
     std::size_t size = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), size);
     if (error != std::errc())
-      fail(path, "the shape in its header is not a list of numbers");
+      throw Error(message::npyBadShape(path));
     shape.push_back(size);
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
   }
@@ -133,7 +130,7 @@ static std::string readStart(const std::string &path) {
 NpyFile::NpyFile(const std::string &path, Part part)
     : file(part == Part::Whole ? readFile(path) : readStart(path)) {
   if (file.size() < 10 || file.compare(0, 6, "\x93NUMPY") != 0)
-    fail(path, "it is no .npy file");
+    throw Error(message::notNpy(path));
   const auto byte = [&](std::size_t i) { return std::size_t(static_cast<unsigned char>(file[i])); };
   const bool isLong = byte(6) >= 2; // the length of the header has 4 bytes
   start = isLong ? 12 : 10;
@@ -141,7 +138,7 @@ NpyFile::NpyFile(const std::string &path, Part part)
   if (isLong && file.size() >= start)
     length |= byte(10) << 16 | byte(11) << 24;
   if (byte(6) < 1 || byte(6) > 3 || file.size() < start || file.size() - start < length)
-    fail(path, "its header is cut short, or of another version");
+    throw Error(message::npyBadHeader(path));
   const std::string_view header = std::string_view(file).substr(start, length);
   start += length;
 
@@ -151,23 +148,23 @@ NpyFile::NpyFile(const std::string &path, Part part)
         return name.size() > 4 && name.front() == '\'' && name.substr(1, 3) == known.name;
       });
   if (found == std::end(elementTypes))
-    fail(path, "its elements are no little-endian integers or floats");
+    throw Error(message::npyBadElements(path));
   type = static_cast<std::size_t>(found - elementTypes);
   sizes = shapeOf(path, valueOf(header, "'shape'"));
   if (sizes.size() > 1 && valueOf(header, "'fortran_order'").substr(0, 4) == "True")
-    fail(path, "it is in Fortran order; save numpy.ascontiguousarray(...)");
+    throw Error(message::npyFortranOrder(path));
   std::error_code error;
   const std::size_t bytes =
       (part == Part::Whole ? file.size() : std::filesystem::file_size(path, error)) - start;
   for (const std::size_t size : sizes) {
     if (size != 0 && elementCount > bytes / size)
-      fail(path, "it is cut short");
+      throw Error(message::numbersTruncated(path));
     elementCount *= size;
   }
   if (bytes / found->bytes < elementCount)
-    fail(path, "it is cut short");
+    throw Error(message::numbersTruncated(path));
   if (bytes != elementCount * found->bytes)
-    fail(path, "it is longer than its header says");
+    throw Error(message::numbersTooLong(path));
 }
 
 const char *NpyFile::elementType() const {
@@ -187,10 +184,9 @@ std::vector<std::size_t> placesOf(const std::string &where, const std::vector<st
     const auto found = std::find(names.begin(), names.end(), column);
     if (found == names.end()) {
       const std::string near = closestName(column, names);
-      throw Error(ErrorCode::UnknownName,
-                  fmt::format("{} has no column `{}`; it has `{}`{}", where, column,
-                              fmt::join(names, "`, `"),
-                              near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+      throw Error(
+          message::noSuchColumn(where, column, fmt::join(names, "`, `"),
+                                near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
     }
     places.push_back(static_cast<std::size_t>(found - names.begin()));
   }
@@ -216,9 +212,7 @@ NumberArray readCsv(const std::string &path, const std::vector<std::string> &col
       if (hasNames)
         names.assign(cells.begin(), cells.end());
       if (!hasNames && !columns.empty())
-        throw Error(ErrorCode::UnknownName,
-                    fmt::format("`{}` has no column `{}`: its first line has no names", path,
-                                columns.front()));
+        throw Error(message::noColumnNames(path, columns.front()));
       places = placesOf(fmt::format("`{}`", path), columns, names);
       for (std::size_t i = 0; columns.empty() && i < width; ++i)
         places.push_back(i);
@@ -226,10 +220,10 @@ NumberArray readCsv(const std::string &path, const std::vector<std::string> &col
         continue;
     }
     if (cells.size() != width)
-      fail(path, fmt::format("line {} has {} columns, not {}", line, cells.size(), width));
+      throw Error(message::csvColumnCount(path, line, cells.size(), width));
     for (const std::size_t place : places) {
       if (!isNumber(cells[place], number))
-        fail(path, fmt::format("`{}` in line {} is no number", cells[place], line));
+        throw Error(message::csvNotNumber(path, cells[place], line));
       array.numbers.push_back(number);
     }
     ++rows;

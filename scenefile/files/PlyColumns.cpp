@@ -4,6 +4,7 @@
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,17 +19,13 @@ namespace ply = runtime::ply;
 
 namespace {
 
-[[noreturn]] void fail(const std::string &path, const std::string &why) {
-  throw Error(ErrorCode::BadBuffer, fmt::format("cannot read `{}`: {}", path, why));
-}
-
 ply::Header headerOf(const std::string &path, std::string_view bytes) {
   if (!ply::isPly(bytes))
-    fail(path, "it is no .ply file");
+    throw Error(message::notPly(path));
   std::size_t lines = 0;
   const std::optional<ply::Header> header = ply::readHeader(bytes, &lines);
   if (!header)
-    fail(path, fmt::format("its header is damaged or cut short in line {}", lines));
+    throw Error(message::plyBadHeader(path, lines));
   return *header;
 }
 
@@ -42,10 +39,9 @@ const ply::Element &find(const ply::Header &header, const std::string &name,
     names.push_back(element.name);
   }
   const std::string near = closestName(name, names);
-  throw Error(ErrorCode::UnknownName,
-              fmt::format("`{}` has no element `{}`; it has {}{}", path, name,
-                          names.empty() ? "none" : fmt::format("`{}`", fmt::join(names, "`, `")),
-                          near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+  throw Error(message::noSuchElement(
+      path, name, names.empty() ? "none" : fmt::format("`{}`", fmt::join(names, "`, `")),
+      near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
 /// The places of the chosen columns among the properties.
@@ -60,13 +56,11 @@ std::vector<std::size_t> choose(const ply::Element &element,
       names.push_back(property.name);
       places.push_back(static_cast<std::size_t>(&property - element.properties.data()));
     } else if (std::any_of(columns.begin(), columns.end(), isThis)) {
-      throw Error(ErrorCode::NotSupported,
-                  fmt::format("column `{}` of {} is a list; only numbers can be read",
-                              property.name, where));
+      throw Error(message::columnIsList(property.name, where));
     }
   }
   if (places.empty())
-    fail(path, fmt::format("its element `{}` has no numbers that are not in lists", element.name));
+    throw Error(message::plyOnlyLists(path, element.name));
   if (columns.empty())
     return places;
   std::vector<std::size_t> chosen;
@@ -108,7 +102,7 @@ public:
   /// Only white space may follow.
   void finish() const {
     if (bytes.substr(bytes.size() - body.bytesLeft()).find_first_not_of(" \t\r\n") != bytes.npos)
-      fail(path, "it is longer than its header says");
+      throw Error(message::numbersTooLong(path));
   }
 
 private:
@@ -116,11 +110,9 @@ private:
                            const ply::Property &property) const {
     const std::string_view word = body.lastWord();
     if (word.empty())
-      fail(path, fmt::format("it is cut short or damaged in element {} of {} of `{}`", index + 1,
-                             element.count, element.name));
+      throw Error(message::plyTruncated(path, index + 1, element.count, element.name));
     const auto line = 1 + std::count(bytes.data(), word.data(), '\n');
-    fail(path, fmt::format("`{}` in line {} is nothing that `{}` of `{}` can be", word, line,
-                           property.name, element.name));
+    throw Error(message::plyBadValue(path, word, line, property.name, element.name));
   }
 
   const std::string &path;

@@ -1,6 +1,7 @@
 #include "scenefile/gltf/Accessor.h"
 
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -102,10 +103,7 @@ std::uint32_t readComponentType(const JsonValue &object, const std::string &what
   const JsonValue &type = require(object, "componentType", what);
   const std::uint32_t number = readInteger(type, 0, mostWhole, "`componentType` of " + what);
   if (sizeOf(number) == 0)
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("`componentType` of {} is {}, which is no type of numbers", what, number),
-        type.place());
+    throw Error(message::badComponentType(what, number), type.place());
   return number;
 }
 
@@ -129,28 +127,25 @@ Accessor::Accessor(const File &file, const JsonValue &number, std::string user)
       expect(scene::require(*value, "type", what), Kind::String, "`type` of " + what);
   components = componentsOf(type.string);
   if (components == 0)
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("`type` of {} is `{}`, which is no type of elements", what, type.string),
-        type.place());
+    throw Error(message::badElementType(what, type.string), type.place());
   if (const JsonValue *flag = value->find("normalized"))
     isNormalized = expect(*flag, Kind::Boolean, "`normalized` of " + what).boolean;
   if (value->find("bufferView"))
     span = spanOf(*value, elementCount, componentType, components);
   else if (elementCount > mostZeros)
-    fail(fmt::format("has {} elements and no `bufferView`", elementCount));
+    fail(message::accessorWithoutView(what, elementCount));
   if (const JsonValue *found = value->find("sparse"))
     readSparse(*found);
 }
 
-void Accessor::fail(const std::string &message) const {
-  throw Error(ErrorCode::BadBuffer, fmt::format("{} {}", what, message), value->place());
+void Accessor::fail(const Message &why) const {
+  throw Error(why, value->place());
 }
 
 void Accessor::require(const char *type) const {
   const std::string &own = value->find("type")->string;
   if (own != type)
-    fail(fmt::format("has elements of type {}, where {} is needed", own, type));
+    fail(message::accessorType(what, own, type));
 }
 
 Accessor::Span Accessor::spanOf(const JsonValue &object, std::uint64_t count,
@@ -174,21 +169,18 @@ Accessor::Span Accessor::spanOf(const JsonValue &object, std::uint64_t count,
                                                mostWhole, "`byteLength` of " + viewName);
   const std::uint64_t viewOffset = readOffset(view, "byteOffset", viewName);
   if (viewOffset + viewLength > bufferLength)
-    throw Error(ErrorCode::BadBuffer,
-                fmt::format("{} ends at byte {} of {}, which has {}", viewName,
-                            viewOffset + viewLength, bufferName, bufferLength),
+    throw Error(message::viewTooLong(viewName, viewOffset + viewLength, bufferName, bufferLength),
                 view.place());
   const std::uint64_t elementSize = std::uint64_t(sizeOf(componentType)) * components;
   const std::uint64_t offset = readOffset(object, "byteOffset", what);
   const std::uint32_t stride = readOffset(view, "byteStride", viewName);
   if (stride != 0 && stride < elementSize)
-    fail(fmt::format("has elements of {} bytes, which lie {} bytes apart in {}", elementSize,
-                     stride, viewName));
+    fail(message::elementsOverlap(what, elementSize, stride, viewName));
   span.offset = viewOffset + offset;
   span.stride = stride ? stride : elementSize;
   if (offset + span.stride * (count - 1) + elementSize > viewLength)
-    fail(fmt::format("needs {} bytes of {}, which has {}",
-                     offset + span.stride * (count - 1) + elementSize, viewName, viewLength));
+    fail(message::viewTooShort(what, offset + span.stride * (count - 1) + elementSize, viewName,
+                               viewLength));
   return span;
 }
 
@@ -204,7 +196,7 @@ void Accessor::readSparse(const JsonValue &json) {
       expect(scene::require(json, "values", own), Kind::Object, "`values` of " + own);
   const std::uint32_t type = readComponentType(indices, "`indices` of " + own);
   if (!isUnsigned(type))
-    fail("has `sparse` indices that are no unsigned integers");
+    fail(message::sparseNotUnsigned(what));
   sparse =
       Sparse{spanOf(indices, number, type, 1), spanOf(values, number, componentType, components)};
 }
@@ -215,9 +207,7 @@ std::string_view Accessor::bytesOf(const Span &span) const {
   const std::uint64_t end = span.offset + span.stride * (span.count - 1) +
                             std::uint64_t(sizeOf(span.componentType)) * span.components;
   if (end > bytes.size())
-    throw Error(ErrorCode::BadBuffer,
-                fmt::format("`buffers.{}` is cut short: it has {} bytes, and {} needs {}",
-                            span.buffer, bytes.size(), what, end),
+    throw Error(message::bufferCutShort(span.buffer, bytes.size(), what, end),
                 file.list("buffers")[span.buffer].place());
   return bytes.substr(span.offset);
 }
@@ -243,8 +233,7 @@ std::vector<Number> Accessor::numbers(Read read) const {
       const std::uint32_t target =
           integerAt(indices + i * sparse->indices.stride, sparse->indices.componentType);
       if (target >= elementCount)
-        fail(fmt::format("has {} elements, and its `sparse` index {} is {}", elementCount, i,
-                         target));
+        fail(message::sparseOutOfRange(what, elementCount, i, target));
       copy(values, sparse->values, i, target);
     }
   }
@@ -258,7 +247,7 @@ std::vector<float> Accessor::floats() const {
 
 std::vector<std::uint32_t> Accessor::integers() const {
   if (!isUnsigned(componentType))
-    fail("has no unsigned integers");
+    fail(message::accessorNotUnsigned(what));
   return numbers<std::uint32_t>([&](const char *bytes) { return integerAt(bytes, componentType); });
 }
 

@@ -48,7 +48,7 @@ private:
   std::string_view bytesOf(const Span &span) const;
   template <typename Number, typename Read>
   std::vector<Number> numbers(Read read) const;
-  [[noreturn]] void fail(const std::string &message) const;
+  [[noreturn]] void fail(const Message &why) const;
 
   const File &file;
   std::string what;

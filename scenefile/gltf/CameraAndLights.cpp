@@ -1,6 +1,7 @@
 //===- CameraAndLights.cpp - cameras and punctual lights ------------------===//
 #include "scenefile/gltf/Nodes.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,9 +53,7 @@ double above0(const JsonValue &object, const char *key, const std::string &what)
   const JsonValue &found = require(object, key, what);
   const double value = readNumber(found, fmt::format("`{}` of {}", key, what));
   if (value <= 0)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("`{}` of {} must be above 0, not {:g}", key, what, value),
-                found.place());
+    throw Error(message::notAboveZero(key, what, value), found.place());
   return value;
 }
 
@@ -68,9 +67,7 @@ JsonValue cameraAt(const JsonValue &camera, std::size_t index, const Transform &
     JsonValue made = placedCamera(source, "cameras.PerspectiveCamera", place, modules);
     const double field = above0(lens, "yfov", what);
     if (field >= pi)
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("`yfov` of {} must be below pi, not {:g}", what, field),
-                  lens.find("yfov")->place());
+      throw Error(message::fieldOfViewTooWide(what, field), lens.find("yfov")->place());
     set(made, "fieldOfView", number(lens, field * degrees));
     return made;
   }
@@ -81,20 +78,14 @@ JsonValue cameraAt(const JsonValue &camera, std::size_t index, const Transform &
     set(made, "height", number(lens, 2 * above0(lens, "ymag", what)));
     return made;
   }
-  throw Error(
-      ErrorCode::OutOfRange,
-      fmt::format("`type` of {} is `perspective` or `orthographic`, not `{}`", what, type.string),
-      type.place());
+  throw Error(message::badModelCameraType(what, type.string), type.place());
 }
 
 JsonValue framing(const File &file, const Transform &transform, const JsonValue &source,
                   Modules &modules) {
   const std::optional<Box> box = boxOf(file);
   if (!box)
-    throw Error(
-        ErrorCode::IncompleteScene,
-        fmt::format("`{}` has no camera, and shows nothing that one could look at", file.path()),
-        source.place());
+    throw Error(message::modelWithoutCamera(file.path()), source.place());
   std::array<double, 3> center{};
   double radius = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -132,9 +123,7 @@ JsonValue cameraOf(const File &file, const std::string &name, const Transform &t
   }
   if (name.empty())
     return framing(file, transform, source, modules);
-  Error error(ErrorCode::UnknownName,
-              fmt::format("the scene of `{}` has no camera `{}`", file.path(), name),
-              source.place());
+  Error error(message::noSuchModelCamera(file.path(), name), source.place());
   names.erase(std::remove(names.begin(), names.end(), std::string()), names.end());
   if (!names.empty())
     error.note(fmt::format("it has `{}`", fmt::join(names, "`, `")));
@@ -154,10 +143,7 @@ JsonValue lightOf(const File &file, const JsonValue &lightNumber, const std::str
       return otherwise;
     const double value = readNumber(*found, fmt::format("`{}` of {}", key, what));
     if (value < 0 || value > most)
-      throw Error(
-          ErrorCode::OutOfRange,
-          fmt::format("`{}` of {} must be between 0 and {:g}, not {:g}", key, what, most, value),
-          found->place());
+      throw Error(message::keyNotBetweenZeroAnd(key, what, most, value), found->place());
     return value;
   };
   std::vector<double> color(3, 1.0);
@@ -167,8 +153,7 @@ JsonValue lightOf(const File &file, const JsonValue &lightNumber, const std::str
   for (double &one : color)
     one *= intensity / pi;
   if (const JsonValue *range = json.find("range"))
-    warnings.push_back(
-        {fmt::format("`range` of {} is left out: light goes on", what), range->place()});
+    warnings.push_back({message::lightRangeIgnored(what), range->place()});
   const JsonValue &type = expect(require(json, "type", what), Kind::String, "`type` of " + what);
   if (type.string == "point") {
     JsonValue light = libraryObject(json, "lights.PointLight", modules);
@@ -182,10 +167,7 @@ JsonValue lightOf(const File &file, const JsonValue &lightNumber, const std::str
     return light;
   }
   if (type.string != "spot")
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("`type` of {} is `point`, `spot` or `directional`, not `{}`", what,
-                            type.string),
-                type.place());
+    throw Error(message::badModelLightType(what, type.string), type.place());
   const JsonValue &cone = expect(require(json, "spot", what), Kind::Object, "`spot` of " + what);
   const double outer = read(cone, "outerConeAngle", pi / 4, pi / 2);
   const double inner = read(cone, "innerConeAngle", 0, outer);

@@ -3,6 +3,7 @@
 #include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -103,8 +104,7 @@ std::string bytesOfDataUri(const JsonValue &uri, const std::string &what) {
   const std::string marker = ";base64,";
   const std::size_t comma = text.find(marker);
   if (comma == std::string::npos)
-    throw Error(ErrorCode::BadBuffer,
-                fmt::format("{} has a `data:` URI that is not in base64", what), uri.place());
+    throw Error(message::uriNotBase64(what), uri.place());
   std::size_t end = text.size();
   while (end > comma + marker.size() && text[end - 1] == '=')
     --end;
@@ -115,10 +115,7 @@ std::string bytesOfDataUri(const JsonValue &uri, const std::string &what) {
   for (std::size_t i = comma + marker.size(); i < end; ++i) {
     const int value = valueOfBase64(text[i]);
     if (value < 0)
-      throw Error(
-          ErrorCode::BadBuffer,
-          fmt::format("{} has a `data:` URI with a byte that is not base64, at {}", what, i),
-          uri.place());
+      throw Error(message::uriByteNotBase64(what, i), uri.place());
     bits = bits << 6 | std::uint32_t(value);
     count += 6;
     if (count >= 8) {
@@ -144,7 +141,7 @@ Error named(const Error &error, const std::string &path) {
   const bool isKnown = (error.place && (error.place->line != 0 || error.place->file != path)) ||
                        std::string_view(error.what()).find(path) != std::string_view::npos;
   Error result = isKnown ? error
-                         : Error(error.code, fmt::format("`{}`: {}", path, error.what()),
+                         : Error({error.code, fmt::format("`{}`: {}", path, error.what())},
                                  error.place ? error.place : Place{path});
   if (!isKnown)
     result.notes = error.notes;
@@ -172,34 +169,28 @@ File::File(const std::string &bytes, std::string path) : name(std::move(path)) {
 /// A header of 12 bytes, then chunks: a length, a type, and so many bytes.
 void File::readContainer(const std::string &bytes) {
   constexpr std::uint32_t jsonChunk = 0x4e4f534a, binaryChunk = 0x004e4942;
-  const auto fail = [&](const std::string &message) {
-    throw Error(ErrorCode::BadMesh, message, Place{name});
-  };
+  const auto fail = [&](const Message &why) { throw Error(why, Place{name}); };
   if (bytes.size() < 20)
-    fail(fmt::format("the file is cut short: it has {} bytes", bytes.size()));
+    fail(message::containerTruncated(bytes.size()));
   if (const std::uint32_t version = wordAt(bytes, 4); version != 2)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("version {} of glTF's container is not supported, only 2 is", version),
-                Place{name});
+    throw Error(message::containerVersion(version), Place{name});
   const std::uint64_t length = wordAt(bytes, 8);
   if (length > bytes.size())
-    fail(fmt::format("the file is cut short: its header gives {} bytes, and it has {}", length,
-                     bytes.size()));
+    fail(message::containerShorter(length, bytes.size()));
   bool hasJson = false;
   for (std::uint64_t at = 12; at + 8 <= length;) {
     const std::uint64_t size = wordAt(bytes, at);
     const std::uint32_t type = wordAt(bytes, at + 4);
     at += 8;
     if (size > length - at)
-      fail(fmt::format("a chunk of {} bytes begins at byte {}, and the file has {}", size, at,
-                       length));
+      fail(message::containerChunk(size, at, length));
     if (!hasJson && type != jsonChunk)
-      fail("the first chunk is not JSON");
+      fail(message::firstChunkNotJson());
     if (type == jsonChunk && !hasJson) {
       try {
         json = parseJson(bytes.substr(at, size), name);
       } catch (const Error &error) { // whose line is not one of the file
-        throw Error(error.code, error.what(), Place{name});
+        throw Error({error.code, error.what()}, Place{name});
       }
       hasJson = true;
     } else if (type == binaryChunk && !hasBinary) {
@@ -209,7 +200,7 @@ void File::readContainer(const std::string &bytes) {
     at += size;
   }
   if (!hasJson)
-    fail("the file has no JSON");
+    fail(message::containerWithoutJson());
   forgetPositions(json);
 }
 
@@ -219,9 +210,7 @@ void File::checkRoot() {
   const JsonValue &version =
       expect(require(asset, "version", "`asset`"), Kind::String, "`version` of `asset`");
   if (version.string.compare(0, 2, "2.") != 0)
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("glTF {} is not supported, only 2.0 is", version.string),
-                version.place());
+    throw Error(message::modelVersion(version.string), version.place());
   ErrorCollector errors;
   for (const char *key : lists)
     if (const JsonValue *found = json.find(key))
@@ -255,17 +244,11 @@ void File::checkExtensions() {
   std::vector<std::string> missing;
   forEach("extensionsRequired", [&](const JsonValue &extension) {
     missing.push_back(extension.string);
-    errors.add(Error(ErrorCode::NotSupported,
-                     fmt::format("the file requires the extension `{}`, which is not supported",
-                                 extension.string),
-                     extension.place()));
+    errors.add(Error(message::requiredExtension(extension.string), extension.place()));
   });
   forEach("extensionsUsed", [&](const JsonValue &extension) {
     if (std::find(missing.begin(), missing.end(), extension.string) == missing.end())
-      allWarnings.push_back({fmt::format("the extension `{}` of `{}` is not supported; what it "
-                                         "adds is left out",
-                                         extension.string, name),
-                             extension.place()});
+      allWarnings.push_back({message::extensionIgnored(extension.string, name), extension.place()});
   });
   errors.throwIfAny();
 }
@@ -286,19 +269,14 @@ std::size_t File::index(const char *key, const JsonValue &number, const std::str
   const std::uint32_t index = readInteger(number, 0, 0xffffffff, what);
   const std::size_t count = std::string_view(key) == "lights" ? lights().size() : list(key).size();
   if (index >= count)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("{} is {}, and `{}` has {} element{}", what, index, key, count,
-                            count == 1 ? "" : "s"),
+    throw Error(message::indexTooLarge(what, index, key, count, count == 1 ? "" : "s"),
                 number.place());
   return index;
 }
 
 std::string File::pathOf(const JsonValue &uri) {
   if (const std::size_t colon = uri.string.find("://"); colon != std::string::npos)
-    throw Error(
-        ErrorCode::NotSupported,
-        fmt::format("files are read from the disk, not by `{}`", uri.string.substr(0, colon)),
-        uri.place());
+    throw Error(message::uriScheme(uri.string.substr(0, colon)), uri.place());
   return decodePercent(uri.string);
 }
 
@@ -322,9 +300,7 @@ std::string File::load(const JsonValue &buffer, std::size_t number) const {
   const std::string what = fmt::format("`buffers.{}`", number);
   const JsonValue *uri = buffer.find("uri");
   if (!uri)
-    throw Error(ErrorCode::BadBuffer,
-                fmt::format("{} has no `uri`, and the file has no bytes for it", what),
-                buffer.place());
+    throw Error(message::uriMissing(what), buffer.place());
   expect(*uri, Kind::String, fmt::format("`uri` of {}", what));
   if (isDataUri(uri->string))
     return bytesOfDataUri(*uri, what);

@@ -1,6 +1,7 @@
 #include "scenefile/gltf/Material.h"
 
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -53,9 +54,7 @@ private:
       return number(object, otherwise);
     const double value = readNumber(*found, of(key));
     if (value < 0 || value > most)
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("{} must be between 0 and {:g}, not {:g}", of(key), most, value),
-                  found->place());
+      throw Error(message::notBetweenZeroAnd(of(key), most, value), found->place());
     return number(*found, value);
   }
 
@@ -72,8 +71,7 @@ private:
   void refuseOutside(const std::vector<double> &values, const char *key,
                      const JsonValue &place) const {
     if (std::any_of(values.begin(), values.end(), [](double x) { return x < 0 || x > 1; }))
-      throw Error(ErrorCode::OutOfRange, fmt::format("the numbers of {} are from 0 to 1", of(key)),
-                  place.place());
+      throw Error(message::numbersNotUpToOne(of(key)), place.place());
   }
 
   void setMap(JsonValue &object, const char *member, const JsonValue *info, Use use) {
@@ -138,7 +136,7 @@ private:
     const double index = std::clamp(wanted, lowestIndex, highestIndex);
     if (index != wanted)
       warnings.push_back(
-          {fmt::format("{} is {:g}; {:g} is used", of("ior"), wanted, index), found->place()});
+          {message::refractiveIndexClamped(of("ior"), wanted, index), found->place()});
     set(material, "index", number(ior, index));
   }
 
@@ -148,9 +146,7 @@ private:
       if (const JsonValue *found = bright->find("emissiveStrength")) {
         const double strength = readNumber(*found, of("emissiveStrength"));
         if (strength < 0)
-          throw Error(ErrorCode::OutOfRange,
-                      fmt::format("{} is {:g}, below 0", of("emissiveStrength"), strength),
-                      found->place());
+          throw Error(message::belowZero(of("emissiveStrength"), strength), found->place());
         for (double &one : emissive)
           one *= strength;
       }
@@ -184,10 +180,7 @@ private:
     if (mode->string == "OPAQUE")
       return material;
     if (mode->string != "BLEND" && mode->string != "MASK")
-      throw Error(
-          ErrorCode::OutOfRange,
-          fmt::format("{} is `OPAQUE`, `MASK` or `BLEND`, not `{}`", of("alphaMode"), mode->string),
-          mode->place());
+      throw Error(message::badAlphaMode(of("alphaMode"), mode->string), mode->place());
     JsonValue wrapper = made(*mode, "materials.Cutout");
     if (mode->string == "BLEND") {
       set(wrapper, "opacity", number(baseColor, alpha));
@@ -210,8 +203,7 @@ private:
 
   void warnOfMap(const JsonValue &object, const char *key) {
     if (const JsonValue *map = object.find(key))
-      warnings.push_back(
-          {fmt::format("{} is not supported, and is left out", of(key)), map->place()});
+      warnings.push_back({message::modelFeatureIgnored(of(key)), map->place()});
   }
 
   const JsonValue &json;

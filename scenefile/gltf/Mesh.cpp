@@ -2,6 +2,7 @@
 
 #include "scenefile/gltf/Accessor.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -61,9 +62,7 @@ struct Vertices {
     if (type)
       accessor->require(type);
     if (accessor->count() != positions.count())
-      throw Error(ErrorCode::BadMesh,
-                  fmt::format("`{}` has {} elements of `{}`, and {} of `POSITION`", part,
-                              accessor->count(), name, positions.count()),
+      throw Error(message::attributeCountsDiffer(part, accessor->count(), name, positions.count()),
                   number->place());
     return accessor;
   }
@@ -113,10 +112,7 @@ const JsonValue &primitiveOf(const File &file, const std::string &part, const Pl
     if (primitives && primitive && *primitive < primitives->elements.size())
       return expect(primitives->elements[*primitive], Kind::Object, fmt::format("`{}`", part));
   }
-  throw Error(ErrorCode::UnknownName,
-              fmt::format("`{}` has no `{}`: a mesh of it is `meshes.0.primitives.0`, for example",
-                          file.path(), part),
-              place);
+  throw Error(message::noSuchModelMesh(file.path(), part), place);
 }
 
 bool hasTriangles(const JsonValue &primitive, const std::string &part) {
@@ -131,15 +127,11 @@ void checkPrimitive(const File &file, const JsonValue &primitive, const std::str
 std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part) {
   std::vector<Warning> warnings;
   if (!hasTriangles(primitive, part))
-    warnings.push_back(
-        {fmt::format("`{}` has points or lines, which are left out", part), primitive.place()});
+    warnings.push_back({message::pointsAndLinesIgnored(part), primitive.place()});
   if (const JsonValue *targets = primitive.find("targets"))
-    warnings.push_back(
-        {fmt::format("the morph targets of `{}` are left out", part), targets->place()});
+    warnings.push_back({message::morphTargetsIgnored(part), targets->place()});
   if (const JsonValue *colors = Vertices::attributes(primitive, part).find("COLOR_0"))
-    warnings.push_back(
-        {fmt::format("the colors of vertices, `COLOR_0` of `{}`, are left out", part),
-         colors->place()});
+    warnings.push_back({message::vertexColorsIgnored(part), colors->place()});
   return warnings;
 }
 

@@ -5,6 +5,7 @@
 #include "scenefile/gltf/Nodes.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -33,9 +34,7 @@ public:
       errors.attempt([&] { addNode(nodes[i], children[i + 1], children[nodes[i].parent]); });
     errors.throwIfAny();
     if (children[0].empty())
-      throw Error(ErrorCode::IncompleteScene,
-                  fmt::format("the scene of `{}` has no triangles and no lights", file.path()),
-                  source.place());
+      throw Error(message::emptyModel(file.path()), source.place());
     addChildren(name, source, std::move(children[0]), nullptr);
     model.warnings.insert(model.warnings.end(), file.warnings().begin(), file.warnings().end());
     return std::move(model);
@@ -69,9 +68,9 @@ private:
                std::vector<JsonValue> &siblings) {
     const JsonValue &json = *node.json;
     if (node.transform.determinant() == 0)
-      return warn(json, fmt::format("{} is flattened by its transform, and left out", node.what));
+      return warn(json, message::flatNodeIgnored(node.what));
     if (const JsonValue *skin = json.find("skin"))
-      warn(*skin, fmt::format("the skin of {} is left out: it keeps its shape", node.what));
+      warn(*skin, message::skinIgnored(node.what));
     if (const JsonValue *punctual = extension(json, "KHR_lights_punctual")) {
       JsonValue light = lightOf(file, require(*punctual, "light", node.what), node.what,
                                 model.modules, model.warnings);

@@ -4,6 +4,7 @@
 #include "scenefile/gltf/Mesh.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,7 @@ namespace {
 Transform matrixOf(const JsonValue &matrix, const std::string &what) {
   const std::vector<double> m = readNumbers(matrix, 16, "`matrix` of " + what);
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("the last row of `matrix` of {} is not 0 0 0 1", what), matrix.place());
+    throw Error(message::modelMatrixNotAffine(what), matrix.place());
   Transform transform;
   for (std::size_t column = 0; column < 4; ++column)
     for (std::size_t row = 0; row < 3; ++row)
@@ -85,11 +85,8 @@ private:
       return append(index, parent);
     for (std::size_t above = parent; above != 0; above = nodes[above - 1].parent)
       if (nodes[above - 1].index == index)
-        throw Error(ErrorCode::ReferenceCycle, fmt::format("`nodes.{}` is below itself", index),
-                    number.place());
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("`nodes.{}` is in the scene twice; a node has one parent", index),
-                number.place());
+        throw Error(message::modelNodeCycle(index), number.place());
+    throw Error(message::modelNodeTwice(index), number.place());
   }
 
   void append(std::size_t index, std::size_t parent) {
@@ -150,8 +147,7 @@ Motion motionOf(const JsonValue &node, const std::string &what) {
     motion.rotation = readNumbers(*found, 4, "`rotation` of " + what);
     if (std::all_of(motion.rotation.begin(), motion.rotation.end(),
                     [](double x) { return std::fabs(x) < 1e-100; }))
-      throw Error(ErrorCode::OutOfRange, fmt::format("`rotation` of {} is 0", what),
-                  found->place());
+      throw Error(message::zeroModelRotation(what), found->place());
   }
   if (const JsonValue *found = node.find("scale"))
     motion.scale = readNumbers(*found, 3, "`scale` of " + what);

@@ -1,6 +1,7 @@
 #include "scenefile/gltf/Textures.h"
 
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -29,9 +30,7 @@ const char *wrapOf(const JsonValue &sampler, const char *key, const std::string 
   case repeats:
     return "repeat";
   default:
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("`{}` of {} is {:g}, which is no way to wrap", key, what, wrap->number),
-                wrap->place());
+    throw Error(message::badWrapMode(key, what, wrap->number), wrap->place());
   }
 }
 
@@ -49,10 +48,7 @@ JsonValue Textures::texture(const JsonValue &info, const std::string &what, Use 
   expect(info, Kind::Object, what);
   if (const JsonValue *set = info.find("texCoord");
       set && readInteger(*set, 0, mostWhole, "`texCoord` of " + what) != 0)
-    warnings.push_back({fmt::format("{} uses the texture coordinates `TEXCOORD_{:g}`; all textures "
-                                    "are placed by `TEXCOORD_0`",
-                                    what, set->number),
-                        set->place()});
+    warnings.push_back({message::texcoordIgnored(what, set->number), set->place()});
   const bool isColor = use == Use::Color || use == Use::Alpha;
   JsonValue pattern = valueAt(info, Kind::Object);
   switch (use) {
@@ -158,9 +154,7 @@ runtime::Pixels readImage(const File &file, const std::string &part, runtime::Co
                                             part.data() + part.size(), index);
   if (part.compare(0, start.size(), start) != 0 || error != std::errc() ||
       end != part.data() + part.size() || index >= file.list("images").size())
-    throw Error(ErrorCode::UnknownName,
-                fmt::format("`{}` has no `{}`: an image of it is `images.0`, for example",
-                            file.path(), part));
+    throw Error(message::noSuchModelImage(file.path(), part));
   try {
     const JsonValue &image = file.list("images")[index];
     const std::string name = file.path() + "/" + part, what = fmt::format("`{}`", part);
@@ -183,9 +177,7 @@ runtime::Pixels readImage(const File &file, const std::string &part, runtime::Co
         readInteger(require(view, "byteLength", ofView), 1, mostWhole, "`byteLength` of " + ofView);
     const std::string_view bytes = file.buffer(number);
     if (begin + length > bytes.size())
-      throw Error(ErrorCode::BadBuffer,
-                  fmt::format("{} ends at byte {} of `buffers.{}`, which has {}", ofView,
-                              begin + length, number, bytes.size()),
+      throw Error(message::imageBytesTooLong(ofView, begin + length, number, bytes.size()),
                   view.place());
     return runtime::decodePixels(std::string(bytes.substr(begin, length)), name, space);
   } catch (const Error &error) {

@@ -6,6 +6,7 @@
 #include "scenefile/graph/TransformReader.h"
 #include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -74,9 +75,7 @@ public:
       errors.attempt([&] { readNodes(*named); });
     errors.attempt([&] { readRoots(); });
     if (named && roots.empty() && !root.find("root") && !root.find("roots"))
-      errors.add(Error(ErrorCode::MissingKey,
-                       "a scene with `nodes` needs a `root`, the node that rays enter",
-                       named->place()));
+      errors.add(Error(message::rootMissing(), named->place()));
     if (hasMistakes || !findOrder())
       return;
     errors.attempt([&] { countInstances(); });
@@ -135,11 +134,7 @@ private:
     if (int(isGeometry) + int(light != nullptr) + int(children != nullptr) +
             int(child != nullptr) !=
         1)
-      throw Error(ErrorCode::MissingKey,
-                  fmt::format("{} has one of `mesh`, `primitive`, `light`, `model`, `child` and "
-                              "`children`",
-                              what),
-                  value.place());
+      throw Error(message::nodeWithoutContent(what), value.place());
     if (isGeometry) {
       GeometryDescription geometry = readers.geometry(value);
       if (geometry.name.text.empty())
@@ -155,8 +150,7 @@ private:
       nodes[number].light = readLight(*light);
     if (const JsonValue *selector = value.find("selector")) {
       if (!children)
-        throw Error(ErrorCode::UnknownKey, "a `selector` chooses among `children`: it needs a list",
-                    selector->place());
+        throw Error(message::selectorWithoutChildren(), selector->place());
       nodes[number].selector = readers.reference(*selector, "`selector`");
     }
     if (const JsonValue *variables = value.find("variables"))
@@ -171,7 +165,7 @@ private:
     if (children) {
       expect(*children, Kind::Array, "`children`");
       if (children->elements.empty())
-        throw Error(ErrorCode::OutOfRange, "a node needs at least one child", children->place());
+        throw Error(message::noChildren(), children->place());
       edges.reserve(children->elements.size());
       for (const JsonValue &element : children->elements)
         attempt([&] { edges.push_back(readEdge(element)); });
@@ -195,14 +189,10 @@ private:
       return {number, value.place()};
     }
     if (value.kind != Kind::String)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("a child is the name of a node or a node in its place, not {}",
-                              describe(value.kind)),
-                  value.place());
+      throw Error(message::notChild(describe(value.kind)), value.place());
     const auto found = numbers.find(value.string);
     if (found == numbers.end()) {
-      Error error(ErrorCode::UnknownName, fmt::format("no node is named `{}`", value.string),
-                  value.place());
+      Error error(message::noSuchNode(value.string), value.place());
       std::vector<std::string> names;
       for (const auto &known : numbers)
         names.push_back(known.first);
@@ -217,8 +207,7 @@ private:
   void readRoots() {
     const JsonValue *one = root.find("root"), *several = root.find("roots");
     if (one && several)
-      throw Error(ErrorCode::UnknownKey, "a scene has one `root` or several `roots`, not both",
-                  one->place());
+      throw Error(message::rootAndRoots(), one->place());
     if (one)
       attempt([&] { addRoot("root", *one); });
     if (!several)
@@ -227,8 +216,7 @@ private:
     for (const auto &[key, member] : several->members)
       attempt([&, &key = key, &member = member] {
         if (roots.size() == mostRoots)
-          throw Error(ErrorCode::OutOfRange, fmt::format("a scene has at most {} roots", mostRoots),
-                      several->place(key));
+          throw Error(message::tooManyRoots(mostRoots), several->place(key));
         addRoot(key.text, member);
       });
   }
@@ -286,8 +274,7 @@ private:
       way += path[i] + " > ";
     if (path.size() > shown)
       way += "... > ";
-    errors.add(Error(ErrorCode::ReferenceCycle,
-                     fmt::format("the node `{}` is below itself: {}{}", name, way, name), place));
+    errors.add(Error(message::nodeCycle(name, way, name), place));
   }
 
   void countInstances() {
@@ -302,8 +289,7 @@ private:
       total += nodes[edge.node].instances;
       if (total > mostInstances) {
         hasMistakes = true;
-        throw Error(ErrorCode::OutOfRange,
-                    fmt::format("the graph has more than {} instances", mostInstances), edge.place);
+        throw Error(message::tooManyInstances(mostInstances), edge.place);
       }
     }
   }
@@ -382,13 +368,10 @@ private:
   void reportFlat(const Node &geometry, Node &worst) {
     if (std::exchange(worst.isReported, true))
       return;
-    errors.add(
-        Error(ErrorCode::DegenerateGeometry,
-              fmt::format("this transform flattens {}, or nearly so: the condition number of the "
-                          "way from the root would be more than {:g}",
-                          geometry.name.empty() ? "its geometry" : "`" + geometry.name + "`",
-                          runtime::largestCondition),
-              worst.transformPlace));
+    errors.add(Error(message::transformPathFlattens(
+                         geometry.name.empty() ? "its geometry" : "`" + geometry.name + "`",
+                         runtime::largestCondition),
+                     worst.transformPlace));
   }
 
   /// What two roots lead to in the same place is one instance, unless it differs in something else.
@@ -440,10 +423,7 @@ private:
   void warnOfUnused(const JsonValue &named, const std::vector<bool> &isUsed) {
     for (std::size_t i = 0; i < named.members.size(); ++i)
       if (!isUsed[i] && !gltf::isModel(nodes[i].place.file))
-        scene.warnings.push_back(
-            {fmt::format("the node `{}` is not part of the scene: no root leads to it",
-                         nodes[i].name),
-             nodes[i].place});
+        scene.warnings.push_back({message::nodeUnreachable(nodes[i].name), nodes[i].place});
   }
 
   const JsonValue &root;

@@ -1,6 +1,7 @@
 #include "scenefile/graph/KeyTimes.h"
 
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,7 @@ std::vector<float> readKeyTimes(const JsonValue &value, const std::string &what)
   expect(keys, JsonValue::Kind::Array, "`keys`");
   const std::size_t count = keys.elements.size();
   if (count < 2)
-    throw Error(ErrorCode::OutOfRange, fmt::format("{} that moves needs at least two keys", what),
-                keys.place());
+    throw Error(message::tooFewKeys(what), keys.place());
   std::vector<float> times;
   const JsonValue *given = value.find("times");
   if (!given) {
@@ -22,22 +22,13 @@ std::vector<float> readKeyTimes(const JsonValue &value, const std::string &what)
   }
   expect(*given, JsonValue::Kind::Array, "`times`");
   if (given->elements.size() != count)
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("there are {} times for {} keys", given->elements.size(), count),
-                given->place());
+    throw Error(message::timeCount(given->elements.size(), count), given->place());
   for (const JsonValue &element : given->elements) {
     const double time = readNumber(element, "a time");
     if (!(time >= 0 && time <= 1))
-      throw Error(ErrorCode::OutOfRange,
-                  fmt::format("the time of a key is from 0 to 1, while the shutter is open; not "
-                              "{:g}",
-                              time),
-                  element.place());
+      throw Error(message::keyTimeOutsideShutter(time), element.place());
     if (!times.empty() && !(float(time) > times.back()))
-      throw Error(
-          ErrorCode::OutOfRange,
-          fmt::format("the times of keys ascend: {:g} is not after {:g}", time, times.back()),
-          element.place());
+      throw Error(message::timesNotAscending(time, times.back()), element.place());
     times.push_back(float(time));
   }
   return times;

@@ -1,6 +1,7 @@
 #include "scenefile/graph/NodeLights.h"
 
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,19 +67,14 @@ void requirePlaceable(const LocatedName &className) {
       return;
     names.emplace_back(light.className);
   }
-  throw Error(ErrorCode::NotSupported,
-              fmt::format("a `{}` cannot be in a node, only in `lights`; a node may have a `{}`",
-                          className.text, fmt::join(names, "`, `")),
+  throw Error(message::lightClassNotInNode(className.text, fmt::join(names, "`, `")),
               className.place);
 }
 
 ObjectDescription placedLight(const ObjectDescription &light, const runtime::MovingTransform &way,
                               SceneDescription &scene) {
   if (way.moves())
-    throw Error(ErrorCode::NotSupported,
-                "a light in a node does not move, but the transform of its node, or of one above "
-                "it, has keys",
-                light.place);
+    throw Error(message::movingLight(), light.place);
   const Transform &toWorld = way.still();
   const auto &known = placeableLights();
   const auto &kind = *std::find_if(known.begin(), known.end(), [&](const PlaceableLight &one) {

@@ -2,6 +2,7 @@
 
 #include "scenefile/graph/KeyTimes.h"
 #include "scenefile/json/Reader.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -67,7 +68,7 @@ Rotation readQuaternion(const JsonValue &value) {
   const std::vector<double> q = readNumbers(value, 4, "`quaternion`");
   const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (length == 0)
-    throw Error(ErrorCode::OutOfRange, "a quaternion of length 0 is no rotation", value.place());
+    throw Error(message::zeroQuaternion(), value.place());
   Rotation result;
   result.orientation = {q[3] / length, q[0] / length, q[1] / length, q[2] / length};
   result.map = runtime::rotationOf(result.orientation);
@@ -87,8 +88,7 @@ Rotation readRotation(const JsonValue &value) {
   const JsonValue &axisValue = require(value, "axis", "`rotate`");
   const Vector axis = readVector(axisValue, "`axis`");
   if (axis == Vector{0, 0, 0})
-    throw Error(ErrorCode::OutOfRange, "the axis of a rotation has no direction",
-                axisValue.place());
+    throw Error(message::axisZero(), axisValue.place());
   return aboutAxis(axis, readNumber(require(value, "angle", "`rotate`"), "`angle`"));
 }
 
@@ -104,7 +104,7 @@ Transform readScale(const JsonValue &value) {
 Transform readMatrix(const JsonValue &value) {
   std::vector<double> m = readNumbers(value, 16, "`matrix`");
   if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
-    throw Error(ErrorCode::OutOfRange, "the last row of `matrix` is not 0 0 0 1", value.place())
+    throw Error(message::matrixNotAffine(), value.place())
         .note("a matrix is given by its columns: the translation is in the numbers 13 to 15");
   Transform transform;
   for (int column = 0; column < 4; ++column)
@@ -129,9 +129,7 @@ Parts readParts(const JsonValue &value) {
   Parts parts;
   if (const JsonValue *matrix = value.find("matrix")) {
     if (value.members.size() > 1)
-      throw Error(ErrorCode::WrongType,
-                  "`matrix` cannot be combined with other keys; use a list of transforms",
-                  value.place());
+      throw Error(message::matrixWithOtherKeys(), value.place());
     parts.matrix = readMatrix(*matrix);
   }
   if (const JsonValue *scale = value.find("scale"))
@@ -143,8 +141,7 @@ Parts readParts(const JsonValue &value) {
     parts.translation = Transform::translate(t[0], t[1], t[2]);
   }
   if (parts.product().determinant() == 0)
-    throw Error(ErrorCode::OutOfRange, "this transform flattens what it is applied to",
-                value.place());
+    throw Error(message::transformFlattens(), value.place());
   return parts;
 }
 
@@ -201,18 +198,13 @@ MovingTransform readKeys(const JsonValue &value) {
   std::vector<Parts> keys;
   for (const JsonValue &element : value.find("keys")->elements) {
     if (element.kind == JsonValue::Kind::Array || element.find("keys"))
-      throw Error(ErrorCode::WrongType,
-                  "a key is one transform, not a list or one with keys of its own", element.place())
+      throw Error(message::keyIsList(), element.place())
           .note("a list of transforms may have one with keys among others");
     expect(element, JsonValue::Kind::Object, "a key");
     checkKeys(element, {"translate", "rotate", "scale", "matrix"}, "a key");
     keys.push_back(readParts(element));
     if (keys.back().matrix.has_value() != keys.front().matrix.has_value())
-      throw Error(
-          ErrorCode::WrongType,
-          "either all keys of a transform are matrices or none is: between matrices numbers "
-          "are interpolated, and rotations turn",
-          element.place());
+      throw Error(message::mixedKeys(), element.place());
   }
   if (keys.front().matrix)
     return interpolated(keys, times, [](const Parts &key) { return *key.matrix; });

@@ -1,6 +1,7 @@
 #include "scenefile/graph/Variables.h"
 
 #include "scenefile/References.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -60,10 +61,7 @@ std::vector<Warning> Variables::warnings() const {
   for (const auto &one : description.scopes)
     for (const auto &[name, definition] : one->variables)
       if (!everTaken.count(definition.second) && seen.insert(definition.second).second)
-        warnings.push_back({fmt::format("no object takes the variable `{}`: each sets the member "
-                                        "itself, or no class has a public member of this name",
-                                        name),
-                            definition.first});
+        warnings.push_back({message::variableUnused(name), definition.first});
   return warnings;
 }
 

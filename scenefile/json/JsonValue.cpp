@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "scenefile/json/JsonValue.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -121,8 +122,7 @@ public:
     auto same = std::find_if(object.members.begin(), object.members.end(),
                              [&](const auto &member) { return member.first.text == key.text; });
     if (same != object.members.end()) {
-      error = Error(ErrorCode::DuplicateKey, fmt::format("key `{}` is given twice", key.text),
-                    object.place(key))
+      error = Error(message::keyTwice(key.text), object.place(key))
                   .related(object.place(same->first), "it is given here first");
       return false;
     }
@@ -136,9 +136,7 @@ public:
     if (message.find("number overflow") != std::string::npos) {
       const std::size_t length = token.size();
       const std::size_t start = position > length ? position - length : 0;
-      error = Error(ErrorCode::OutOfRange,
-                    fmt::format("`{}` is too large: numbers reach to {:.1e}", token,
-                                std::numeric_limits<double>::max()),
+      error = Error(message::numberTooLarge(token, std::numeric_limits<double>::max()),
                     placeOfOffset(text, *file, start, length));
       return false;
     }
@@ -169,7 +167,7 @@ public:
     }
     std::size_t length = end - start;
     Place place = placeOfOffset(text, *file, start, length);
-    error = Error(ErrorCode::JsonSyntax, fmt::format("this is not JSON: {}", message), place);
+    error = Error(message::notJson(message), place);
     char wrong = start < text.size() ? text[start] : '\0';
     std::size_t before =
         start == 0 ? std::string::npos : text.find_last_not_of(" \t\r\n", start - 1);
@@ -217,8 +215,7 @@ private:
     stack.push_back(added);
     if (stack.size() <= deepestNesting)
       return true;
-    error = Error(ErrorCode::JsonSyntax,
-                  fmt::format("nested deeper than {} levels", deepestNesting), added->place());
+    error = Error(message::nestedTooDeep(deepestNesting), added->place());
     return false;
   }
 
@@ -272,7 +269,7 @@ JsonValue parseJson(const std::string &text, const std::string &file) {
   if (builder.error)
     throw *builder.error;
   if (!good)
-    throw Error(ErrorCode::JsonSyntax, "this is not JSON", Place{file});
+    throw Error(message::notJsonAtAll(), Place{file});
   return std::move(builder.root);
 }
 

@@ -2,6 +2,7 @@
 
 #include "scenefile/json/Reader.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -51,14 +52,10 @@ std::vector<Key> keysOf(const JsonValue &frames) {
     const std::optional<double> frame = numberOf(name.text);
     const Key key{frame.value_or(0), &name, &value};
     if (!frame)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("a key of `frames` is the number of a frame, not `{}`", name.text),
-                  placeOf(frames, key));
+      throw Error(message::keyNotFrame(name.text), placeOf(frames, key));
     for (const Key &other : keys)
       if (other.frame == key.frame)
-        throw Error(ErrorCode::DuplicateKey,
-                    fmt::format("`{}` and `{}` are the same frame", other.name->text, name.text),
-                    placeOf(frames, key));
+        throw Error(message::frameTwice(other.name->text, name.text), placeOf(frames, key));
     keys.push_back(key);
   }
   std::sort(keys.begin(), keys.end(), [](const Key &a, const Key &b) { return a.frame < b.frame; });
@@ -70,16 +67,11 @@ void interpolate(JsonValue &value, const JsonValue &next, double share);
 
 void interpolateMembers(JsonValue &value, const JsonValue &next, double share) {
   if (value.members.size() != next.members.size())
-    throw Error(ErrorCode::WrongType, "objects are interpolated only if they have the same keys",
-                next.place());
+    throw Error(message::frameObjectsDiffer(), next.place());
   for (auto &[key, member] : value.members) {
     const JsonValue *other = next.find(key.text);
     if (!other)
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("this has no `{}`, which the key frame before it has: objects are "
-                              "interpolated only if they have the same keys",
-                              key.text),
-                  next.place());
+      throw Error(message::frameKeyMissing(key.text), next.place());
     interpolate(member, *other, share);
   }
 }
@@ -94,20 +86,16 @@ void interpolate(JsonValue &value, const JsonValue &next, double share) {
     value.isInteger = value.isInteger && next.isInteger && value.number == std::floor(value.number);
   } else if (value.kind == Kind::Array && next.kind == Kind::Array) {
     if (value.elements.size() != next.elements.size())
-      throw Error(ErrorCode::WrongType,
-                  fmt::format("a list of {} cannot be interpolated with one of {}",
-                              value.elements.size(), next.elements.size()),
+      throw Error(message::frameListsDiffer(value.elements.size(), next.elements.size()),
                   next.place());
     for (std::size_t i = 0; i < value.elements.size(); ++i)
       interpolate(value.elements[i], next.elements[i], share);
   } else if (value.kind == Kind::Object && next.kind == Kind::Object) {
     interpolateMembers(value, next, share);
   } else if (!isSame(value, next)) {
-    throw Error(ErrorCode::WrongType,
-                value.kind == next.kind
-                    ? fmt::format("{} cannot be interpolated", describe(value.kind))
-                    : fmt::format("{} cannot be interpolated with {}", describe(value.kind),
-                                  describe(next.kind)),
+    throw Error(value.kind == next.kind
+                    ? message::notInterpolated(describe(value.kind))
+                    : message::notInterpolatedWith(describe(value.kind), describe(next.kind)),
                 next.place())
         .note("`\"interpolate\": \"step\"` beside `frames` makes values change at once");
   }
@@ -119,9 +107,7 @@ bool isStep(const JsonValue &value) {
     return false;
   expect(*how, Kind::String, "`interpolate`");
   if (how->string != "linear" && how->string != "step")
-    throw Error(ErrorCode::OutOfRange,
-                fmt::format("`interpolate` is `linear` or `step`, not `{}`", how->string),
-                how->place());
+    throw Error(message::badInterpolation(how->string), how->place());
   return how->string == "step";
 }
 

@@ -2,6 +2,7 @@
 #include "runtime/scene/Scene.h"
 #include "scenefile/json/JsonValue.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -46,7 +47,7 @@ JsonValue parseValue(const std::string &text, const std::string &origin, std::si
       Place place = error.place.value_or(Place{origin});
       if (place.line == 1)
         place.column += columnOf(offset) - 1;
-      throw Error(ErrorCode::BadOverride, error.what(), place);
+      throw Error({ErrorCode::BadOverride, error.what()}, place);
     }
   }
   JsonValue value;
@@ -89,8 +90,7 @@ public:
   void apply(const std::string &text) {
     std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw Error(ErrorCode::BadOverride, "an override is written `path.to.key=value`",
-                  placeOf({text, 0}));
+      throw Error(message::overrideWithoutValue(), placeOf({text, 0}));
     const std::vector<PathPart> path = splitPath(text.substr(0, equals));
     JsonValue value = parseValue(text.substr(equals + 1), *origin, equals + 1);
     mark(value, origin, equals + 1);
@@ -110,20 +110,16 @@ private:
   JsonValue &step(JsonValue &from, const PathPart &part, bool last, bool first) {
     const Place place = placeOf(part);
     if (part.text.empty())
-      throw Error(ErrorCode::BadOverride, "the path of an override has an empty part", place);
+      throw Error(message::overridePathEmpty(), place);
     if (from.kind == JsonValue::Kind::Array)
       return element(from, part, last);
     if (from.kind != JsonValue::Kind::Object)
-      throw Error(
-          ErrorCode::BadOverride,
-          fmt::format("`{}` is {}: it has no `{}` in it", walked, describe(from.kind), part.text),
-          place);
+      throw Error(message::overridePathEnds(walked, describe(from.kind), part.text), place);
     if (JsonValue *found = from.find(part.text))
       return *found;
     // A section of the file may be missing; deeper down a missing name is more likely a mistake.
     if (!last && !first) {
-      Error error(ErrorCode::BadOverride, fmt::format("`{}` has no `{}`", walked, part.text),
-                  place);
+      Error error(message::overrideKeyUnknown(walked, part.text), place);
       if (const std::string near = closestName(part.text, keysOf(from)); !near.empty())
         error.fix(near);
       throw error;
@@ -145,15 +141,12 @@ private:
     std::size_t index = 0;
     auto [end, error] = std::from_chars(begin, textEnd, index);
     if (error != std::errc() || end != textEnd)
-      throw Error(ErrorCode::BadOverride,
-                  fmt::format("`{}` is a list: `{}` is not an index", walked, part.text),
-                  placeOf(part));
+      throw Error(message::overrideIndexNotNumber(walked, part.text), placeOf(part));
     if (last && index == list.elements.size())
       list.elements.emplace_back();
     if (index >= list.elements.size())
-      throw Error(ErrorCode::BadOverride,
-                  fmt::format("`{}` has {} element{}: index {} is out of range", walked,
-                              list.elements.size(), list.elements.size() == 1 ? "" : "s", index),
+      throw Error(message::overrideIndexTooLarge(walked, list.elements.size(),
+                                                 list.elements.size() == 1 ? "" : "s", index),
                   placeOf(part));
     return list.elements[index];
   }

@@ -3,6 +3,7 @@
 #include "runtime/scene/Scene.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -14,9 +15,7 @@ namespace rtsl::scene {
 
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what) {
   if (value.kind != kind)
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} is {}, not {}", what, describe(kind), describe(value.kind)),
-                value.place());
+    throw Error(message::wrongKind(what, describe(kind), describe(value.kind)), value.place());
   return value;
 }
 
@@ -28,8 +27,7 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
     const std::string &key = member.first.text;
     if (std::find(names.begin(), names.end(), key) != names.end())
       continue;
-    Error error(ErrorCode::UnknownKey, fmt::format("{} has no key `{}`", what, key),
-                object.place(member.first));
+    Error error(message::unknownKey(what, key), object.place(member.first));
     if (const std::string near = closestName(key, names); !near.empty())
       error.fix(near);
     errors.add(std::move(error));
@@ -40,13 +38,13 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
 const JsonValue &require(const JsonValue &object, const char *key, const std::string &what) {
   if (const JsonValue *found = object.find(key))
     return *found;
-  throw Error(ErrorCode::MissingKey, fmt::format("{} needs a `{}`", what, key), object.place());
+  throw Error(message::missingKey(what, key), object.place());
 }
 
 double readNumber(const JsonValue &value, const std::string &what) {
   expect(value, JsonValue::Kind::Number, what);
   if (!std::isfinite(value.number))
-    throw Error(ErrorCode::OutOfRange, fmt::format("{} is not finite", what), value.place());
+    throw Error(message::notFinite(what), value.place());
   return value.number;
 }
 
@@ -54,23 +52,16 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
                           const std::string &what) {
   double number = readNumber(value, what);
   if (number != std::floor(number))
-    throw Error(ErrorCode::WrongType, fmt::format("{} must be an integer, not {:g}", what, number),
-                value.place());
+    throw Error(message::notInteger(what, number), value.place());
   if (number < lowest || number > highest)
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("{} must be between {} and {}, not {:.0f}", what, lowest, highest, number),
-        value.place());
+    throw Error(message::notBetween(what, lowest, highest, number), value.place());
   return std::uint32_t(number);
 }
 
 std::int32_t readId(const JsonValue &value) {
   const double number = readNumber(value, "`id`");
   if (number != std::floor(number) || number < -2147483648.0 || number > 2147483647.0)
-    throw Error(
-        ErrorCode::OutOfRange,
-        fmt::format("`id` is a whole number from -2147483648 to 2147483647, not {}", number),
-        value.place());
+    throw Error(message::badId(number), value.place());
   return std::int32_t(number);
 }
 
@@ -86,9 +77,7 @@ std::vector<double> readNumbers(const JsonValue &value, std::size_t count,
                                 const std::string &what) {
   expect(value, JsonValue::Kind::Array, what);
   if (value.elements.size() != count)
-    throw Error(ErrorCode::WrongType,
-                fmt::format("{} takes {} numbers, not {}", what, count, value.elements.size()),
-                value.place());
+    throw Error(message::numberCount(what, count, value.elements.size()), value.place());
   std::vector<double> numbers;
   for (const JsonValue &element : value.elements)
     numbers.push_back(readNumber(element, fmt::format("each number of {}", what)));

@@ -2,20 +2,17 @@
 #include "Outcome.h"
 
 #include "Interruption.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
 namespace rtsl::tool {
 
 std::string notFiniteText(const runtime::RenderStatistics &statistics) {
-  std::string text =
-      fmt::format("{} of {} samples were infinite or not a number, and are left out of "
-                  "the means of their pixels",
-                  statistics.samplesNotFinite, statistics.samples);
-  if (statistics.pixelsWithoutSample)
-    text += fmt::format("; {} pixels have no other samples and are black",
-                        statistics.pixelsWithoutSample);
-  return text;
+  if (statistics.pixelsWithoutSample == 0)
+    return message::samplesNotFinite(statistics.samplesNotFinite, statistics.samples);
+  return message::samplesNotFinitePixelsBlack(statistics.samplesNotFinite, statistics.samples,
+                                              statistics.pixelsWithoutSample);
 }
 
 std::string sampleText(const runtime::SampleId &sample) {
@@ -26,9 +23,7 @@ std::string sampleText(const runtime::SampleId &sample) {
 
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
                         const runtime::RenderOptions &options) {
-  return fmt::format("{} rays in {} samples were deeper than {} and saw nothing: give a larger "
-                     "`--depth`, or end the recursion in the shader",
-                     statistics.raysTooDeep, statistics.samples, options.maxDepth);
+  return message::raysTooDeep(statistics.raysTooDeep, statistics.samples, options.maxDepth);
 }
 
 std::string badRaysText(const runtime::RenderStatistics &statistics) {
@@ -60,11 +55,10 @@ std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
   const double pixels = double(windowOf(options).pixels());
   const char *const signal = interruption();
-  return fmt::format("stopped by {} after {:.1f} % of the samples: {} of {:.0f} pixels are done, "
-                     "and pixels without samples are black",
-                     signal ? signal : "the caller",
-                     100 * double(statistics.samples) / (pixels * options.samplesPerPixel),
-                     statistics.pixels, pixels);
+  return message::pictureUnfinished(signal ? signal : "the caller",
+                                    100 * double(statistics.samples) /
+                                        (pixels * options.samplesPerPixel),
+                                    statistics.pixels, pixels);
 }
 
 const char *nameOf(runtime::TreeKind kind) {

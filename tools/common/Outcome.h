@@ -15,7 +15,7 @@ std::string notFiniteText(const runtime::RenderStatistics &statistics);
 /// "pixel 12,40 sample 3"
 std::string sampleText(const runtime::SampleId &sample);
 
-/// "25 rays in 1000 samples were deeper than 8 and saw nothing: give a larger `--depth` ..."
+/// "25 rays in 1000 samples exceeded the depth limit 8 and returned nothing: ..."
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
                         const runtime::RenderOptions &options);
 

@@ -11,6 +11,7 @@
 #include "runtime/package/Package.h"
 #include "runtime/render/HostMegakernel.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
@@ -147,10 +148,9 @@ std::optional<runtime::Image> readReference(const Options &options, const runtim
   const runtime::Window window = windowOf(render);
   if (reference.width != window.width() || reference.height != window.height() ||
       reference.channels != channels)
-    throw Error(ErrorCode::BadImage,
-                fmt::format("`{}` has {}x{} pixels of {} channels, not {}x{} of {}",
-                            options.reference, reference.width, reference.height,
-                            reference.channels, window.width(), window.height(), channels));
+    throw Error(message::referencePictureDiffers(options.reference, reference.width,
+                                                 reference.height, reference.channels,
+                                                 window.width(), window.height(), channels));
   return reference;
 }
 
@@ -193,7 +193,7 @@ int render(const Options &options) {
     image = runtime::HostMegakernel(code.entries(), package.scene, render).render(&statistics);
   }
   if (statistics.samples == 0)
-    throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+    throw Error(message::stoppedBeforeFirstSample());
   runtime::writeImage(options.output, image, options.format);
   report(options, package, render, statistics, gpu);
   return !reference || compare(image, *reference, options) ? Fine : Refused;

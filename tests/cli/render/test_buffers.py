@@ -227,14 +227,14 @@ class Buffers(Case):
             "points",
             {"buffer": "points.ply", "columns": ["x", "y", "z"]},
             "E0906",
-            "cut short or damaged in element 1 of 1 of `face`",
+            "truncated or damaged in element 1 of 1 of `face`",
         )
         self.write("points.ply", good.replace("255", "256"))
         self.wrong(
             "points",
             {"buffer": "points.ply", "columns": ["x", "y", "z"]},
             "E0906",
-            "`256` in line 16 is nothing that `shade`",
+            "`256` in line 16 is not a valid value of `shade`",
         )
         self.write("points.ply", b"solid")
         self.wrong("points", {"buffer": "points.ply"}, "E0906", "no .ply file")
@@ -333,10 +333,10 @@ class Buffers(Case):
             ("a.npy", b"", "E0906", "no .npy file"),
             ("a.npy", b"PK" + bytes(50), "E0906", "no .npy file"),
             ("a.npy", good[:9], "E0906", "no .npy file"),
-            ("a.npy", good[:30], "E0906", "cut short"),
-            ("a.npy", good[:-1], "E0906", "cut short"),
+            ("a.npy", good[:30], "E0906", "truncated"),
+            ("a.npy", good[:-1], "E0906", "truncated"),
             ("a.npy", good + b"x", "E0906", "longer than its header"),
-            ("a.npy", npy("f", (2**62, 8), []), "E0906", "cut short"),
+            ("a.npy", npy("f", (2**62, 8), []), "E0906", "truncated"),
             ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr=">f4"), "E0906", "no little-endian"),
             ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr="<c8"), "E0906", "no little-endian"),
             ("a.npy", good.replace(b"'shape': (4,)", b"'shape': [4 ]"), "E0906", "no shape"),
@@ -355,7 +355,7 @@ class Buffers(Case):
             ("a.npy", npy("d", (1,), [1e39]), "E0805", "the largest float"),
             ("a.csv", b"x,y\n1,2\n", "E0804", "has the shape (1, 2)"),
             ("a.csv", b"x\n1\n2,3\n", "E0906", "line 3 has 2 columns, not 1"),
-            ("a.csv", b"x\n1\nfish\n", "E0906", "`fish` in line 3 is no number"),
+            ("a.csv", b"x\n1\nfish\n", "E0906", "`fish` in line 3 is not a number"),
             ("a.raw", b"12345", "E0906", "5 bytes"),
         ):
             self.write(name, data)

@@ -248,13 +248,13 @@ class Refusing(Checkpoints):
         for size in (0, 5, 40, 1000, len(whole) - 1):
             with self.subTest(size=size):
                 self.write("a.ckpt", whole[:size])
-                self.refuse("it is cut short" if size > 8 else "it is no checkpoint of rtslc")
+                self.refuse("it is truncated" if size > 8 else "it is not a checkpoint of rtslc")
         for at in (20, 70, len(whole) // 2, len(whole) - 1):
             with self.subTest(at=at):
                 self.write("a.ckpt", whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
                 self.refuse("it is ")
         shutil.copy(self.folder / "a.exr", self.folder / "a.ckpt")
-        self.refuse("it is no checkpoint of rtslc")
+        self.refuse("it is not a checkpoint of rtslc")
 
     def test_another_version(self):
         whole = self.checkpoint()

@@ -137,7 +137,7 @@ class Crop(Parts):
                 )
         messages = self.diagnose("render", "scene.json", "-o", "a.png", *SMALL, "--crop=0,0,51,3")
         self.assert_message(
-            messages, "E0805", "the crop 0,0,51,3 is no part of a picture of 50x37 pixels"
+            messages, "E0805", "the crop 0,0,51,3 is outside of a picture of 50x37 pixels"
         )
 
 

@@ -119,12 +119,12 @@ class Gltf(Case):
     def test_damaged_files(self):
         self.glb("cut.glb", cut=1000)
         (message,) = self.diagnose("check", "cut.glb")
-        self.assertIn("cut short", message["message"])
+        self.assertIn("truncated", message["message"])
         (self.folder / "still-life.bin").write_bytes(b"abc")
         messages = " ".join(
             message["message"] for message in self.diagnose("check", "still-life.gltf")
         )
-        self.assertIn("`buffers.0` is cut short: it has 3 bytes", messages)
+        self.assertIn("`buffers.0` is truncated: it has 3 bytes", messages)
         self.assertIn("`bufferViews.0` ends at byte 513 of `buffers.0`, which has 3", messages)
         (self.folder / "tiles.png").write_bytes(b"abc")
         (self.folder / "still-life.bin").unlink()

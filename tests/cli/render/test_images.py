@@ -595,7 +595,7 @@ class Images(Case):
         self.write("image.png", png(2, 2, lambda x, y: (0, 0, 0)))
         self.write("image.raw", bytes(15))
         self.wrong({"file": "image.png", "filter": "trilinaer"}, "E0805", "`filter` is `nearest`")
-        self.wrong({"file": "image.png", "wrap": ["clamp"]}, "E0804", "`wrap` takes one name, or 2")
+        self.wrong({"file": "image.png", "wrap": ["clamp"]}, "E0804", "`wrap` takes 1 or 2 names")
         self.wrong({"file": "image.png", "colour": "srgb"}, "E0802", "has no key `colour`")
         self.wrong(
             {"file": "image.png", "anisotropy": 0},

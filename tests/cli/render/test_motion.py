@@ -370,7 +370,7 @@ class Mistakes(MotionCase):
             ({"keys": [a, b], "time": [0, 1]}, "has no key `time`"),
             ({"keys": [a, [b]]}, "a key is one transform"),
             ({"keys": [a, {"keys": [a, b]}]}, "a key is one transform"),
-            ({"keys": [a, matrix]}, "either all keys of a transform are matrices or none is"),
+            ({"keys": [a, matrix]}, "the keys of a transform must all be matrices or none"),
             ({"keys": [a, {"rotate": {"quaternion": [0, 0, 0, 0]}}]}, "a quaternion of length 0"),
             ({"keys": [a, {"scale": [1, 0, 1]}]}, "flattens"),
             ({"keys": [matrix, half_turn]}, "this transform flattens `one`"),

@@ -258,7 +258,8 @@ class TooDeep(ShaderCase):
                 figures, error = self.render(*way)
                 self.assertEqual(figures["raysTooDeep"], 8 * 4 * 2, "the last ray of each sample")
                 self.assertIn(
-                    "warning[W2866]: 64 rays in 64 samples were deeper than 3 and saw nothing: "
+                    "warning[W2866]: 64 rays in 64 samples exceeded the depth limit 3 and "
+                    "returned nothing: "
                     "give a larger `--depth`",
                     error,
                 )
@@ -272,7 +273,7 @@ class TooDeep(ShaderCase):
             timeout=SECONDS,
         )
         self.assertEqual(json.loads(done.stdout)["raysTooDeep"], 64)
-        self.assertIn("64 rays in 64 samples were deeper than 3", done.stderr)
+        self.assertIn("64 rays in 64 samples exceeded the depth limit 3", done.stderr)
 
     def test_glass_at_its_default_depth(self):
         self.glass_scene()

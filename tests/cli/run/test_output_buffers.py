@@ -390,7 +390,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.assert_message(
             self.diagnose("run", "scene.json", "--out=twice=t.npy"),
             "E0806",
-            "`size` is two numbers, one, or the name of a buffer",
+            "`size` is one or two numbers, or the name of a buffer",
         )
         self.scene(start={"class": "One", "a": {"size": [0]}}, **changes)
         self.assert_message(

@@ -69,7 +69,7 @@ CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std:
     }
   }
   if (!compiled.program || diagnostics.hasErrors())
-    throw Error(ErrorCode::Internal, renderText(diagnostics, false));
+    throw Error({ErrorCode::Internal, renderText(diagnostics, false)});
   return compiled;
 }
 
@@ -101,7 +101,7 @@ float *CompiledShaders::member(RtslRef object, const std::string &name) const {
   for (const runtime::MemberInfo &member : theScene.classOf(object).members)
     if (member.name == name)
       return reinterpret_cast<float *>(theScene.launch().records + object + member.offset);
-  throw Error(ErrorCode::UnknownMember, "there is no member `" + name + "`");
+  throw Error({ErrorCode::UnknownMember, "there is no member `" + name + "`"});
 }
 
 void CompiledShaders::set(RtslRef object, const std::string &name,

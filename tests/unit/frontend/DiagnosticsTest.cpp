@@ -363,11 +363,11 @@ TEST_F(Messages, AreNotLimitedByZero) {
 }
 
 TEST_F(Messages, TurnWarningsIntoErrors) {
-  diagnostics.report(Code::sceneWarning, at("b"), "odd");
+  diagnostics.reportText(Code::sceneWarning, at("b"), "odd");
   EXPECT_FALSE(diagnostics.hasErrors());
   EXPECT_EQ(shown().substr(0, shown().find('\n')), "a.rtsl:1:10: warning[W2800]: odd [-Wscene]");
   EXPECT_EQ(diagnostics.warnings.apply("error"), "");
-  diagnostics.report(Code::sceneWarning, at("c"), "odd");
+  diagnostics.reportText(Code::sceneWarning, at("c"), "odd");
   EXPECT_TRUE(diagnostics.hasErrors());
 }
 

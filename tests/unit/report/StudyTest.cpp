@@ -130,7 +130,7 @@ TEST_F(Studies, GoOnWhereTheyWereInterrupted) {
   Subject cutOff = subject;
   cutOff.render = [&](std::uint32_t samples, std::uint32_t seed) {
     if (calls == limit)
-      throw Error(ErrorCode::Cancelled, "interrupted");
+      throw Error({ErrorCode::Cancelled, "interrupted"});
     return subject.render(samples, seed);
   };
   EXPECT_THROW(runStudy({cutOff}, reference, options), Error);
@@ -166,7 +166,7 @@ TEST_F(Studies, GoOnAfterAnInterruptionInALaterRound) {
   Subject cutOff = subject;
   cutOff.render = [&](std::uint32_t samples, std::uint32_t seed) {
     if (calls == 1 + 4 * 3 + 2) // in the fourth round
-      throw Error(ErrorCode::Cancelled, "interrupted");
+      throw Error({ErrorCode::Cancelled, "interrupted"});
     return subject.render(samples, seed);
   };
   EXPECT_THROW(runStudy({cutOff}, reference, options), Error);

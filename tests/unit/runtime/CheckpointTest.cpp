@@ -130,7 +130,7 @@ TEST_F(Checkpoint, IsRefusedWhereverItEnds) {
   const std::string bytes = readFile(file);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::string said = refusal(bytes.substr(0, size));
-    EXPECT_NE(said.find(size < 8 ? "it is no checkpoint" : "it is cut short"), std::string::npos)
+    EXPECT_NE(said.find(size < 8 ? "it is not a checkpoint" : "it is truncated"), std::string::npos)
         << size << ": " << said;
   }
   EXPECT_NE(refusal(bytes + "x").find("1 bytes follow its end"), std::string::npos);
@@ -144,7 +144,7 @@ TEST_F(Checkpoint, IsRefusedIfItsNumbersMakeNoSense) {
     return signedAnew(changed);
   };
   EXPECT_EQ(refusal(signedAnew(bytes)), "");
-  const std::string damaged = "cannot go on from `a.ckpt`: it is damaged";
+  const std::string damaged = "cannot resume from `a.ckpt`: it is damaged";
   EXPECT_EQ(refusal(with(12, 0xffffffffu)), damaged); // bytes of facts
   EXPECT_EQ(refusal(with(12, 8)), damaged);
   EXPECT_EQ(refusal(with(68, 0xfffffff0u)), damaged);              // length of a text
@@ -156,20 +156,20 @@ TEST_F(Checkpoint, SaysHowTheRenderingsDiffer) {
   Identity other = identity();
   other.producer = "rtslc 1.2.4";
   EXPECT_EQ(refusal(bytes, other),
-            "cannot go on from `a.ckpt`: it was written by rtslc 1.2.3, and this is rtslc 1.2.4");
+            "cannot resume from `a.ckpt`: it was written by rtslc 1.2.3, and this is rtslc 1.2.4");
   other = identity();
   other.dependences[0].value = "8";
-  EXPECT_EQ(refusal(bytes, other), "cannot go on from `a.ckpt`: the seed is 7 there and 8 here");
+  EXPECT_EQ(refusal(bytes, other), "cannot resume from `a.ckpt`: the seed is 7 there and 8 here");
   other = identity();
   other.dependences[1].value = "00fe";
   EXPECT_EQ(refusal(bytes, other),
-            "cannot go on from `a.ckpt`: `Clay.rtsl` has changed since it was written");
+            "cannot resume from `a.ckpt`: `Clay.rtsl` has changed since it was written");
   other.dependences.pop_back();
-  EXPECT_EQ(refusal(bytes, other), "cannot go on from `a.ckpt`: its picture depends on "
+  EXPECT_EQ(refusal(bytes, other), "cannot resume from `a.ckpt`: its picture depends on "
                                    "`Clay.rtsl`, where this one depends on nothing");
   std::string version = bytes;
   version[8] = 9;
-  EXPECT_EQ(refusal(signedAnew(version)), "cannot go on from `a.ckpt`: it is a checkpoint of "
+  EXPECT_EQ(refusal(signedAnew(version)), "cannot resume from `a.ckpt`: it is a checkpoint of "
                                           "format 9, and this program has format 2");
 }
 

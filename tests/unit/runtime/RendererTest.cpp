@@ -283,13 +283,12 @@ TEST(Renderer, RefusesOptionsOutOfRange) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(
-      codeOf([](RenderOptions &o) { o.samplesPerPixel = 0; }),
-      "outOfRange: the number of samples per pixel must lie between 1 and 2147483647, not be 0");
+  EXPECT_EQ(codeOf([](RenderOptions &o) { o.samplesPerPixel = 0; }),
+            "outOfRange: the number of samples per pixel must be between 1 and 2147483647, not 0");
   EXPECT_EQ(codeOf([](RenderOptions &o) { o.width = 0; }),
-            "outOfRange: the width must lie between 1 and 65536, not be 0");
+            "outOfRange: the width must be between 1 and 65536, not 0");
   EXPECT_EQ(codeOf([](RenderOptions &o) { o.maxDepth = 1000; }),
-            "outOfRange: the depth must lie between 0 and 256, not be 1000");
+            "outOfRange: the depth must be between 0 and 256, not 1000");
 }
 
 TEST(Renderer, BadRaysAreCountedAndBlack) {

@@ -79,9 +79,9 @@ TEST_F(GltfError, DamagedContainers) {
   const std::string whole = container(squareFile(), "");
   EXPECT_EQ(sceneError(whole, "m.glb"), "no error");
   EXPECT_EQ(sceneError(whole.substr(0, 15), "m.glb"),
-            "s.json:2:24+5: badMesh: `m.glb`: the file is cut short: it has 15 bytes");
+            "s.json:2:24+5: badMesh: `m.glb`: the file is truncated: it has 15 bytes");
   EXPECT_EQ(sceneError(whole.substr(0, 200), "m.glb"),
-            "s.json:2:24+5: badMesh: `m.glb`: the file is cut short: its header gives 648 bytes, "
+            "s.json:2:24+5: badMesh: `m.glb`: the file is truncated: its header gives 648 bytes, "
             "and it has 200");
   std::string version = whole;
   version[4] = 1;
@@ -89,7 +89,7 @@ TEST_F(GltfError, DamagedContainers) {
                                           "glTF's container is not supported, only 2 is");
   std::string binary = whole;
   binary.replace(16, 4, "BIN");
-  EXPECT_EQ(sceneError(binary, "m.glb"), "s.json:2:24+5: badMesh: `m.glb`: the file is cut short: "
+  EXPECT_EQ(sceneError(binary, "m.glb"), "s.json:2:24+5: badMesh: `m.glb`: the file is truncated: "
                                          "its header gives 648 bytes, and it has 647");
   std::string chunk = whole;
   chunk[15] = 127;
@@ -128,7 +128,7 @@ TEST_F(GltfError, NodesThatAreNoTree) {
   EXPECT_EQ(sceneError(
                 squareFile(R"({"mesh": 0, "translation": [1e308, 0, 0], "scale": [1, 1, 1e-30]})")),
             "m.gltf:2:11+1: degenerateGeometry: this transform flattens its geometry, or nearly "
-            "so: the condition number of the way from the root would be more than 1e+08");
+            "so: the condition number of the path from the root would be more than 1e+08");
   // A very long chain does not exhaust the stack.
   std::string chain = R"({"mesh": 0})";
   for (int i = 1; i < 20000; ++i)
@@ -157,10 +157,10 @@ TEST_F(GltfError, Accessors) {
             "elements of type VEC2, where VEC3 is needed");
   EXPECT_EQ(changed("\"VEC3\"", "\"VEC5\""),
             "m.gltf:5:64+4: outOfRange: `type` of `POSITION` of `meshes.0.primitives.0` "
-            "(`accessors.1`) is `VEC5`, which is no type of elements");
+            "(`accessors.1`) is `VEC5`, which is not an element type");
   EXPECT_EQ(changed("5126", "5127"),
             "m.gltf:5:37+4: outOfRange: `componentType` of `POSITION` of `meshes.0.primitives.0` "
-            "(`accessors.1`) is 5127, which is no type of numbers");
+            "(`accessors.1`) is 5127, which is not a number type");
   EXPECT_EQ(changed("\"bufferView\": 1", "\"bufferView\": 2"),
             "m.gltf:5:17+1: outOfRange: `bufferView` of `POSITION` of `meshes.0.primitives.0` "
             "(`accessors.1`) is 2, and `bufferViews` has 2 elements");
@@ -199,7 +199,7 @@ TEST_F(GltfError, Accessors) {
 TEST_F(GltfError, Buffers) {
   EXPECT_EQ(meshError(squareFile()), "no error");
   EXPECT_EQ(meshError(squareFile("{}", "", square().substr(0, 50))),
-            "m.gltf:7:13+1: badBuffer: `buffers.0` is cut short: it has 50 bytes, and `POSITION` "
+            "m.gltf:7:13+1: badBuffer: `buffers.0` is truncated: it has 50 bytes, and `POSITION` "
             "of `meshes.0.primitives.0` (`accessors.1`) needs 60");
   std::string model = squareFile();
   const std::size_t at = model.find("data:"), end = model.find('"', at);
@@ -273,7 +273,7 @@ TEST_F(GltfError, Materials) {
       material(
           texture,
           R"(, "textures": [{"source": 0, "sampler": 0}], "images": [{"uri": "c.png"}], "samplers": [{"wrapS": 1}])"),
-      "m.gltf:8:173+1: outOfRange: `wrapS` of `samplers.0` is 1, which is no way to wrap");
+      "m.gltf:8:173+1: outOfRange: `wrapS` of `samplers.0` is 1, which is not a wrap mode");
 }
 
 TEST_F(GltfError, CamerasAndLights) {
@@ -319,8 +319,8 @@ TEST_F(GltfError, PartsOfASceneFile) {
   EXPECT_EQ(object(R"({"mesh": "m.gltf", "part": "meshes.0.primitives.0", "material": "m"})"),
             "no error");
   EXPECT_EQ(object(R"({"mesh": "m.gltf", "part": "meshes.1.primitives.0", "material": "m"})"),
-            "s.json:1:82+21: unknownName: `m.gltf` has no `meshes.1.primitives.0`: a mesh of it is "
-            "`meshes.0.primitives.0`, for example");
+            "s.json:1:82+21: unknownName: `m.gltf` has no `meshes.1.primitives.0`; its meshes are "
+            "named like `meshes.0.primitives.0`");
   EXPECT_EQ(object(R"({"mesh": "m.gltf", "part": 1, "material": "m"})"),
             "s.json:1:81+1: wrongType: `part` is a string, not a number");
   EXPECT_EQ(

@@ -240,7 +240,8 @@ TEST_F(Gltf, LightsAreInTheWorld) {
   EXPECT_NE(textOf(described.lights[2]).find("angle=45 softness=0.5"), std::string::npos);
   EXPECT_EQ(textOf(described.lights[3]), "PointLight intensity=[1 0.5 0] position=[5 2 103]");
   ASSERT_EQ(described.warnings.size(), 1u);
-  EXPECT_EQ(described.warnings[0].message, "`range` of `lights.2` is left out: light goes on");
+  EXPECT_EQ(described.warnings[0].message,
+            "`range` of `lights.2` is ignored: light has no limit of distance");
 }
 
 TEST_F(Gltf, SaysWhatIsLeftOut) {
@@ -255,13 +256,13 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
     found.push_back(folder.without(warning.message));
   EXPECT_EQ(found,
             (std::vector<std::string>{
-                "`nodes.1` is flattened by its transform, and left out",
-                "the skin of `nodes.0` is left out: it keeps its shape",
-                "`meshes.0.primitives.1` has points or lines, which are left out",
-                "the colors of vertices, `COLOR_0` of `meshes.0.primitives.1`, are left out",
-                "the morph targets of `meshes.0.primitives.0` are left out",
+                "`nodes.1` is flattened by its transform, and ignored",
+                "the skin of `nodes.0` is ignored: the mesh is not deformed",
+                "`meshes.0.primitives.1` has points or lines, which are ignored",
+                "the colors of vertices, `COLOR_0` of `meshes.0.primitives.1`, are ignored",
+                "the morph targets of `meshes.0.primitives.0` are ignored",
                 "the extension `KHR_materials_iridescence` of `m.gltf` is not supported; what it "
-                "adds is left out"}));
+                "adds is ignored"}));
 }
 
 TEST_F(Gltf, ReadsMeshes) {
@@ -289,8 +290,8 @@ TEST_F(Gltf, ReadsMeshes) {
   EXPECT_EQ(gltf::readMesh(file, "meshes.0.primitives.1").indices,
             (std::vector<std::uint32_t>{1, 2, 0, 2, 3, 0}));
   EXPECT_EQ(errorOf([&] { gltf::readMesh(file, "meshes.0.primitives.2"); }),
-            "m.glb: unknownName: `m.glb` has no `meshes.0.primitives.2`: a mesh of it is "
-            "`meshes.0.primitives.0`, for example");
+            "m.glb: unknownName: `m.glb` has no `meshes.0.primitives.2`; its meshes are "
+            "named like `meshes.0.primitives.0`");
 }
 
 TEST_F(Gltf, ReadsImagesFromBuffers) {
@@ -318,7 +319,7 @@ TEST_F(Gltf, ReadsImagesFromBuffers) {
   EXPECT_EQ(imageError(file, "images.2"),
             "m.glb: badBuffer: `m.glb`: `images.2` has a `data:` URI that is not in base64");
   EXPECT_EQ(imageError(file, "images.3"),
-            "unknownName: `m.glb` has no `images.3`: an image of it is `images.0`, for example");
+            "unknownName: `m.glb` has no `images.3`; its images are named like `images.0`");
   const gltf::File late(model(R"({"buffer": 0, "byteOffset": 30, "byteLength": 69})"), "m.glb");
   EXPECT_EQ(imageError(late, "images.0"), "m.glb: badBuffer: `m.glb`: `bufferViews.0` ends at byte "
                                           "99 of `buffers.0`, which has 70");

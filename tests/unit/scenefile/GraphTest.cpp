@@ -85,7 +85,7 @@ TEST(SceneGraph, TellsAllMistakes) {
             "s.json:2:16+1: missingKey: a node needs a `material`\n"
             "s.json:3:19+1: outOfRange: a node needs at least one child\n"
             "s.json:4:21+3: unknownName: no node is named `bee`\n"
-            "s.json:4:27+1: wrongType: a child is the name of a node or a node in its place, not a "
+            "s.json:4:27+1: wrongType: a child is a node or the name of one, not a "
             "number\n"
             "s.json:5:6+1: missingKey: a node has one of `mesh`, `primitive`, `light`, `model`, "
             "`child` and `children`\n"
@@ -126,7 +126,7 @@ TEST(SceneGraph, BlamesTheTransformThatFlattens) {
 "c": {"children": ["b", "b"], "transform":
   {"scale": [1e3, 1e3, 1]}}}, "root": "c")"),
             "s.json:3:34+1: degenerateGeometry: this transform flattens `a`, or nearly so: the "
-            "condition number of the way from the root would be more than 1e+08");
+            "condition number of the path from the root would be more than 1e+08");
 }
 
 TEST(SceneGraph, WarnsOfNodesOutsideOfTheScene) {

@@ -175,35 +175,35 @@ TEST_F(PlyColumns, FilesThatEndTooEarly) {
       const std::string message = error(file.substr(0, length), {"a"});
       ASSERT_EQ(message.substr(0, 32), "badBuffer: cannot read `p.ply`: ") << length;
       if (length >= start && !isText) {
-        EXPECT_NE(message.find("it is cut short or damaged in element"), std::string::npos);
+        EXPECT_NE(message.find("it is truncated or damaged in element"), std::string::npos);
       }
     }
   }
   EXPECT_EQ(error(Binary::file(true).substr(0, Binary::file(true).size() - 20)),
-            "badBuffer: cannot read `p.ply`: it is cut short or damaged in element 2 of 2 of "
+            "badBuffer: cannot read `p.ply`: it is truncated or damaged in element 2 of 2 of "
             "`vertex`");
   const std::string many = "element vertex 18446744073709551615\nproperty float x\nend_header\n";
   EXPECT_EQ(error(header("ascii", many) + "1 2"),
-            "badBuffer: cannot read `p.ply`: it is cut short or damaged in element 3 of "
+            "badBuffer: cannot read `p.ply`: it is truncated or damaged in element 3 of "
             "18446744073709551615 of `vertex`");
 }
 
 TEST_F(PlyColumns, DamagedFiles) {
-  EXPECT_EQ(error(""), "badBuffer: cannot read `p.ply`: it is no .ply file");
-  EXPECT_EQ(error("plywood\n"), "badBuffer: cannot read `p.ply`: it is no .ply file");
+  EXPECT_EQ(error(""), "badBuffer: cannot read `p.ply`: it is not a .ply file");
+  EXPECT_EQ(error("plywood\n"), "badBuffer: cannot read `p.ply`: it is not a .ply file");
   const auto inHeader = [&](const std::string &lines) {
     return error("ply\nformat ascii 1.0\n" + lines + "end_header\n1\n");
   };
-  const std::string third = "badBuffer: cannot read `p.ply`: its header is damaged or cut short in "
+  const std::string third = "badBuffer: cannot read `p.ply`: its header is damaged or truncated in "
                             "line 3";
   EXPECT_EQ(inHeader("property float x\n"), third); // of no element
   EXPECT_EQ(inHeader("element vertex many\n"), third);
   EXPECT_EQ(inHeader("format middle_endian 1.0\n"), third);
   EXPECT_EQ(inHeader("element vertex 1\nproperty quad x\n"),
-            "badBuffer: cannot read `p.ply`: its header is damaged or cut short in line 4");
+            "badBuffer: cannot read `p.ply`: its header is damaged or truncated in line 4");
   const std::string x = "element vertex 1\nproperty float x\n";
   EXPECT_EQ(inHeader(x), "no error");
-  EXPECT_EQ(inHeader(x + "property uchar y\n"), "badBuffer: cannot read `p.ply`: it is cut short "
+  EXPECT_EQ(inHeader(x + "property uchar y\n"), "badBuffer: cannot read `p.ply`: it is truncated "
                                                 "or damaged in element 1 of 1 of `vertex`");
   const auto inBody = [&](const std::string &body) {
     return error(header("ascii", "element vertex 2\nproperty float x\nproperty uchar y\n"
@@ -213,12 +213,12 @@ TEST_F(PlyColumns, DamagedFiles) {
   EXPECT_EQ(inBody("1 2\n3 4\n2 0 0\n"), "no error");
   const std::string cannot = "badBuffer: cannot read `p.ply`: ";
   EXPECT_EQ(inBody("1 2\nfish 4\n2 0 0\n"),
-            cannot + "`fish` in line 10 is nothing that `x` of `vertex` can be");
+            cannot + "`fish` in line 10 is not a valid value of `x` of `vertex`");
   for (const char *const value : {"256", "-1", "1.5", "nan", "4x"})
     EXPECT_EQ(inBody(std::string("1 2\n3 ") + value + "\n2 0 0\n"),
-              cannot + "`" + value + "` in line 10 is nothing that `y` of `vertex` can be");
+              cannot + "`" + value + "` in line 10 is not a valid value of `y` of `vertex`");
   EXPECT_EQ(inBody("1 2\n3 4\n-2 0 0\n"),
-            cannot + "`-2` in line 11 is nothing that `corners` of `face` can be");
+            cannot + "`-2` in line 11 is not a valid value of `corners` of `face`");
   EXPECT_EQ(inBody("1 2\n3 4\n2 0 0\n5\n"), cannot + "it is longer than its header says");
   EXPECT_EQ(error(Binary::file(false) + "\n"), "no error");
   EXPECT_EQ(error(Binary::file(false) + "x"), cannot + "it is longer than its header says");

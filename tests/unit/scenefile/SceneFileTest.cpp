@@ -153,9 +153,9 @@ TEST(SceneFile, TransformsComposeInOrder) {
         "}]"));
   };
   EXPECT_EQ(error("{\"scale\": [1, 0, 1]}"),
-            "dir/s.json:3:14+1: outOfRange: this transform flattens what it is applied to");
+            "dir/s.json:3:14+1: outOfRange: this transform flattens its objects");
   EXPECT_EQ(error("{\"rotate\": {\"axis\": [0, 0, 0], \"angle\": 3}}"),
-            "dir/s.json:3:34+1: outOfRange: the axis of a rotation has no direction");
+            "dir/s.json:3:34+1: outOfRange: the axis of a rotation has length 0");
   EXPECT_EQ(error("{\"move\": [0, 0, 0]}"),
             "dir/s.json:3:16+4: unknownKey: `transform` has no key `move`");
 }

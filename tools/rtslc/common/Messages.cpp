@@ -16,7 +16,8 @@ Code codeFor(ErrorCode code) {
   case ErrorCode::error:                                                                           \
     return Code::id;
 #include "frontend/diagnostics/DiagnosticCodes.def"
-  // rtslc reads no packages; rtsl-run has messages of its own.
+    // rtslc reads no packages.
+
   case ErrorCode::BadPackage:
   case ErrorCode::Internal:
     break; // Main.cpp ends the run with its own status
@@ -67,8 +68,7 @@ void Messages::report(const Error &error) {
   if (error.code == ErrorCode::Internal)
     throw error;
   const SourceRange range = error.place ? rangeOf(*error.place) : SourceRange{};
-  Diagnostic &diagnostic =
-      diagnostics.report(codeFor(error.code), range, std::string(error.what()));
+  Diagnostic &diagnostic = report({error.code, error.what()}, range);
   for (const RelatedPlace &related : error.relatedPlaces)
     diagnostic.label(rangeOf(related.place), related.text);
   for (const std::string &note : error.notes)
@@ -79,9 +79,13 @@ void Messages::report(const Error &error) {
     report(further);
 }
 
+Diagnostic &Messages::report(const Message &message, SourceRange range) {
+  return diagnostics.reportText(codeFor(message.code), range, message.text);
+}
+
 void Messages::report(const Warning &warning) {
   const SourceRange range = warning.place ? rangeOf(*warning.place) : SourceRange{};
-  diagnostics.report(Code::sceneWarning, range, warning.message);
+  diagnostics.reportText(Code::sceneWarning, range, warning.message);
 }
 
 void Messages::print() {

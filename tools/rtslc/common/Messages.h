@@ -21,6 +21,8 @@ public:
 
   /// Records what the runtime or a scene file threw, with its place, and what else it found wrong.
   void report(const Error &error);
+  Diagnostic &report(const Message &message, SourceRange range);
+
   void report(const Warning &warning);
 
   /// The range of a place in a file, which is read if no source has its name yet.

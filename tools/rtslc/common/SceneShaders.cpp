@@ -9,6 +9,7 @@
 #include "scenefile/gltf/File.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -26,10 +27,7 @@ bool hasEnding(const std::string &file, const std::string &ending) {
 }
 
 [[noreturn]] void refuseShaders(const std::string &file, const char *command) {
-  Error error(ErrorCode::NotAScene,
-              fmt::format("`{}` holds shaders, and `rtslc {}` takes a scene, which imports them",
-                          file, command),
-              Place{file});
+  Error error(message::shadersInsteadOfScene(file, command), Place{file});
   error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], "
                          "\"camera\": {{\"class\": ...}}, "
                          "\"objects\": [{{\"mesh\": ..., \"material\": {{\"class\": ...}}}}]}}",
@@ -48,11 +46,7 @@ bool isScene(const std::string &file) {
 static scene::SceneDescription requireOneLaunch(scene::SceneDescription description,
                                                 std::string_view command) {
   if (!description.passes.empty() && command != "run" && command != "check")
-    throw Error(ErrorCode::NotSupported,
-                fmt::format("`rtslc {}` takes a scene with one launch, and this one has passes: "
-                            "`rtslc run` runs them",
-                            command),
-                description.passes.front().place);
+    throw Error(message::passesNotSupported(command), description.passes.front().place);
   return description;
 }
 
@@ -110,8 +104,7 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
     if (module.findClass(mention.text))
       continue;
     const SourceRange range = messages.rangeOf(mention.place);
-    Diagnostic &diagnostic = messages.diagnostics.report(
-        Code::sceneUnknownClass, range, fmt::format("no class is named `{}`", mention.text));
+    Diagnostic &diagnostic = messages.report(message::noSuchClass(mention.text), range);
     if (const std::string module = library.moduleThatDefines(mention.text); !module.empty())
       diagnostic.note(fmt::format("it is in the standard library: add \"{}\" to `import`",
                                   module.substr(0, module.rfind('.'))));

@@ -9,6 +9,7 @@
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"
 #include "tools/rtslc/common/CommandLine.h"
@@ -156,9 +157,7 @@ std::string quoted(const std::string &word) {
 void writeNewFile(const fs::path &path, const std::string &text) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0) {
-    Error error(ErrorCode::FileUnwritable,
-                fmt::format("cannot write `{}`: {}", path.string(), std::strerror(errno)),
-                Place{path.string()});
+    Error error(message::cannotWrite(path.string(), std::strerror(errno)), Place{path.string()});
     const fs::path folder = path.parent_path();
     std::error_code unknown;
     if (errno == EEXIST)

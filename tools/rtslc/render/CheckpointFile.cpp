@@ -1,6 +1,7 @@
 #include "CheckpointFile.h"
 
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/OptionValues.h"
 
 #include <fmt/format.h>
@@ -44,10 +45,7 @@ void checkCheckpointFile(const CheckpointOptions &options, const std::string &ou
   std::error_code unknown;
   if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown) &&
       !std::filesystem::is_directory(file, unknown))
-    throw Error(
-        ErrorCode::FileUnwritable,
-        fmt::format("`{}` is no regular file, so a checkpoint could not be read again", file),
-        Place{file});
+    throw Error(message::checkpointNotRegular(file), Place{file});
   checkFileWritable(file);
   refuseToOverwrite(file, sources);
   refuseToOverwrite(file, filesRead);
@@ -56,10 +54,7 @@ void checkCheckpointFile(const CheckpointOptions &options, const std::string &ou
     outputs.push_back(dependencyFile(dependencies, output, sources));
   for (const std::string &other : outputs)
     if (placeOf(file) == placeOf(other))
-      throw Error(ErrorCode::OverwritesInput,
-                  fmt::format("`{}` cannot be the checkpoint and another output", file),
-                  Place{file})
-          .note("give different files");
+      throw Error(message::checkpointIsOutput(file), Place{file}).note("give different files");
 }
 
 CheckpointFile::CheckpointFile(CheckpointOptions options, runtime::Identity identity)

@@ -2,6 +2,7 @@
 #include "FileWatch.h"
 
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -29,8 +30,7 @@ constexpr Milliseconds pause(15);
 constexpr Milliseconds longestSave(150);
 
 [[noreturn]] void throwUnwatchable(const char *limit) {
-  Error error(ErrorCode::FileUnreadable,
-              fmt::format("cannot watch files: {}", std::strerror(errno)));
+  Error error(message::cannotWatch(std::strerror(errno)));
   if (errno == EMFILE || errno == ENOSPC)
     error.note(fmt::format("the limit is in /proc/sys/fs/inotify/{}", limit));
   throw error;

@@ -4,6 +4,7 @@
 #include "codegen/driver/StandardLibrary.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 #include "tools/rtslc/common/Shaders.h"
 
 #include <fmt/format.h>
@@ -265,9 +266,8 @@ private:
   }
 
   void warnOfZero(const typed::Class &one, const typed::Member &member) {
-    messages.diagnostics.report(
-        Code::sceneWarning, member.range,
-        fmt::format("member `{}` of `{}` has no default: here it is 0", member.name, one.name));
+    messages.diagnostics.reportText(Code::sceneWarning, member.range,
+                                    message::previewMemberIsZero(member.name, one.name));
   }
 
   /// Zeros, and objects for references. Nothing, and reported, if there is none of these.
@@ -328,10 +328,9 @@ private:
       values[parameter->name] = exampleOf(parameter->type, axis);
       parameters.push_back(fmt::format("{} {}", toString(parameter->type), parameter->name));
     }
-    messages.diagnostics
-        .report(Code::sceneBadArguments, constructor.range,
-                fmt::format("`{}` cannot be shown without arguments of its constructor: `{}`",
-                            one.name, fmt::join(parameters, ", ")))
+    messages
+        .report(message::previewNeedsArguments(one.name, fmt::join(parameters, ", ")),
+                constructor.range)
         .note(fmt::format("`--set {}.constructor='{}'` gives them, with other numbers", one.name,
                           values.dump()))
         .note(sceneHint());
@@ -345,10 +344,7 @@ private:
     if (scene::isImageClass(name)) {
       const char *files = name == "sampler3D" ? R"({"slices": ["front.png", "back.png"]})"
                                               : R"({"file": "picture.png"})";
-      messages.diagnostics
-          .report(Code::sceneMissingMember, member.range,
-                  fmt::format("`{}` cannot be shown without an image for its member `{}`",
-                              owner.name, member.name))
+      messages.report(message::previewNeedsImage(owner.name, member.name), member.range)
           .note(fmt::format("`--set {}.{}='{}'` gives one", owner.name, member.name, files));
       return std::nullopt;
     }
@@ -362,10 +358,7 @@ private:
           (!kindOf(*one) || whyNot(*one).empty()))
         found = one.get();
     if (!found) {
-      messages.diagnostics
-          .report(Code::sceneMissingMember, member.range,
-                  fmt::format("`{}` cannot be shown without an object for its member `{}`, a `{}`",
-                              owner.name, member.name, name))
+      messages.report(message::previewNeedsObject(owner.name, member.name, name), member.range)
           .note(sceneHint());
       return std::nullopt;
     }

@@ -6,6 +6,7 @@
 #include "runtime/image/Layers.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OutOfMemory.h"
 #include "tools/common/Outcome.h"
@@ -117,15 +118,11 @@ public:
       return false;
     }
     if (summary.statistics.samples == 0)
-      throw Error(ErrorCode::Cancelled, "stopped before the first sample: no picture is written");
+      throw Error(message::stoppedBeforeFirstSample());
     summary.printed = runtime::takePrintLog().texts(scene->program().prints);
     std::uint64_t stackBytes = 0;
     if (runtime::failedMachineStacks(&stackBytes) > failedBefore)
-      throw Error(
-          ErrorCode::OutOfMemory,
-          fmt::format(
-              "no memory for rays in flight: a thread needs {} bytes; give a smaller `--depth`",
-              stackBytes));
+      throw Error(message::noMemoryForRays(stackBytes));
     write(image, layers);
     describe();
     return true;
@@ -335,9 +332,8 @@ private:
         windowOf(summary.render).pixels(), scene->program().colorComponents, options.isAdaptive);
     const runtime::SampleCounts counts = countSamples(rendering.sums);
     if (counts.most > summary.render.samplesPerPixel)
-      throw Error(ErrorCode::BadCheckpoint,
-                  fmt::format("cannot go on from `{}`: it has {} samples per pixel, more than {}",
-                              options.checkpoint.file, counts.most, summary.render.samplesPerPixel),
+      throw Error(message::checkpointTooFar(options.checkpoint.file, counts.most,
+                                            summary.render.samplesPerPixel),
                   Place{options.checkpoint.file});
     summary.resumedAt = counts.least;
     return rendering;

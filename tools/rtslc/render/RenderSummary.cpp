@@ -122,14 +122,14 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
 void warn(const PictureSummary &summary, Messages &messages) {
   const runtime::RenderStatistics &statistics = summary.statistics;
   if (!summary.unfinished.empty())
-    messages.diagnostics.report(Code::unfinishedPicture, {}, summary.unfinished);
+    messages.diagnostics.reportText(Code::unfinishedPicture, {}, summary.unfinished);
   if (statistics.samplesNotFinite) {
     SourceRange range;
     for (const SampleNotFinite &one : summary.notFinite)
       if (one.place && !range.isValid())
         range = messages.rangeOf(*one.place);
     Diagnostic &diagnostic =
-        messages.diagnostics.report(Code::samplesNotFinite, range, notFiniteText(statistics));
+        messages.diagnostics.reportText(Code::samplesNotFinite, range, notFiniteText(statistics));
     for (const SampleNotFinite &one : summary.notFinite) {
       const auto isNan = [](float value) { return std::isnan(value); };
       const char *const what = one.color.empty() ? "not finite"
@@ -146,7 +146,7 @@ void warn(const PictureSummary &summary, Messages &messages) {
                                   statistics.samplesNotFinite - summary.notFinite.size()));
   }
   if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
-    messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
+    messages.diagnostics.reportText(Code::raysTooDeep, {}, tooDeepText(statistics, summary.render));
 }
 
 } // namespace rtsl::tool

@@ -16,6 +16,7 @@
 #include "runtime/render/Renderer.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Output.h"
@@ -109,7 +110,7 @@ report::Picture renderOnce(const runtime::Scene &scene, runtime::RenderOptions o
   report::Picture picture;
   picture.image = runtime::render(scene, options, &picture.statistics);
   if (runtime::failedMachineStacks(nullptr))
-    throw Error(ErrorCode::OutOfMemory, "no memory for rays in flight; give a smaller `--depth`");
+    throw Error(message::noMemoryForRaysOfReport());
   return picture;
 }
 
@@ -206,8 +207,7 @@ std::vector<Configuration> configurationsFor(const ReportOptions &options) {
           configurations.push_back(one);
       }
   if (configurations.empty())
-    throw Error(ErrorCode::UnknownName, "no configuration matches `--only`; their names consist of "
-                                        "strict or fast, embree or device, and recurse or split");
+    throw Error(message::noSuchConfiguration());
   return configurations;
 }
 
@@ -290,11 +290,7 @@ void checkFolder(const ReportOptions &options, const std::string &fingerprint,
   const nlohmann::json earlier =
       nlohmann::json::parse(readFile(identityOf(options)), nullptr, false);
   if (earlier.is_discarded() || earlier.value("fingerprint", "") != fingerprint)
-    throw Error(ErrorCode::FileUnwritable,
-                fmt::format("`{}` holds a report of another scene, shader, size or version; choose "
-                            "another `--out`, or pass `--fresh` to replace it",
-                            options.folder),
-                Place{options.folder});
+    throw Error(message::otherReport(options.folder), Place{options.folder});
 }
 
 /// Makes the folder, or finds the same study in it.
@@ -302,9 +298,8 @@ void openFolder(const ReportOptions &options, const std::string &fingerprint) {
   std::error_code error;
   fs::create_directories(options.folder, error);
   if (error || !fs::is_directory(options.folder))
-    throw Error(ErrorCode::FileUnwritable,
-                fmt::format("cannot make the folder `{}`: {}", options.folder,
-                            error ? error.message() : "there is a file of that name"),
+    throw Error(message::cannotMakeFolder(options.folder,
+                                          error ? error.message() : "there is a file of that name"),
                 Place{options.folder});
   if (options.fresh)
     for (const char *part : parts)

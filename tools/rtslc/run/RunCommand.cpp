@@ -10,6 +10,7 @@
 #include "scenefile/files/BufferOutput.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
+#include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Outcome.h"
@@ -65,17 +66,13 @@ scene::SceneDescription readInputs(const RunOptions &options, Messages &messages
   std::vector<std::string> overrides = options.overrides;
   if (!options.inputs.empty()) {
     if (options.scene == "-")
-      throw Error(ErrorCode::NotSupported,
-                  "`--in` needs a scene file; `--set` works with one from standard input");
+      throw Error(message::inputNeedsFile());
     const scene::JsonValue root = scene::parseJson(readFile(options.scene), options.scene);
     const scene::JsonValue *buffers = root.find("buffers");
     for (const BufferFile &input : options.inputs) {
       const bool isNamed = buffers && buffers->find(input.name);
       if (!isNamed && root.find("passes"))
-        throw Error(ErrorCode::UnknownName,
-                    fmt::format("`--in {}`: a scene with passes has no buffer of this name in "
-                                "`buffers`",
-                                input.name));
+        throw Error(message::noInputBuffer(input.name));
       overrides.push_back(fmt::format("{}.{}={}", isNamed ? "buffers" : "rayGeneration", input.name,
                                       Json{{"buffer", input.file}}.dump()));
     }
@@ -100,9 +97,7 @@ void checkNames(const RunOptions &options, const scene::SceneDescription &descri
   }
   for (const BufferFile &output : options.outputs)
     if (!names.count(output.name)) {
-      Error error(
-          ErrorCode::UnknownName,
-          fmt::format("`--out {}`: the scene has no output buffer of this name", output.name));
+      Error error(message::noOutputBuffer(output.name));
       const std::string near = closestName(output.name, {names.begin(), names.end()});
       if (!near.empty())
         error.note(fmt::format("did you mean `{}`?", near));
@@ -242,9 +237,10 @@ private:
   void warn(const Launch &launch) const {
     const runtime::RenderStatistics &statistics = launch.statistics;
     if (statistics.samplesNotFinite && launch.render.wantsPicture)
-      messages.diagnostics.report(Code::samplesNotFinite, {}, notFiniteText(statistics));
+      messages.diagnostics.reportText(Code::samplesNotFinite, {}, notFiniteText(statistics));
     if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
-      messages.diagnostics.report(Code::raysTooDeep, {}, tooDeepText(statistics, launch.render));
+      messages.diagnostics.reportText(Code::raysTooDeep, {},
+                                      tooDeepText(statistics, launch.render));
   }
 
   const RunOptions &options;

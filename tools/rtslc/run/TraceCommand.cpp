@@ -8,6 +8,7 @@
 #include "scenefile/files/NumberFiles.h"
 #include "scenefile/files/PlyColumns.h"
 #include "support/Error.h"
+#include "support/ErrorMessages.h"
 #include "tools/rtslc/common/Messages.h"
 
 #include <fmt/format.h>
@@ -41,11 +42,9 @@ std::vector<std::size_t> shapeOf(const TraceOptions &options) {
   if (extension == ".ply")
     return scene::readPly(file, options.element, options.columns).shape;
   if (extension != ".npy")
-    throw Error(ErrorCode::BadBuffer, fmt::format("`{}` is neither .npy, .csv nor .ply", file));
+    throw Error(message::rayFormatUnknown(file));
   if (!options.columns.empty())
-    throw Error(
-        ErrorCode::BadBuffer,
-        fmt::format("`{}` has no columns with names: `--columns` is for .csv and .ply", file));
+    throw Error(message::rayFileWithoutColumns(file));
   return scene::NpyFile(file, scene::NpyFile::Part::Header).shape();
 }
 
@@ -54,10 +53,7 @@ std::size_t numbersOfRay(const TraceOptions &options) {
   const std::vector<std::size_t> shape = shapeOf(options);
   if (shape.size() == 2 && (shape[1] == 6 || shape[1] == 8))
     return shape[1];
-  throw Error(ErrorCode::BadBuffer,
-              fmt::format("`{}` has the shape ({}): rays have 6 numbers, origin and direction, or "
-                          "8, origin, tmin, direction and tmax",
-                          options.rays, fmt::join(shape, ", ")));
+  throw Error(message::rayShape(options.rays, fmt::join(shape, ", ")));
 }
 
 int trace(TraceOptions options) {
