@@ -18,6 +18,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "mlir/Analysis/CallGraph.h"
@@ -55,16 +56,9 @@ std::vector<Cycle> findCycles(mlir::ModuleOp ir) {
 
 /// Do the functions or their callees send rays?
 bool traces(const Cycle &cycle, mlir::ModuleOp ir) {
-  Cycle reached = cycle;
-  bool found = false;
-  for (std::size_t next = 0; next != reached.size() && !found; ++next)
-    reached[next]->walk([&](mlir::Operation *op) {
-      found |= ir::isTrace(op);
-      if (auto call = llvm::dyn_cast<CallOp>(op))
-        if (mlir::Operation *callee = ir.lookupSymbol(call.getCallee()))
-          reached.insert(callee);
-    });
-  return found;
+  const mlir::SymbolTable symbols(ir);
+  linking::Contains traces(symbols, ir::isTrace);
+  return llvm::any_of(cycle, [&](mlir::Operation *function) { return traces(function); });
 }
 
 bool isDispatch(mlir::Operation *function) {

@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
 #include "language/SlotTable.h"
@@ -177,19 +178,14 @@ Item itemOf(llvm::StringRef method) {
 llvm::SmallPtrSet<mlir::Operation *, 16>
 functionsOfKept(const LinkContext &context,
                 const llvm::MapVector<mlir::Operation *, Cause> &reached) {
-  llvm::SmallVector<FuncOp> pending;
+  std::vector<FuncOp> kept;
   for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
     if (const auto method = ir::attr::methodName.of(function);
         method && !reached.contains(function) &&
         context.request.keep.has(itemOf(method.getValue())))
-      pending.push_back(function);
-  llvm::SmallPtrSet<mlir::Operation *, 16> all(pending.begin(), pending.end());
-  while (!pending.empty())
-    pending.pop_back_val().walk([&](mlir::func::CallOp call) {
-      if (FuncOp callee = context.function(call.getCallee()); callee && all.insert(callee).second)
-        pending.push_back(callee);
-    });
-  return all;
+      kept.push_back(function);
+  const std::vector<FuncOp> all = reachedFrom(kept, context.symbols);
+  return {all.begin(), all.end()};
 }
 
 } // namespace

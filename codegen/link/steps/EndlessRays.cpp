@@ -6,9 +6,8 @@
 // warning.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
-
-#include "llvm/ADT/DenseMap.h"
 
 namespace rtsl::linking {
 
@@ -28,12 +27,12 @@ public:
       : symbols(symbols), payload(payload) {}
 
   bool operator()(FuncOp function) {
-    // false while it is being computed
-    const auto [known, isNew] = results.try_emplace(function, false);
-    if (!isNew || function.isExternal())
-      return known->second;
-    const Untraced exits = walk(function.getBody());
-    return results[function] = !exits.end && !exits.returns;
+    return functions.of(function, [&] {
+      if (function.isExternal())
+        return false;
+      const Untraced exits = walk(function.getBody());
+      return !exits.end && !exits.returns;
+    });
   }
 
 private:
@@ -109,7 +108,7 @@ private:
 
   const mlir::SymbolTable &symbols;
   mlir::Type payload;
-  llvm::DenseMap<mlir::Operation *, bool> results;
+  FunctionProperty functions;
 };
 
 void check(LinkContext &context, const std::string &method, mlir::Type payload,

@@ -8,12 +8,11 @@
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "llvm/ADT/StringMap.h"
 #include "llvm/ADT/StringSwitch.h"
-
-#include <set>
 
 namespace rtsl::linking {
 
@@ -75,25 +74,18 @@ std::uint32_t needsOf(const LinkContext &context, mlir::func::FuncOp function) {
 
 /// The outputs that functions and all their callees read. With `onItself`, calls through references
 /// are ignored. `isLit`, if not null, becomes true if they use lights.
-std::uint32_t needsReachedFrom(std::vector<mlir::func::FuncOp> pending, const LinkContext &context,
-                               bool onItself, bool *isLit = nullptr) {
+std::uint32_t needsReachedFrom(llvm::ArrayRef<mlir::func::FuncOp> functions,
+                               const LinkContext &context, bool onItself, bool *isLit = nullptr) {
   std::uint32_t needs = 0;
-  std::set<mlir::Operation *> seen(pending.begin(), pending.end());
-  while (!pending.empty()) {
-    mlir::func::FuncOp function = pending.back();
-    pending.pop_back();
+  const auto follows = [&](mlir::func::FuncOp callee) {
+    return !onItself || !ir::attr::dispatch.isOn(callee);
+  };
+  for (mlir::func::FuncOp function : reachedFrom(functions, context.symbols, follows)) {
     needs |= needsOf(context, function);
     if (isLit)
-      function.walk([&](mlir::Operation *op) {
-        *isLit |= llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op);
+      *isLit |= ir::anyOperation(function, [](mlir::Operation *op) {
+        return llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op);
       });
-    function.walk([&](mlir::func::CallOp call) {
-      mlir::func::FuncOp callee = context.function(call.getCallee());
-      if (callee && onItself && ir::attr::dispatch.isOn(callee))
-        return;
-      if (callee && seen.insert(callee).second)
-        pending.push_back(callee);
-    });
   }
   return needs;
 }
@@ -151,7 +143,7 @@ std::uint32_t needsOfMethods(const LinkContext &context, llvm::StringRef root,
     if ((linked.isUsed || root != "rt_Light") && linked.info->root == root)
       if (mlir::func::FuncOp function = findMethod(context, linked, method))
         methods.push_back(function);
-  return needsReachedFrom(std::move(methods), context, /*onItself=*/false);
+  return needsReachedFrom(methods, context, /*onItself=*/false);
 }
 
 } // namespace

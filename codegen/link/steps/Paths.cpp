@@ -6,9 +6,9 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Rays.h"
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 
-#include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/StringSet.h"
 
 namespace rtsl::linking {
@@ -16,38 +16,6 @@ namespace rtsl::linking {
 namespace {
 
 using mlir::func::FuncOp;
-
-/// Whether code runs an operation, itself or in functions that it calls.
-class Runs {
-public:
-  /// `enters`, if given, says which functions count.
-  Runs(const mlir::SymbolTable &symbols, llvm::function_ref<bool(mlir::Operation *)> holds,
-       llvm::function_ref<bool(FuncOp)> enters = nullptr)
-      : symbols(symbols), holds(holds), enters(enters) {}
-
-  bool operator()(mlir::Operation *code) {
-    return ir::anyOperation(code, [&](mlir::Operation *op) {
-      if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-        if (auto callee = symbols.lookup<FuncOp>(call.getCallee()))
-          return inFunction(callee);
-      return holds(op);
-    });
-  }
-
-private:
-  bool inFunction(FuncOp function) {
-    if (enters && !enters(function))
-      return false;
-    // false while it is being computed
-    const auto [known, isNew] = results.try_emplace(function, false);
-    return isNew ? results[function] = (*this)(function.getOperation()) : known->second;
-  }
-
-  const mlir::SymbolTable &symbols;
-  llvm::function_ref<bool(mlir::Operation *)> holds;
-  llvm::function_ref<bool(FuncOp)> enters;
-  llvm::DenseMap<mlir::Operation *, bool> results;
-};
 
 /// The methods of materials that run for the rays of this trace.
 std::string methodFor(mlir::Operation *trace) {
@@ -62,7 +30,7 @@ std::string methodFor(mlir::Operation *trace) {
 
 runtime::Paths findPaths(const LinkContext &context) {
   mlir::ModuleOp ir = context.ir;
-  Runs traces(context.symbols, ir::isTrace);
+  Contains traces(context.symbols, ir::isTrace);
 
   // Rays at whose hits others are sent: not those that only look for a lamp.
   llvm::StringSet<> methodsThatTrace;
@@ -72,12 +40,12 @@ runtime::Paths findPaths(const LinkContext &context) {
   const auto goesOn = [&](mlir::Operation *op) {
     return ir::isTrace(op) && methodsThatTrace.contains(methodFor(op));
   };
-  Runs sendsPath(context.symbols, goesOn);
+  Contains sendsPath(context.symbols, goesOn);
 
   // A function that draws and traces draws for its own rays, not for those of its caller.
   const auto isRand = [](mlir::Operation *op) { return llvm::isa<ir::RandOp>(op); };
   const auto tracesNothing = [&](FuncOp function) { return !traces(function); };
-  Runs draws(context.symbols, isRand, tracesNothing);
+  Contains draws(context.symbols, isRand, tracesNothing);
 
   const auto isRandomWalk = [&](mlir::Operation *op) {
     return llvm::isa<ir::LoopOp>(op) && draws(op) && traces(op);

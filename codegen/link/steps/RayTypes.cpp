@@ -14,13 +14,13 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/MemoryAccesses.h"
 #include "codegen/ir/Slots.h"
+#include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 
 #include "runtime/device/ray/Abi.h"
 #include "sema/typed/Analysis.h"
 
 #include "mlir/IR/Matchers.h"
-#include "llvm/ADT/SetVector.h"
 
 #include <algorithm>
 
@@ -39,22 +39,6 @@ std::vector<FuncOp> methodsFor(const LinkContext &context, const RayType &type,
             linked.isUsed ? findMethod(context, linked, method + "." + type.name()) : FuncOp())
       programs.push_back(program);
   return programs;
-}
-
-/// Functions and all their direct and indirect callees.
-std::vector<FuncOp> reachedFrom(const std::vector<FuncOp> &roots, const LinkContext &context) {
-  llvm::SetVector<mlir::Operation *> reached;
-  for (FuncOp root : roots)
-    reached.insert(root);
-  for (std::size_t i = 0; i < reached.size(); ++i)
-    reached[i]->walk([&](mlir::func::CallOp call) {
-      if (auto callee = context.function(call.getCallee()))
-        reached.insert(callee);
-    });
-  std::vector<FuncOp> functions;
-  for (mlir::Operation *function : reached)
-    functions.push_back(llvm::cast<FuncOp>(function));
-  return functions;
 }
 
 //===----------------------------------------------------------------------===//
@@ -179,7 +163,7 @@ bool writesHideOrder(const LinkContext &context, const std::vector<FuncOp> &anyH
 
 bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHits,
                     bool hasClosestHit) {
-  const AnyHitEffects effects = effectsOf(reachedFrom(anyHits, context));
+  const AnyHitEffects effects = effectsOf(reachedFrom(anyHits, context.symbols));
   if (effects.draws || (effects.terminates && hasClosestHit))
     return true;
   if (!effects.writes)
