@@ -113,7 +113,7 @@ NamedAttribute attributeFrom(const AttributeDescription &description, const Valu
     memory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
     return reinterpret_cast<std::uint8_t *>(memory.back().get());
   };
-  context.keep = [](const std::shared_ptr<runtime::Value::Words> &, bool) {};
+  context.keep = [](const std::shared_ptr<runtime::Value::Words> &, bool) { return true; };
   RtslBuffer buffer{};
   storeValue(bufferOfAttribute(type), values, reinterpret_cast<std::uint8_t *>(&buffer), context,
              what, description.place);

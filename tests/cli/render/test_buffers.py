@@ -237,7 +237,7 @@ class Buffers(Case):
             "`256` in line 16 is not a valid value of `shade`",
         )
         self.write("points.ply", b"solid")
-        self.wrong("points", {"buffer": "points.ply"}, "E0906", "no .ply file")
+        self.wrong("points", {"buffer": "points.ply"}, "E0906", "not a .ply file")
         self.wrong(
             "numbers",
             {"buffer": "numbers.raw", "element": "vertex"},
@@ -330,9 +330,9 @@ class Buffers(Case):
     def test_wrong_files(self):
         good = npy("f", (4,), [1, 2, 3, 4])
         for name, data, code, containing in (
-            ("a.npy", b"", "E0906", "no .npy file"),
-            ("a.npy", b"PK" + bytes(50), "E0906", "no .npy file"),
-            ("a.npy", good[:9], "E0906", "no .npy file"),
+            ("a.npy", b"", "E0906", "not a .npy file"),
+            ("a.npy", b"PK" + bytes(50), "E0906", "not a .npy file"),
+            ("a.npy", good[:9], "E0906", "not a .npy file"),
             ("a.npy", good[:30], "E0906", "truncated"),
             ("a.npy", good[:-1], "E0906", "truncated"),
             ("a.npy", good + b"x", "E0906", "longer than its header"),

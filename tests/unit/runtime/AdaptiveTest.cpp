@@ -225,7 +225,7 @@ TEST(Adaptive, WhatOneHalfHasSeenDecidesAboutTheOther) {
   sums.colors = sums.values;
   const double error = closeHalves(sums, 2, 0.1);
   EXPECT_EQ(sums.closed, (std::vector<std::uint32_t>{2, 2})); // the second half is complete
-  const double variance = (1000.0 / 16 - 1) * 16 / 15; // of samples, of which 32 have a mean
+  const double variance = (1000.0 / 16 - 1) * 16 / 15;        // of samples, of which 32 have a mean
   EXPECT_NEAR(error, std::sqrt((variance / 32 + 0) / 2), 1e-12);
 }
 

@@ -1,0 +1,171 @@
+"""Descriptions and files of images that are wrong."""
+
+import json
+import random
+import struct
+import subprocess
+import unittest
+import zlib
+
+from harness import RTSLC, SECONDS
+from image_case import ImageCase
+from image_files import png, hdr, tiff
+
+
+class Mistakes(ImageCase):
+    def wrong(self, image, code, containing, **more):
+        """One message, at the image or within it."""
+        text = json.dumps({"class": "Plain", "image": image})
+        self.scene({"class": "Plain", "image": image}, **more)
+        self.assertIn(text, (self.folder / "scene.json").read_text())
+        messages = self.diagnose("render", "scene.json", "-o", "x.exr")
+        self.assert_message(messages, code, containing, line=1, file="scene.json")
+        self.assertFalse((self.folder / "x.exr").exists())
+
+    def test_wrong_descriptions(self):
+        self.write("image.png", png(2, 2, lambda x, y: (0, 0, 0)))
+        self.write("image.raw", bytes(15))
+        self.wrong({"file": "image.png", "filter": "trilinaer"}, "E0805", "`filter` is `nearest`")
+        self.wrong({"file": "image.png", "wrap": ["clamp"]}, "E0804", "`wrap` takes 1 or 2 names")
+        self.wrong({"file": "image.png", "colour": "srgb"}, "E0802", "has no key `colour`")
+        self.wrong(
+            {"file": "image.png", "anisotropy": 0},
+            "E0805",
+            "`anisotropy` must be between 1 and 256",
+        )
+        self.wrong(
+            {"size": [2, 2]},
+            "E0803",
+            "is a `sampler2D`: an image needs a `file`, `slices` or `raw`",
+        )
+        self.wrong({"class": "sampler2D", "file": 5}, "E0804", "`file` is a string, not a number")
+        self.wrong({"raw": "image.raw"}, "E0803", "a raw image needs a `size`")
+        self.wrong(
+            {"raw": "image.raw", "size": [2, 2], "channels": 3}, "E0805", "`channels` is 1, 2 or 4"
+        )
+        self.wrong(
+            {"raw": "image.raw", "size": [2, 2]},
+            "E0905",
+            "15 bytes, and 2 x 2 x 1 texels of 4 bytes take 16",
+        )
+        self.wrong({"raw": "image.raw", "size": [2147483647, 2147483647]}, "E0805", "too large")
+        self.wrong({"slices": ["image.png"]}, "E0811", "takes a `sampler2D`, not a `sampler3D`")
+        self.wrong({"class": "sampler3D", "slices": []}, "E0805", "at least one slice")
+        self.wrong(
+            "wood",
+            "E0806",
+            "no image, texture or material is named `wood`",
+            images={"would": {"file": "image.png"}},
+        )
+        self.wrong({"class": "sampler2D"}, "E0803", "needs a `file`")
+        self.write_exr("image.exr", 2, 2, 1.0)
+        self.wrong({"file": "image.exr", "colorSpace": "srgb"}, "E0808", "floating point")
+
+    def test_names_that_are_keys_of_images_too(self):
+        self.write(
+            "named.rtsl",
+            """
+            class Flat : rt_Texture { public float raw = 0.5; void lookup() { rt_TextureColor = color(raw); } };
+            class Wall : rt_Material {
+              public rt_Texture file;
+              private rt_Texture other;
+              void constructor(rt_Texture raw) { other = raw; }
+              void shade() { rt_SampleColor = file.lookup() + other.lookup(); }
+            };
+            class Eye : rt_Camera { void generateRay() { rt_RayOrigin = vec3(0.0, 0.0, 5.0); rt_RayDirection = vec3(0.0, 0.0, -1.0); } };""",
+        )
+        self.write("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["named.rtsl"],
+                    "camera": {"class": "Eye"},
+                    "textures": {"raw": {"class": "Flat"}, "slices": {"class": "Flat"}},
+                    "materials": {
+                        "file": {"class": "Wall", "constructor": {"raw": "raw"}, "file": "slices"}
+                    },
+                    "nodes": {"raw": {"mesh": "wall.obj", "material": "file"}},
+                    "roots": {"file": "raw"},
+                    "render": {"size": [2, 2], "spp": 1},
+                }
+            ),
+        )
+        self.run_rtslc("render", "scene.json", "-q", "-o", "x.exr")
+
+    def test_all_mistakes_in_one_run(self):
+        image = {"file": "image.png", "filter": "no", "wrap": 5, "colorSpace": "no", "x": 1}
+        self.scene({"class": "Plain", "image": image})
+        self.assertEqual(len(self.diagnose("render", "scene.json", "-o", "x.exr")), 4)
+
+    def test_wrong_files(self):
+        good = png(40, 30, self.integers(40, 30, 3, 255))
+        self.wrong({"file": "none.png"}, "E0900", "there is no file `none.png`")
+        self.wrong({"file": "."}, "E0901", "is a folder")
+        self.write("image.png", b"")
+        self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
+        self.write("image.png", b"no image at all" * 100)
+        self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
+        self.write("image.png", good[: len(good) // 2])
+        self.wrong({"file": "image.png"}, "E0905", "cannot read `image.png`")
+        huge = good[:16] + struct.pack(">II", 2**30, 2**30) + good[24:29]
+        self.write("image.png", huge + struct.pack(">I", zlib.crc32(huge[12:29])) + good[33:])
+        self.assertTrue(self.diagnose_any("image.png"))
+        self.write("small.png", png(2, 2, lambda x, y: (0, 0, 0)))
+        self.write("large.png", good)
+        self.scene(
+            {
+                "class": "Probe3D",
+                "images": [{"slices": ["small.png", "large.png"]}],
+                "uvw": [],
+                "dx": [],
+                "lod": [],
+                "at": [],
+            }
+        )
+        self.assert_message(
+            self.diagnose("render", "scene.json", "-o", "x.exr"),
+            "E0905",
+            "differs from the first slice",
+        )
+
+    def diagnose_any(self, file):
+        self.scene({"class": "Plain", "image": {"file": file}})
+        return self.diagnose("render", "scene.json", "-o", "x.exr")
+
+    def test_inputs_are_not_overwritten(self):
+        self.write_exr("image.exr", 2, 2, 0.5)
+        before = (self.folder / "image.exr").read_bytes()
+        self.scene({"class": "Plain", "image": {"file": "image.exr"}})
+        self.assert_message(self.diagnose("render", "scene.json", "-o", "image.exr"), "E0965")
+        self.assertEqual((self.folder / "image.exr").read_bytes(), before)
+
+    def test_damaged_files_never_crash(self):
+        chance = random.Random(5)
+        files = [
+            png(9, 7, self.integers(9, 7, 3, 255)),
+            hdr(9, 7, lambda x, y: (x, y, 1, 128)),
+            tiff(9, 7, self.integers(9, 7, 3, 255), "H", 1),
+        ]
+        images = {}
+        for i in range(60):
+            data = bytearray(files[i % len(files)])
+            for _ in range(chance.randrange(1, 6)):
+                data[chance.randrange(len(data))] = chance.randrange(256)
+            self.write(
+                f"{i}.image", bytes(data[: chance.randrange(len(data))] if i % 4 == 0 else data)
+            )
+            images[f"image{i}"] = {"file": f"{i}.image"}
+        self.scene({"class": "Bindless", "images": list(images)}, images=images)
+        done = subprocess.run(
+            [RTSLC, "render", "scene.json", "-q", "-o", "x.exr"],
+            cwd=self.folder,
+            timeout=SECONDS,
+            stderr=subprocess.PIPE,
+        )
+        self.assertIn(done.returncode, (0, 1), done.stderr[-2000:])
+
+
+if __name__ == "__main__":
+    unittest.main()
