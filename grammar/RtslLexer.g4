@@ -1,22 +1,23 @@
 /*
  * The tokens of RTSL.
  *
- * The lexer reads bytes, not Unicode characters: only comments and strings may contain anything but ASCII, and so a
- * token's start and end are offsets into the file. It never fails: invalid input becomes one of the tokens under
- * "Mistakes" at the end, which frontend/lex/Tokenizer.cpp reports and keeps from the parser.
+ * The lexer reads bytes, not Unicode characters: only comments and strings may contain anything but
+ * ASCII, and so a token's start and end are offsets into the file. It never fails: invalid input
+ * becomes one of the tokens under "Mistakes" at the end, which frontend/lex/Tokenizer.cpp reports
+ * and keeps from the parser.
  *
- * Names of types (`float`, `vec3`, `color`, `rt_Material`) and of built-in functions are ordinary identifiers.
- * Only the keywords below cannot be names.
+ * Names of types (`float`, `vec3`, `color`, `rt_Material`) and of built-in functions are ordinary
+ * identifiers. Only the keywords below cannot be names.
  */
 lexer grammar RtslLexer;
 
 tokens {
-    // `illuminance` before `(` at the beginning of a statement; elsewhere it is an ordinary identifier
-    // (distinguished in frontend/syntax/TokenCheck.cpp).
+    // `illuminance` before `(` at the beginning of a statement; elsewhere it is an ordinary
+    // identifier (distinguished in frontend/syntax/TokenCheck.cpp).
     ILLUMINANCE
 }
 
-// --- Keywords -------------------------------------------------------------------------------------------------------
+// --- Keywords ------------------------------------------------------------------------------------
 
 IMPORT   : 'import' ;
 CLASS    : 'class' ;
@@ -49,7 +50,7 @@ RETURN   : 'return' ;
 TRUE     : 'true' ;
 FALSE    : 'false' ;
 
-// --- Literals -------------------------------------------------------------------------------------------------------
+// --- Literals ------------------------------------------------------------------------------------
 
 // 42, 052, 0x2A, each with an optional u.
 INT_LITERAL
@@ -58,7 +59,8 @@ INT_LITERAL
 
 // 1.5, 1., .5, 1e5, 1.5e-3, each with an optional f or lf.
 FLOAT_LITERAL
-    : ( DIGIT+ '.' DIGIT* EXPONENT? | '.' DIGIT+ EXPONENT? | DIGIT+ EXPONENT ) ( [fF] | 'lf' | 'LF' )?
+    : ( DIGIT+ '.' DIGIT* EXPONENT? | '.' DIGIT+ EXPONENT? | DIGIT+ EXPONENT )
+      ( [fF] | 'lf' | 'LF' )?
     ;
 
 // "hit at %f\n"; only print takes strings. The escapes are \n \t \" \\.
@@ -73,7 +75,7 @@ IDENTIFIER
 fragment DIGIT    : [0-9] ;
 fragment EXPONENT : [eE] [+-]? DIGIT+ ;
 
-// --- Brackets and separators ----------------------------------------------------------------------------------------
+// --- Brackets and separators ---------------------------------------------------------------------
 
 LEFT_PAREN    : '(' ;
 RIGHT_PAREN   : ')' ;
@@ -88,7 +90,7 @@ COLON_COLON   : '::' ;
 QUESTION      : '?' ;
 DOT           : '.' ;
 
-// --- Operators ------------------------------------------------------------------------------------------------------
+// --- Operators -----------------------------------------------------------------------------------
 
 PLUS_PLUS     : '++' ;
 MINUS_MINUS   : '--' ;
@@ -126,7 +128,7 @@ AND_ASSIGN         : '&=' ;
 XOR_ASSIGN         : '^=' ;
 OR_ASSIGN          : '|=' ;
 
-// --- Between the tokens ---------------------------------------------------------------------------------------------
+// --- Between the tokens --------------------------------------------------------------------------
 
 WHITESPACE
     : [ \t\r\n\f\u000B]+ -> skip
@@ -143,8 +145,9 @@ BLOCK_COMMENT
 
 fragment COMMENT_TEXT : ( ~'*' | '*'+ ~[*/] )* ;
 
-// --- Mistakes -------------------------------------------------------------------------------------------------------
-// The longest match wins, and of equally long ones that of the first rule: these rules match what no rule above does.
+// --- Mistakes ------------------------------------------------------------------------------------
+// The longest match wins, and of equally long ones that of the first rule: these rules match what
+// no rule above does.
 
 UNTERMINATED_COMMENT
     : '/*' COMMENT_TEXT '*'*

@@ -1,21 +1,22 @@
 /*
  * The syntax of RTSL.
  *
- * RTSL is GLSL 4.60 without the rasteriser, with classes. This file is the one definition of the syntax; the
- * semantics (types, what may be written where) are checked later, and messages are better if the syntax accepts a little
- * more than the language: qualifiers, for example, are accepted before any declaration.
+ * RTSL is GLSL 4.60 without the rasteriser, with classes. This file is the one definition of the
+ * syntax; the semantics (types, what may be written where) are checked later, and messages are
+ * better if the syntax accepts a little more than the language: qualifiers, for example, are
+ * accepted before any declaration.
  *
- * Every decision but one (is a statement that begins with a name a declaration?) needs one token of lookahead, and that
- * one mostly two: parsing is fast, and mistakes are detected where they are.
+ * Every decision but one (is a statement that begins with a name a declaration?) needs one token of
+ * lookahead, and that one mostly two: parsing is fast, and mistakes are detected where they are.
  *
- * Before the parser sees the tokens, frontend/syntax/TokenCheck.cpp has balanced the brackets and rejected what is nested
- * too deep, so that recursive rules cannot overflow the stack.
+ * Before the parser gets the tokens, frontend/syntax/TokenCheck.cpp has balanced the brackets and
+ * rejected what is nested too deep, so that recursive rules cannot overflow the stack.
  */
 parser grammar RtslParser;
 
 options { tokenVocab = RtslLexer; }
 
-// --- A file ---------------------------------------------------------------------------------------------------------
+// --- A file --------------------------------------------------------------------------------------
 
 translationUnit
     : fileItem* EOF
@@ -42,19 +43,20 @@ structDeclaration
     : STRUCT IDENTIFIER LEFT_BRACE declaration* RIGHT_BRACE SEMICOLON
     ;
 
-// class Sphere : rt_Primitive;        its members are the declarations that follow, to the end of the file
+// class Sphere : rt_Primitive;        its members are the declarations up to the end of the file
 // class Sphere : rt_Primitive { };    any number of them in a file
 // class Noise { };                    a helper class, which derives from nothing; only in this form
-// default class Plain : rt_Material;  methods of all rt_Material classes that do not define them; those without a body
-//                                     say for which classes
+// default class Plain : rt_Material;  methods of all rt_Material classes that do not define them;
+//                                     those without a body say for which classes
 classDeclaration
-    : DEFAULT? CLASS IDENTIFIER ( COLON IDENTIFIER )? ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
+    : DEFAULT? CLASS IDENTIFIER ( COLON IDENTIFIER )?
+      ( LEFT_BRACE declaration* RIGHT_BRACE )? SEMICOLON
     ;
 
-// --- Declarations ---------------------------------------------------------------------------------------------------
+// --- Declarations --------------------------------------------------------------------------------
 
-// A function, or one or more variables: they begin alike, and differ after the name. This includes members of classes,
-// fields of structs and constants of a file.
+// A function, or one or more variables: they begin alike, and differ after the name. This includes
+// members of classes, fields of structs and constants of a file.
 //
 //     vec3 reflected(vec3 d, vec3 n) { return d - 2 * dot(d, n) * n; }
 //     public float roughness = 0.2, sheen;
@@ -101,7 +103,7 @@ functionBody
     | SEMICOLON             // a prototype
     ;
 
-// --- Statements -----------------------------------------------------------------------------------------------------
+// --- Statements ----------------------------------------------------------------------------------
 
 block
     : LEFT_BRACE statement* RIGHT_BRACE
@@ -188,38 +190,39 @@ illuminanceStatement
     : ILLUMINANCE LEFT_PAREN arguments RIGHT_PAREN statement
     ;
 
-// --- Expressions ----------------------------------------------------------------------------------------------------
+// --- Expressions ---------------------------------------------------------------------------------
 
 expression
     : expr ( COMMA expr )*
     ;
 
-// From the tightest operator to the loosest. All are left-associative but the last two, which share a level:
-// a ? b : c = d is a ? b : (c = d).
+// From the tightest operator to the loosest. All are left-associative but the last two, which share
+// a level: a ? b : c = d is a ? b : (c = d).
 //
-// A call is an expression followed by parentheses: `max(a, b)`, `albedo.lookup()`, `vec3(1)`, `float[3](1, 2, 3)`,
-// and brackets may be empty only there, as in `float[](1, 2)`. `Base::shade()` calls the definition of a base class.
+// A call is an expression followed by parentheses: `max(a, b)`, `albedo.lookup()`, `vec3(1)`,
+// `float[3](1, 2, 3)`, and brackets may be empty only there, as in `float[](1, 2)`. `Base::shade()`
+// calls the definition of a base class.
 expr
-    : LEFT_PAREN expression RIGHT_PAREN                                                 # paren
-    | literal                                                                           # constant
-    | IDENTIFIER ( COLON_COLON IDENTIFIER )?                                            # name
-    | expr DOT IDENTIFIER                                                               # member
-    | expr LEFT_BRACKET expression? RIGHT_BRACKET                                       # index
-    | expr LEFT_PAREN arguments RIGHT_PAREN                                             # call
-    | expr op = ( PLUS_PLUS | MINUS_MINUS )                                             # postfix
-    | op = ( PLUS_PLUS | MINUS_MINUS | PLUS | MINUS | NOT | TILDE ) expr                # prefix
-    | expr op = ( STAR | SLASH | PERCENT ) expr                                         # binary
-    | expr op = ( PLUS | MINUS ) expr                                                   # binary
-    | expr op = ( LEFT_SHIFT | RIGHT_SHIFT ) expr                                       # binary
-    | expr op = ( LESS | GREATER | LESS_EQUAL | GREATER_EQUAL ) expr                    # binary
-    | expr op = ( EQUAL_EQUAL | NOT_EQUAL ) expr                                        # binary
-    | expr op = AMPERSAND expr                                                          # binary
-    | expr op = CARET expr                                                              # binary
-    | expr op = BAR expr                                                                # binary
-    | expr op = AND_AND expr                                                            # binary
-    | expr op = XOR_XOR expr                                                            # binary
-    | expr op = OR_OR expr                                                              # binary
-    | <assoc = right> expr ( QUESTION expression COLON | assignment ) expr              # conditionalOrAssignment
+    : LEFT_PAREN expression RIGHT_PAREN                                            # paren
+    | literal                                                                      # constant
+    | IDENTIFIER ( COLON_COLON IDENTIFIER )?                                       # name
+    | expr DOT IDENTIFIER                                                          # member
+    | expr LEFT_BRACKET expression? RIGHT_BRACKET                                  # index
+    | expr LEFT_PAREN arguments RIGHT_PAREN                                        # call
+    | expr op = ( PLUS_PLUS | MINUS_MINUS )                                        # postfix
+    | op = ( PLUS_PLUS | MINUS_MINUS | PLUS | MINUS | NOT | TILDE ) expr           # prefix
+    | expr op = ( STAR | SLASH | PERCENT ) expr                                    # binary
+    | expr op = ( PLUS | MINUS ) expr                                              # binary
+    | expr op = ( LEFT_SHIFT | RIGHT_SHIFT ) expr                                  # binary
+    | expr op = ( LESS | GREATER | LESS_EQUAL | GREATER_EQUAL ) expr               # binary
+    | expr op = ( EQUAL_EQUAL | NOT_EQUAL ) expr                                   # binary
+    | expr op = AMPERSAND expr                                                     # binary
+    | expr op = CARET expr                                                         # binary
+    | expr op = BAR expr                                                           # binary
+    | expr op = AND_AND expr                                                       # binary
+    | expr op = XOR_XOR expr                                                       # binary
+    | expr op = OR_OR expr                                                         # binary
+    | <assoc = right> expr ( QUESTION expression COLON | assignment ) expr # conditionalOrAssignment
     ;
 
 assignment
