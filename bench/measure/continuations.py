@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import median
 
 from . import process
+from .options import add_benchmark, add_size
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 SCENES = sorted((ROOT / "examples").glob("*/scene.json"))
@@ -143,20 +144,15 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "continuations",
-        parents=[common],
-        help="bytes saved at traces, and instructions that this costs (with valgrind)",
-    )
-    parser.add_argument(
-        "--size",
-        default="32x18",
-        help="of the pictures whose instructions are counted (default: 32x18)",
-    )
-    parser.set_defaults(parts=[part])
+    summary = "bytes saved at traces, and instructions that this costs (with valgrind)"
+    parser = add_benchmark(subcommands, common, "continuations", summary, part)
+    add_size(parser, "32x18", "of the pictures whose instructions are counted")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    size = getattr(options, "size", "32x18")
-    return "continuations", measure(options.build, size, shutil.which("valgrind") is not None), show
+    return (
+        "continuations",
+        measure(options.build, options.size, shutil.which("valgrind") is not None),
+        show,
+    )

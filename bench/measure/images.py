@@ -11,6 +11,7 @@ import zlib
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count
 from .statistics import summarise
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -139,13 +140,11 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "images", parents=[common], help="lookups in images beside others"
-    )
-    parser.add_argument("--rounds", type=int, default=7, help="rounds of each program (default: 7)")
-    parser.set_defaults(parts=[part])
+    summary = "lookups in images beside others"
+    parser = add_benchmark(subcommands, common, "images", summary, part)
+    add_count(parser, "--rounds", 7, "rounds of each program")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return "images", measure(options.build, max(1, getattr(options, "rounds", 7))), show
+    return "images", measure(options.build, options.rounds), show

@@ -7,6 +7,7 @@ import tempfile
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count, add_size
 from .render import ROOT, compare
 from .statistics import summarise
 
@@ -179,28 +180,17 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "meshes", parents=[common], help="many meshes beside the hand-written program"
-    )
-    parser.add_argument(
-        "--pairs", type=int, default=8, help="rounds in which every program runs (default: 8)"
-    )
-    parser.add_argument(
-        "--spp",
-        type=int,
-        default=9,
-        help="samples a pixel, of which the first is not counted (default: 9)",
-    )
-    parser.add_argument(
-        "--size", metavar="WxH", default="640x360", help="of the picture (default: 640x360)"
-    )
-    parser.set_defaults(parts=[part])
+    summary = "many meshes beside the hand-written program"
+    parser = add_benchmark(subcommands, common, "meshes", summary, part)
+    add_count(parser, "--pairs", 8, "rounds in which every program runs")
+    add_count(parser, "--spp", 9, "samples a pixel, of which the first is not counted", least=2)
+    add_size(parser, "640x360")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
     return (
         "meshes",
-        measure(options.build, max(1, options.pairs), max(2, options.spp), options.size),
+        measure(options.build, options.pairs, options.spp, options.size),
         show,
     )

@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count, add_size
 from .meshes import write_torus
 from .statistics import summarise
 
@@ -143,21 +144,17 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "motion", parents=[common], help="rays per second through what moves and what rests"
-    )
-    parser.add_argument("--rounds", type=int, default=7, help="rounds of each scene (default: 7)")
-    parser.add_argument("--spp", type=int, default=16, help="samples a pixel (default: 16)")
-    parser.add_argument(
-        "--size", metavar="WxH", default="320x320", help="of the picture (default: 320x320)"
-    )
-    parser.set_defaults(parts=[part])
+    summary = "rays per second through what moves and what rests"
+    parser = add_benchmark(subcommands, common, "motion", summary, part)
+    add_count(parser, "--rounds", 7, "rounds of each scene")
+    add_count(parser, "--spp", 16, "samples a pixel")
+    add_size(parser, "320x320")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
     return (
         "motion",
-        measure(options.build, max(1, options.rounds), max(1, options.spp), options.size),
+        measure(options.build, options.rounds, options.spp, options.size),
         show,
     )

@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count
 from .statistics import summarise
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -170,15 +171,9 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "render", parents=[common], help="rtslc render beside the hand-written program"
-    )
-    parser.add_argument(
-        "--pairs",
-        type=int,
-        default=10,
-        help="rounds in which every program runs once (default: 10)",
-    )
+    summary = "rtslc render beside the hand-written program"
+    parser = add_benchmark(subcommands, common, "render", summary, part)
+    add_count(parser, "--pairs", 10, "rounds in which every program runs once")
     parser.add_argument(
         "--against",
         nargs="+",
@@ -198,7 +193,6 @@ def add(subcommands, common):
         metavar="OPTION",
         help="for rtslc alone, such as --rtslc-option=--traversal=device; may be repeated",
     )
-    parser.set_defaults(parts=[part])
 
 
 def part(options):
@@ -211,7 +205,7 @@ def part(options):
         "render",
         measure(
             options.build,
-            max(1, getattr(options, "pairs", 10)),
+            getattr(options, "pairs", 10),
             getattr(options, "against", list(VARIANTS)),
             render_options,
             getattr(options, "rtslc_option", []),

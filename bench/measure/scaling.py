@@ -5,6 +5,7 @@ from math import hypot, log, sqrt
 from pathlib import Path
 
 from . import growing, process
+from .options import add_benchmark, add_count
 
 LIMIT = 1.2  # of exponents
 SPREAD = 0.03  # of a time from run to run, relatively
@@ -144,22 +145,15 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "scaling", parents=[common], help="how the compiler's time grows with the program"
-    )
-    parser.add_argument(
-        "--runs",
-        type=int,
-        default=2,
-        help="runs of each command, of which the fastest counts (default: 2)",
-    )
+    summary = "how the compiler's time grows with the program"
+    parser = add_benchmark(subcommands, common, "scaling", summary, part)
+    add_count(parser, "--runs", 2, "runs of each command, of which the fastest counts")
     parser.add_argument(
         "--series", action="append", choices=list(SERIES), help="only this; may be repeated"
     )
     parser.add_argument(
         "--job", action="append", choices=list(JOBS), help="only this; may be repeated"
     )
-    parser.set_defaults(parts=[part])
 
 
 def part(options):
@@ -170,7 +164,7 @@ def part(options):
             options.build,
             options.series or list(SERIES),
             options.job or list(JOBS),
-            max(1, options.runs),
+            options.runs,
         ),
         show,
     )

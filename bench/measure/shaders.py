@@ -8,6 +8,7 @@ import tempfile
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count
 from .statistics import summarise
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -153,15 +154,11 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "shaders", parents=[common], help="printed C++ beside C++ by hand"
-    )
-    parser.add_argument(
-        "--rounds", type=int, default=20, help="rounds of each shader (default: 20)"
-    )
-    parser.set_defaults(parts=[part])
+    summary = "printed C++ beside C++ by hand"
+    parser = add_benchmark(subcommands, common, "shaders", summary, part)
+    add_count(parser, "--rounds", 20, "rounds of each shader")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return "shaders", measure(options.build, max(1, getattr(options, "rounds", 20))), show
+    return "shaders", measure(options.build, getattr(options, "rounds", 20)), show

@@ -6,6 +6,7 @@ import tempfile
 from pathlib import Path
 
 from . import process
+from .options import add_benchmark, add_count
 from .statistics import summarise
 
 MATERIAL = Path(__file__).resolve().parent.parent / "inputs" / "RoughMetal.rtsl"
@@ -159,13 +160,11 @@ def show(report):
 
 
 def add(subcommands, common):
-    parser = subcommands.add_parser(
-        "startup", parents=[common], help="whole processes of small jobs"
-    )
-    parser.add_argument("--runs", type=int, default=50, help="runs of each command (default: 50)")
-    parser.set_defaults(parts=[part])
+    summary = "whole processes of small jobs"
+    parser = add_benchmark(subcommands, common, "startup", summary, part)
+    add_count(parser, "--runs", 50, "runs of each command")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    return "startup", measure(options.build, max(1, getattr(options, "runs", 50))), show
+    return "startup", measure(options.build, getattr(options, "runs", 50)), show

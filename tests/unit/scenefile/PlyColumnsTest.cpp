@@ -219,9 +219,9 @@ TEST_F(PlyColumns, DamagedFiles) {
               cannot + "`" + value + "` in line 10 is not a valid value of `y` of `vertex`");
   EXPECT_EQ(inBody("1 2\n3 4\n-2 0 0\n"),
             cannot + "`-2` in line 11 is not a valid value of `corners` of `face`");
-  EXPECT_EQ(inBody("1 2\n3 4\n2 0 0\n5\n"), cannot + "it is longer than its header says");
+  EXPECT_EQ(inBody("1 2\n3 4\n2 0 0\n5\n"), cannot + "it is longer than its header declares");
   EXPECT_EQ(error(Binary::file(false) + "\n"), "no error");
-  EXPECT_EQ(error(Binary::file(false) + "x"), cannot + "it is longer than its header says");
+  EXPECT_EQ(error(Binary::file(false) + "x"), cannot + "it is longer than its header declares");
 }
 
 TEST_F(PlyColumns, KeysOfBuffers) {
