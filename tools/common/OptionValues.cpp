@@ -1,4 +1,4 @@
-//===- OptionValues.cpp - options that say what they take -----------------===//
+//===- OptionValues.cpp - checks of option values -------------------------===//
 #include "OptionValues.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-//===- OptionValues.h - options that say what they take -------------------===//
+//===- OptionValues.h - checks of option values ---------------------------===//
 //
 // An option of few words, or of numbers in a range, shows them in --help and in the message when it
 // is given something else.

@@ -1,4 +1,4 @@
-//===- OutOfMemory.cpp - memory that runs out is named so ------------------===//
+//===- OutOfMemory.cpp - reporting that memory is exhausted ---------------===//
 #include "OutOfMemory.h"
 
 #include "support/Error.h"

@@ -1,4 +1,4 @@
-//===- OutOfMemory.h - memory that runs out is named so --------------------===//
+//===- OutOfMemory.h - reporting that memory is exhausted -----------------===//
 //
 // It is no fault of the program, wherever it happens: in our code, in a thread of a library, or in
 // code that was compiled without exceptions.

@@ -1,4 +1,4 @@
-//===- Outcome.cpp - what a rendering met, in words ------------------------===//
+//===- Outcome.cpp - messages about the outcome of a rendering ------------===//
 #include "Outcome.h"
 
 #include "Interruption.h"

@@ -1,4 +1,4 @@
-//===- Outcome.h - what a rendering met, in words --------------------------===//
+//===- Outcome.h - messages about the outcome of a rendering --------------===//
 #pragma once
 
 #include "runtime/gpu/GpuRenderer.h"

@@ -1,4 +1,4 @@
-//===- HandOver.cpp - commands that live in a program of their own --------===//
+//===- HandOver.cpp - commands that rtslc-render runs ---------------------===//
 #include "HandOver.h"
 
 #include "support/ProgramFolder.h"

@@ -1,4 +1,4 @@
-//===- HandOver.h - commands that live in a program of their own ----------===//
+//===- HandOver.h - commands that rtslc-render runs -----------------------===//
 //
 // Rendering needs Embree, assimp and the image libraries. Loading these takes longer than `rtslc
 // check` may take as a whole, so the commands that use them are in `rtslc-render`, beside `rtslc`,

@@ -1,4 +1,4 @@
-//===- Messages.cpp - diagnostics on their way to the user ----------------===//
+//===- Messages.cpp - diagnostics for the user ----------------------------===//
 #include "Messages.h"
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-//===- Messages.h - diagnostics on their way to the user ------------------===//
+//===- Messages.h - diagnostics for the user ------------------------------===//
 #pragma once
 
 #include "CommandLine.h"

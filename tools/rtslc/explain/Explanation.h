@@ -1,4 +1,4 @@
-//===- Explanation.h - what a scene's program holds, told -----------------===//
+//===- Explanation.h - what a scene's program contains, as text -----------===//
 #pragma once
 
 #include "MeasureItems.h"

@@ -1,4 +1,4 @@
-//===- MeasureItems.h - what leaving something out is worth ---------------===//
+//===- MeasureItems.h - measuring what leaving items out saves ------------===//
 #pragma once
 
 #include "codegen/driver/SceneProgram.h"

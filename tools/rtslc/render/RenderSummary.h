@@ -1,4 +1,4 @@
-//===- RenderSummary.h - what rtslc render says of a picture ---------------===//
+//===- RenderSummary.h - the summary that rtslc render prints -------------===//
 #pragma once
 
 #include "NotFinite.h"
