@@ -1,4 +1,4 @@
-"""`rtslc render --adaptive`: more samples for the pixels that need them, the same bits everywhere."""
+"""Adaptive sampling: pixels whose color is known well enough get no more samples."""
 
 import json
 import math
