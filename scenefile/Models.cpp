@@ -86,31 +86,66 @@ private:
 
   /// {"model": file, ...} becomes {"child": node, ...}.
   void expandMention(JsonValue &mention) {
+    gltf::Play play;
+    errors.attempt([&] { play = takePlay(mention); });
     for (auto &[key, value] : mention.members)
       if (key.text == "model") {
         key.text = "child";
         JsonValue name = value;
         name.kind = Kind::String;
         name.string = unreadable;
-        errors.attempt([&, &path = value] { name.string = nodeOf(path); });
+        errors.attempt([&, &path = value] { name.string = nodeOf(path, play); });
         if (name.string == unreadable)
           addStandIn(value);
         value = std::move(name);
       }
   }
 
+  /// Removes a member of an object.
+  static std::optional<JsonValue> taken(JsonValue &object, const char *key) {
+    auto &members = object.members;
+    const auto found = std::find_if(members.begin(), members.end(),
+                                    [&](const auto &member) { return member.first.text == key; });
+    if (found == members.end())
+      return std::nullopt;
+    JsonValue value = std::move(found->second);
+    members.erase(found);
+    return value;
+  }
+
+  /// What is shown of the animations: `animation` and `fps` of a mention, which are removed.
+  gltf::Play takePlay(JsonValue &mention) const {
+    gltf::Play play;
+    if (const JsonValue *frame = root.find("frame"))
+      play.frame = readNumber(*frame, "`frame`");
+    const JsonValue *render = root.find("render");
+    play.isDuringFrame = render && render->find("shutter");
+    const std::optional<JsonValue> name = taken(mention, "animation"), rate = taken(mention, "fps");
+    if (name) {
+      play.animation = expect(*name, Kind::String, "`animation`").string;
+      play.place = name->place();
+    }
+    if (rate) {
+      play.framesPerSecond = readNumber(*rate, "`fps`");
+      if (!(play.framesPerSecond > 0))
+        throw Error(message::badFrameRate(), rate->place());
+    }
+    return play;
+  }
+
   /// The name of the node that shows a file.
-  std::string nodeOf(const JsonValue &path) {
+  std::string nodeOf(const JsonValue &path, const gltf::Play &play) {
     expect(path, Kind::String, "`model`");
     const std::string file = resolvePath(path, scene.file);
-    const auto known = models.find(file);
+    const std::string shown = fmt::format("{}\n{}\n{}", file, play.animation, play.framesPerSecond);
+    const auto known = models.find(shown);
     if (known != models.end())
       return known->second.root;
     gltf::Model failed;
     failed.root = unreadable;
-    gltf::Model &model = models.emplace(file, failed).first->second;
+    gltf::Model &model = models.emplace(shown, failed).first->second;
     const gltf::File &opened = modelsOf(scene).open(file, path.place());
-    model = gltf::modelOf(opened, freeName(path.string),
+    model = gltf::modelOf(opened, play, freeName(path.string),
                           path.isIncluded ? gltf::Mention{file, true}
                                           : gltf::Mention{path.string, path.fromOverride},
                           path);
@@ -122,7 +157,12 @@ private:
   /// A name that no node of the author's has.
   std::string freeName(std::string name) const {
     const JsonValue *nodes = root.find("nodes");
-    while (nodes && nodes->find(name))
+    const auto isTaken = [&] {
+      return (nodes && nodes->find(name)) ||
+             std::any_of(models.begin(), models.end(),
+                         [&](const auto &model) { return model.second.root == name; });
+    };
+    while (isTaken())
       name += "'";
     return name;
   }
@@ -161,12 +201,14 @@ private:
     mention = std::move(camera);
   }
 
-  JsonValue cameraOf(const JsonValue &mention) {
+  JsonValue cameraOf(JsonValue &mention) {
+    const gltf::Play play = takePlay(mention);
     checkKeys(mention, {"model", "name", "transform"}, "the camera of a model");
     const JsonValue &path = expect(*mention.find("model"), Kind::String, "`model`");
     const std::string file = resolvePath(path, scene.file);
-    if (const auto known = models.find(file);
-        known != models.end() && known->second.root == unreadable)
+    if (std::any_of(models.begin(), models.end(), [&](const auto &model) {
+          return model.second.root == unreadable && model.first.rfind(file + "\n", 0) == 0;
+        }))
       return gltf::objectOf(mention, "PerspectiveCamera"); // it is reported where its nodes are
     std::string name;
     if (const JsonValue *found = mention.find("name"))
@@ -180,7 +222,9 @@ private:
     }
     const gltf::File &opened = modelsOf(scene).open(file, path.place());
     try {
-      return gltf::cameraOf(opened, name, transform, path, modules);
+      std::vector<Warning> known; // where its nodes are
+      const gltf::Animation animation(opened, play, known);
+      return gltf::cameraOf(opened, animation, name, transform, path, modules);
     } catch (const Error &error) {
       throw gltf::named(error, file);
     }
@@ -215,7 +259,7 @@ private:
   JsonValue &root;
   SceneDescription &scene;
   ErrorCollector &errors;
-  std::map<std::string, gltf::Model> models; // by file; and `unreadable`
+  std::map<std::string, gltf::Model> models; // by file and animation; and `unreadable`
   gltf::Modules modules;
 };
 

@@ -1,4 +1,5 @@
 //===- CameraAndLights.cpp - cameras and punctual lights ------------------===//
+#include "scenefile/gltf/Animation.h"
 #include "scenefile/gltf/Nodes.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorMessages.h"
@@ -81,9 +82,9 @@ JsonValue cameraAt(const JsonValue &camera, std::size_t index, const Transform &
   throw Error(message::badModelCameraType(what, type.string), type.place());
 }
 
-JsonValue framing(const File &file, const Transform &transform, const JsonValue &source,
-                  Modules &modules) {
-  const std::optional<Box> box = boxOf(file);
+JsonValue framing(const File &file, const Animation &animation, const Transform &transform,
+                  const JsonValue &source, Modules &modules) {
+  const std::optional<Box> box = boxOf(file, animation);
   if (!box)
     throw Error(message::modelWithoutCamera(file.path()), source.place());
   std::array<double, 3> center{};
@@ -108,10 +109,10 @@ JsonValue framing(const File &file, const Transform &transform, const JsonValue 
 
 } // namespace
 
-JsonValue cameraOf(const File &file, const std::string &name, const Transform &transform,
-                   const JsonValue &source, Modules &modules) {
+JsonValue cameraOf(const File &file, const Animation &animation, const std::string &name,
+                   const Transform &transform, const JsonValue &source, Modules &modules) {
   std::vector<std::string> names;
-  for (const Node &node : nodesOf(file)) {
+  for (const Node &node : nodesOf(file, animation)) {
     const JsonValue *number = node.json->find("camera");
     if (!number)
       continue;
@@ -122,7 +123,7 @@ JsonValue cameraOf(const File &file, const std::string &name, const Transform &t
     names.push_back(nameOf(camera).empty() ? nameOf(*node.json) : nameOf(camera));
   }
   if (name.empty())
-    return framing(file, transform, source, modules);
+    return framing(file, animation, transform, source, modules);
   Error error(message::noSuchModelCamera(file.path(), name), source.place());
   names.erase(std::remove(names.begin(), names.end(), std::string()), names.end());
   if (!names.empty())

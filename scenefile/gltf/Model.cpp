@@ -20,14 +20,15 @@ namespace {
 
 class ModelMaker {
 public:
-  ModelMaker(const File &file, const std::string &name, const Mention &mention,
+  ModelMaker(const File &file, const Play &play, const std::string &name, const Mention &mention,
              const JsonValue &source)
-      : file(file), name(name), mention(mention), source(source) {}
+      : file(file), play(play), name(name), mention(mention), source(source) {}
 
   Model make() {
     model.root = name;
     std::vector<Node> nodes;
-    errors.attempt([&] { nodes = nodesOf(file); });
+    errors.attempt([&] { nodes = nodesOf(file, Animation(file, play, model.warnings)); });
+    keepLightsAtRest(nodes);
     std::vector<std::vector<JsonValue>> children(nodes.size() + 1); // by 1 + the node; of the root
     // Children come after their parents.
     for (std::size_t i = nodes.size(); i-- > 0;)
@@ -35,7 +36,7 @@ public:
     errors.throwIfAny();
     if (children[0].empty())
       throw Error(message::emptyModel(file.path()), source.place());
-    addChildren(name, source, std::move(children[0]), nullptr);
+    addChildren(name, source, std::move(children[0]));
     model.warnings.insert(model.warnings.end(), file.warnings().begin(), file.warnings().end());
     return std::move(model);
   }
@@ -48,19 +49,33 @@ private:
 
   /// A node of these children, which were found from the last to the first.
   void addChildren(const std::string &key, const JsonValue &from, std::vector<JsonValue> children,
-                   const runtime::Transform *transform) {
+                   const Node *place = nullptr) {
     JsonValue node = valueAt(from, Kind::Object);
     set(node, "children", list(from, {children.rbegin(), children.rend()}));
-    if (transform && !transform->isIdentity()) {
+    if (place && place->moving) {
+      set(node, "transform", *place->moving);
+    } else if (place && !place->transform.isIdentity()) {
       std::vector<double> matrix;
       for (std::size_t column = 0; column < 4; ++column) {
-        for (const double x : transform->columns[column])
+        for (const double x : place->transform.columns[column])
           matrix.push_back(x);
         matrix.push_back(column == 3 ? 1 : 0);
       }
       set(node, "transform", object(from, {{"matrix", numbers(from, matrix)}}));
     }
     add(model.nodes, key, std::move(node));
+  }
+
+  /// Lights of a scene do not move during a frame, so the nodes above them do not either.
+  void keepLightsAtRest(std::vector<Node> &nodes) {
+    for (const Node &node : nodes)
+      if (extension(*node.json, "KHR_lights_punctual"))
+        for (std::size_t above = std::size_t(&node - nodes.data()) + 1; above != 0;
+             above = nodes[above - 1].parent)
+          if (nodes[above - 1].moving) {
+            nodes[above - 1].moving.reset();
+            warn(*nodes[above - 1].json, message::movingLightIgnored(nodes[above - 1].what));
+          }
   }
 
   /// Adds the node, if it shows something, and its mention to `siblings`.
@@ -82,7 +97,7 @@ private:
       return;
     const std::string key = name + "/" + nodeLabels.of(node.index);
     siblings.push_back(text(json, key));
-    addChildren(key, json, std::move(children), &node.transform);
+    addChildren(key, json, std::move(children), &node);
   }
 
   /// Each mesh is one node, which all nodes that show it share.
@@ -93,7 +108,7 @@ private:
       const std::string key = fmt::format("{}/meshes/{}", name, meshLabels.of(index));
       std::vector<JsonValue> primitives = primitivesOf(index);
       if (!primitives.empty()) {
-        addChildren(key, file.list("meshes")[index], std::move(primitives), nullptr);
+        addChildren(key, file.list("meshes")[index], std::move(primitives));
         known->second = key;
       }
     }
@@ -158,6 +173,7 @@ private:
   }
 
   const File &file;
+  const Play &play;
   const std::string &name;
   const Mention &mention;
   const JsonValue &source;
@@ -172,10 +188,10 @@ private:
 
 } // namespace
 
-Model modelOf(const File &file, const std::string &name, const Mention &mention,
+Model modelOf(const File &file, const Play &play, const std::string &name, const Mention &mention,
               const JsonValue &source) {
   try {
-    return ModelMaker(file, name, mention, source).make();
+    return ModelMaker(file, play, name, mention, source).make();
   } catch (const Error &error) {
     throw named(error, file.path());
   }

@@ -1,6 +1,7 @@
 //===- Model.h - a glTF file as parts of a scene file ---------------------===//
 #pragma once
 
+#include "scenefile/gltf/Animation.h"
 #include "scenefile/gltf/Textures.h"
 
 #include <string>
@@ -20,7 +21,7 @@ struct Model {
 
 /// `name` is that of the root; other names begin with it. `source` is the mention of the file in a
 /// scene. Throws all mistakes at once.
-Model modelOf(const File &file, const std::string &name, const Mention &mention,
+Model modelOf(const File &file, const Play &play, const std::string &name, const Mention &mention,
               const JsonValue &source);
 
 } // namespace rtsl::scene::gltf

@@ -1,6 +1,7 @@
 #include "scenefile/gltf/Nodes.h"
 
 #include "scenefile/gltf/Accessor.h"
+#include "scenefile/gltf/Animation.h"
 #include "scenefile/gltf/Mesh.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorCollector.h"
@@ -32,7 +33,8 @@ Transform matrixOf(const JsonValue &matrix, const std::string &what) {
 
 class NodeReader {
 public:
-  explicit NodeReader(const File &file) : file(file), known(file.list("nodes").size(), 0) {}
+  NodeReader(const File &file, const Animation &animation)
+      : file(file), animation(animation), known(file.list("nodes").size(), 0) {}
 
   std::vector<Node> read() {
     errors.attempt([&] { readRoots(); });
@@ -96,9 +98,13 @@ private:
     node.json = &file.list("nodes")[index];
     node.what = fmt::format("`nodes.{}`", index);
     errors.attempt([&] {
-      const JsonValue *matrix = node.json->find("matrix");
-      node.transform =
-          matrix ? matrixOf(*matrix, node.what) : motionOf(*node.json, node.what).transform();
+      if (const JsonValue *matrix = node.json->find("matrix")) {
+        node.transform = matrixOf(*matrix, node.what);
+        return;
+      }
+      const Motion rest = motionOf(*node.json, node.what);
+      node.transform = animation.at(index, rest).transform();
+      node.moving = animation.transformOf(*node.json, index, rest);
     });
     node.toWorld = parent ? node.transform.then(nodes[parent - 1].toWorld) : node.transform;
     nodes.push_back(std::move(node));
@@ -106,6 +112,7 @@ private:
   }
 
   const File &file;
+  const Animation &animation;
   std::vector<std::size_t> known; // by index: 1 + where it is in `nodes`
   std::vector<Node> nodes;
   ErrorCollector errors;
@@ -121,8 +128,8 @@ std::array<double, 3> at(const Transform &transform, const std::array<double, 3>
 
 } // namespace
 
-std::vector<Node> nodesOf(const File &file) {
-  return NodeReader(file).read();
+std::vector<Node> nodesOf(const File &file, const Animation &animation) {
+  return NodeReader(file, animation).read();
 }
 
 Transform Motion::transform() const {
@@ -172,10 +179,10 @@ std::string Labels::of(std::size_t index) const {
   return isDistinct ? name : start + std::to_string(index);
 }
 
-std::optional<Box> boxOf(const File &file) {
+std::optional<Box> boxOf(const File &file, const Animation &animation) {
   constexpr double far = std::numeric_limits<double>::infinity();
   Box box{{far, far, far}, {-far, -far, -far}};
-  for (const Node &node : nodesOf(file)) {
+  for (const Node &node : nodesOf(file, animation)) {
     const JsonValue *number = node.json->find("mesh");
     if (!number)
       continue;

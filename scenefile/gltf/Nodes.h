@@ -15,16 +15,19 @@ namespace rtsl::scene::gltf {
 
 /// A node that the scene leads to.
 struct Node {
-  std::size_t index = 0;  // in `nodes`
-  std::size_t parent = 0; // 1 + its index in the list of these; 0: a root
-  runtime::Transform transform, toWorld;
+  std::size_t index = 0;                 // in `nodes`
+  std::size_t parent = 0;                // 1 + its index in the list of these; 0: a root
+  runtime::Transform transform, toWorld; // at the frame of the scene
+  std::optional<JsonValue> moving; // `transform` of a scene file, if it moves during the frame
   const JsonValue *json = nullptr;
   std::string what; // for messages: `nodes.3`
 };
 
+class Animation;
+
 /// The nodes of the scene that the file shows, parents before children; without a scene, all.
 /// Throws, for all mistakes at once, ReferenceCycle, OutOfRange, WrongType.
-std::vector<Node> nodesOf(const File &file);
+std::vector<Node> nodesOf(const File &file, const Animation &animation);
 
 /// Translation, rotation and scale of a node, or of a key frame of it. `rotation` is a quaternion,
 /// w last, of any length but 0.
@@ -54,13 +57,13 @@ private:
 struct Box {
   std::array<double, 3> low, high;
 };
-std::optional<Box> boxOf(const File &file);
+std::optional<Box> boxOf(const File &file, const Animation &animation);
 
 /// `camera` of a scene: the camera of this name (empty: the first one that a node has); without a
 /// camera and a name one that frames the scene. `transform` moves it. `source` is the mention.
 /// Throws UnknownName.
-JsonValue cameraOf(const File &file, const std::string &name, const runtime::Transform &transform,
-                   const JsonValue &source, Modules &modules);
+JsonValue cameraOf(const File &file, const Animation &animation, const std::string &name,
+                   const runtime::Transform &transform, const JsonValue &source, Modules &modules);
 
 /// `light` of a node: an object of the standard library, in the node's space.
 JsonValue lightOf(const File &file, const JsonValue &number, const std::string &what,
