@@ -2,6 +2,7 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
+#include "runtime/device/ray/Abi.h"
 
 namespace rtsl::codegen {
 
@@ -13,7 +14,8 @@ namespace {
 constexpr unsigned tableAlignment = 16;
 
 constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances",
-                              meshAttributesName = "rtsl.mesh_attributes";
+                              meshAttributesName = "rtsl.mesh_attributes",
+                              listedBoxesName = "rtsl.listed_boxes";
 
 void defineTable(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
                  llvm::ArrayRef<std::int32_t> words) {
@@ -69,10 +71,17 @@ void defineSceneTables(mlir::ModuleOp module) {
                      [&] { return addressOf(builder, location, meshAttributesName); });
     }
   }
-  if (const auto listed = ir::attr::listed.of(module))
+  if (const auto boxes = ir::attr::listedBoxes.of(module)) {
+    const auto count = static_cast<int32_t>(boxes.size() * 4 / sizeof(RtslListedBox));
     defineFunction(builder, location, "rtsl_listed_instances", builder.getI32Type(), [&] {
-      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(), listed);
+      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
+                                      builder.getI32IntegerAttr(count));
     });
+    defineTable(builder, location, listedBoxesName, boxes);
+    defineFunction(builder, location, "rtsl_listed_boxes",
+                   LLVM::LLVMPointerType::get(builder.getContext()),
+                   [&] { return addressOf(builder, location, listedBoxesName); });
+  }
 }
 
 mlir::Value sceneRecords(mlir::OpBuilder &builder, mlir::Location location) {

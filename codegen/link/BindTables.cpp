@@ -8,6 +8,7 @@
 #include "codegen/link/BindTables.h"
 
 #include "codegen/ir/Attributes.h"
+#include "runtime/device/ray/ListedBox.h"
 
 #include "llvm/ADT/STLExtras.h"
 
@@ -37,6 +38,14 @@ bool isListed(const std::vector<RtslInstance> &instances) {
          llvm::all_of(instances, [](const RtslInstance &one) {
            return one.primitive != 0 && one.boxCount == 0;
          });
+}
+
+/// The words of an RtslListedBox for each.
+std::vector<std::int32_t> listedBoxes(const std::vector<RtslInstance> &instances) {
+  std::vector<RtslListedBox> boxes;
+  for (const RtslInstance &one : instances)
+    boxes.push_back(device::listedBox(one.lower, one.upper));
+  return wordsOf(boxes.data(), boxes.size() * sizeof(RtslListedBox));
 }
 
 std::string reasonForList(std::size_t primitives) {
@@ -77,8 +86,7 @@ void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkR
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
   ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));
   if (isListed(scene.instances) && !request.keep.has(Item::Tree))
-    ir::attr::listed.set(
-        ir, builder.getI32IntegerAttr(static_cast<std::int32_t>(scene.instances.size())));
+    ir::attr::listedBoxes.set(ir, builder.getDenseI32ArrayAttr(listedBoxes(scene.instances)));
 }
 
 } // namespace rtsl

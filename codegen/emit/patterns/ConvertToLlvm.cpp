@@ -312,7 +312,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
       finish(function);
     ir::attr::records.removeFrom(module);
     ir::attr::instances.removeFrom(module);
-    ir::attr::listed.removeFrom(module);
+    ir::attr::listedBoxes.removeFrom(module);
     ir::attr::noted.removeFrom(module);
     ir::attr::holdsPayloads.removeFrom(module);
   }

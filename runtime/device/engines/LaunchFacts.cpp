@@ -26,6 +26,9 @@ __attribute__((weak)) uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launc
 __attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
   return 0;
 }
+__attribute__((weak)) const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *) {
+  return nullptr;
+}
 __attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
   return RTSL_SCHEDULE_MAJORITY;
 }

@@ -447,6 +447,12 @@ uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launch);
 /// The number of instances of such a scene if each of them is one primitive: the project's own
 /// traversal tests them one after the other. Otherwise 0, and it searches the tree.
 uint32_t rtsl_listed_instances(const RtslLaunch *launch);
+/// The boxes of these instances (runtime/device/ray/ListedBox.h).
+typedef struct RtslListedBox {
+  float middle[3], unused0; // 16 bytes are loaded at once
+  float half[3], unused1;   // of the size
+} RtslListedBox;
+const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
 /// RTSL_SCHEDULE_*: how the lanes of a warp choose the next step.
 #define RTSL_SCHEDULE_MAJORITY 0u
 #define RTSL_SCHEDULE_PRIORITIZED 1u

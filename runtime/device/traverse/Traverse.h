@@ -3,6 +3,7 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Hit.h"
+#include "runtime/device/ray/ListedBox.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Candidate.h"
@@ -265,15 +266,15 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
                    Limit limit, Visit visit) {
   tMin *= 1.0f - 2 * rangeShare;
   const float tMax = limit() * cullSlack;
+  const ListedBoxRay boxRay(ray.origin, ray.inverse);
+  const auto *boxes =
+      static_cast<const RtslListedBox *>(__builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
   uint32_t entered = 0; // bit i: instance i
 #ifdef __clang__
 #pragma clang loop unroll_count(2) vectorize(disable)
 #endif
   for (uint32_t i = 0; i < count; ++i) {
-    const RtslInstance &instance = instanceAt(launch, i);
-    const float near =
-        enterBox(instance.lower, instance.upper, ray.origin, ray.inverse, tMin, tMax);
-    entered |= uint32_t(near < infinity) << i;
+    entered |= uint32_t(boxRay.mayEnter(boxes[i], tMin, tMax)) << i;
   }
   while (entered) {
     const RtslLeafItem item = {uint32_t(__builtin_ctz(entered)), 0};

@@ -137,6 +137,55 @@ TEST(Bvh, ChildrenAreEnteredWhereverRaysHaveARangeInTheirBoxes) {
   EXPECT_LT(exact, 2 * met);
 }
 
+// The same for the boxes of scenes without a tree, whose first test is another one.
+TEST(Bvh, ListedBoxesAreEnteredWhereverRaysHaveARangeInThem) {
+  std::mt19937 random(4);
+  int met = 0, entered = 0, missed = 0;
+  for (int i = 0; i < 300000; ++i) {
+    const RandomNode made(random);
+    const Ray ray = rayAtNode(random, made);
+    if (!isTraceable(ray))
+      continue;
+    const Vec3 inverse = device::makeTriangleRay(ray.o, ray.d).inverse;
+    const device::ListedBoxRay boxRay(ray.o, inverse);
+    const float tMin = random() % 4 ? 0 : std::ldexp(1.0f, int(random() % 80) - 40),
+                tMax = random() % 2 ? INFINITY : std::ldexp(1.0f, int(random() % 120) - 60);
+    for (const Bounds &box : made.boxes) {
+      const bool meets =
+          device::enterBox(box.lower, box.upper, ray.o, inverse, tMin, tMax) < device::infinity;
+      const bool enters = boxRay.mayEnter(device::listedBox(box.lower, box.upper), tMin, tMax);
+      ASSERT_TRUE(!meets || enters) << i;
+      met += meets;
+      entered += enters;
+      missed += !enters;
+    }
+  }
+  EXPECT_GT(met, 200000);
+  EXPECT_GT(missed, 200000);   // it does not simply enter all
+  EXPECT_LT(entered, 3 * met); // half of the rays have axes that leave out nothing
+}
+
+TEST(Bvh, ListedBoxesOfRoomsLeaveOutAsManyAsTheExactTest) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  int met = 0, entered = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec3 origin = {10 * unit(random), 10 * unit(random), 10 * unit(random)},
+               direction = {unit(random), unit(random), unit(random)};
+    const Vec3 inverse = device::makeTriangleRay(origin, direction).inverse;
+    float lower[3], upper[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      lower[axis] = 10 * unit(random);
+      upper[axis] = lower[axis] + (random() % 3 ? 3 : 1e-4f) * (1 + unit(random));
+    }
+    met += device::enterBox(lower, upper, origin, inverse, 0, INFINITY) < device::infinity;
+    entered += device::ListedBoxRay(origin, inverse)
+                   .mayEnter(device::listedBox(lower, upper), 0, INFINITY);
+  }
+  EXPECT_GT(met, 500);
+  EXPECT_LE(entered, met + met / 50);
+}
+
 namespace {
 
 /// Small triangles everywhere in a cube, some of them in planes of the axes.

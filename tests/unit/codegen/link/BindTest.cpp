@@ -119,7 +119,7 @@ TEST(Bind, TheTablesOfASmallSceneAreInTheProgram) {
   bindScene(*linked.ir, facts, {}, &findings);
   EXPECT_EQ(ir::attr::records.of(*linked.ir).size(), 12);
   EXPECT_EQ(ir::attr::instances.of(*linked.ir).size() * 4, int64_t(2 * sizeof(RtslInstance)));
-  EXPECT_EQ(ir::attr::listed.of(*linked.ir).getInt(), 2);
+  EXPECT_EQ(ir::attr::listedBoxes.of(*linked.ir).size() * 4, int64_t(2 * sizeof(RtslListedBox)));
   const auto tree = llvm::find_if(findings, [](const auto &one) { return one.item == Item::Tree; });
   ASSERT_NE(tree, findings.end());
   EXPECT_FALSE(tree->isNeeded);
@@ -132,7 +132,7 @@ TEST(Bind, AMeshNeedsTheTree) {
   facts.instances = {instanceOf(16), instanceOf(0)};
   bindScene(*linked.ir, facts);
   EXPECT_TRUE(ir::attr::instances.of(*linked.ir));
-  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+  EXPECT_FALSE(ir::attr::listedBoxes.of(*linked.ir));
 }
 
 TEST(Bind, AnObjectOfSeveralPrimitivesNeedsTheTree) {
@@ -141,7 +141,7 @@ TEST(Bind, AnObjectOfSeveralPrimitivesNeedsTheTree) {
   facts.instances = {instanceOf(16), instanceOf(32)};
   facts.instances[1].boxCount = 2;
   bindScene(*linked.ir, facts);
-  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+  EXPECT_FALSE(ir::attr::listedBoxes.of(*linked.ir));
 }
 
 TEST(Bind, ManyPrimitivesNeedTheTree) {
@@ -149,7 +149,7 @@ TEST(Bind, ManyPrimitivesNeedTheTree) {
   runtime::SceneFacts facts;
   facts.instances.assign(33, instanceOf(16));
   bindScene(*linked.ir, facts);
-  EXPECT_FALSE(ir::attr::listed.of(*linked.ir));
+  EXPECT_FALSE(ir::attr::listedBoxes.of(*linked.ir));
 }
 
 TEST(Bind, RecordsWithBuffersOrManyRecordsStayInTheScene) {
@@ -180,7 +180,7 @@ TEST(Bind, WhatIsKeptIsNotInTheTables) {
   request.keep = ItemSet::only(Item::Tree);
   bindScene(*tree.ir, facts, request);
   EXPECT_TRUE(ir::attr::records.of(*tree.ir));
-  EXPECT_FALSE(ir::attr::listed.of(*tree.ir));
+  EXPECT_FALSE(ir::attr::listedBoxes.of(*tree.ir));
 }
 
 TEST(Bind, WhatMakesObjectsAndWhatRendersArePartedFromEachOther) {

@@ -10,7 +10,9 @@
 // LLVM: ret ptr @rtsl.instances
 // LLVM: define weak_odr i32 @rtsl_listed_instances(ptr %{{.*}})
 // LLVM: ret i32 1
-module attributes {rtsl.records = array<i32: 0, 0, 0, 0, 1, 1065353216>, rtsl.instances = array<i32: 16, 7>, rtsl.listed = 1 : i32} {
+// LLVM: define weak_odr ptr @rtsl_listed_boxes(ptr %{{.*}})
+// LLVM: ret ptr @rtsl.listed_boxes
+module attributes {rtsl.records = array<i32: 0, 0, 0, 0, 1, 1065353216>, rtsl.instances = array<i32: 16, 7>, rtsl.listed_boxes = array<i32: 1, 2, 3, 0, 4, 5, 6, 0>} {
   rtsl.class @Ball root "rt_Primitive" {
     rtsl.member_decl @radius : f32 access "public"
   }
