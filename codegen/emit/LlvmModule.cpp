@@ -1,6 +1,7 @@
 //===- LlvmModule.cpp - LLVM IR: translation, linking, optimisation -------===//
 #include "codegen/emit/LlvmModule.h"
 
+#include "codegen/emit/rewrites/DivideZeros.h"
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
@@ -264,6 +265,15 @@ static void addJoining(llvm::PassBuilder &builder) {
       });
 }
 
+/// After LLVM's simplification, which would move the division behind the choice.
+static void addDivisionOfZeros(llvm::PassBuilder &builder) {
+  builder.registerOptimizerLastEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
+        if (level != llvm::OptimizationLevel::O0)
+          passes.addPass(llvm::createModuleToFunctionPassAdaptor(DivideZerosPass()));
+      });
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   tuning.LoopVectorization = options.optimization > 1;
@@ -285,6 +295,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   builder.crossRegisterProxies(loops, functions, components, modules);
 
   addScalarization(builder);
+  if (machine.getTargetTriple().isNVPTX())
+    addDivisionOfZeros(builder);
   if (module.getFunction("rtsl_run_state"))
     readLaunchAsVariable(module);
   if (options.optimization > 0)
