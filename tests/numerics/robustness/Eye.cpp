@@ -1,6 +1,7 @@
 //===- Eye.cpp ------------------------------------------------------------===//
 #include "Eye.h"
 
+#include "runtime/accel/BvhBuilder.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/gpu/CudaDriver.h"
 #include "runtime/gpu/GpuRenderer.h"
@@ -80,8 +81,9 @@ std::vector<Line> linesFor(std::uint64_t bytes) {
 /// objects.
 class FlatCopy {
 public:
+  /// With a tree: there is no renderer that builds it.
   explicit FlatCopy(const runtime::Scene &scene)
-      : scene(scene), flat(runtime::flatten(scene)),
+      : scene(scene), flat(runtime::flatten(scene, runtime::buildBvh(scene, 1))),
         records(reinterpret_cast<std::uintptr_t>(flat.launch().records)) {}
 
   const runtime::Scene &source() const { return scene; }
