@@ -337,7 +337,7 @@ class Writing(Checkpoints):
         for name, part in (
             ("no/where.ckpt", "No such file or directory"),
             (".", "Is a directory"),
-            ("/dev/null", "is no regular file"),
+            ("/dev/null", "is not a regular file"),
             ("/dev/full", "is no regular file"),
         ):
             with self.subTest(name=name):
