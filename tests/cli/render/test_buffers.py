@@ -338,7 +338,7 @@ class Buffers(Case):
             ("a.npy", good + b"x", "E0906", "longer than its header"),
             ("a.npy", npy("f", (2**62, 8), []), "E0906", "truncated"),
             ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr=">f4"), "E0906", "not little-endian"),
-            ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr="<c8"), "E0906", "no little-endian"),
+            ("a.npy", npy("f", (4,), [1, 2, 3, 4], descr="<c8"), "E0906", "not little-endian"),
             ("a.npy", good.replace(b"'shape': (4,)", b"'shape': [4 ]"), "E0906", "no shape"),
             (
                 "a.npy",

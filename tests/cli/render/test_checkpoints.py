@@ -338,7 +338,7 @@ class Writing(Checkpoints):
             ("no/where.ckpt", "No such file or directory"),
             (".", "Is a directory"),
             ("/dev/null", "is not a regular file"),
-            ("/dev/full", "is no regular file"),
+            ("/dev/full", "is not a regular file"),
         ):
             with self.subTest(name=name):
                 self.assert_message(

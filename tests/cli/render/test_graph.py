@@ -10,7 +10,7 @@ import struct
 import unittest
 
 from harness import EXAMPLES
-from graph_case import CLUSTER, SHADERS, SQUASHED, GraphCase, scene
+from graph_case import CLUSTER, SHADERS, SQUASHED, GraphCase, balls, scene
 
 
 class EveryPath(GraphCase):
@@ -253,7 +253,7 @@ class Under : rt_Camera {
             return scene({"all": {**balls(*CLUSTER), **more}}, root="all")
 
         self.assert_message(self.mistakes(one(count=0)), "E0805", "`count`")
-        self.assert_message(self.mistakes(one(count="ball")), "E0806", "no member `ball`")
+        self.assert_message(self.mistakes(one(count="ball")), "E0806", "no buffer `ball`")
         self.assertEqual(self.mistakes(one(count="ball"))[0]["fixes"][0]["replacement"], "balls")
         empty = one(count="balls")
         empty["nodes"]["all"]["primitive"]["balls"] = []
