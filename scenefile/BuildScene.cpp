@@ -196,11 +196,14 @@ private:
 
   /// An element for each launch index.
   Value outputOf(const MemberInfo &member, const std::string &name) const {
-    const auto &[width, height] = std::pair(description.render.width, description.render.height);
+    const std::uint32_t width = description.render.width, slices = description.render.slices;
+    const std::uint32_t height = description.render.height / slices;
     const std::string what = fmt::format("member `{}` of `{}`", member.name, name);
-    if (member.type.bufferRank == 1 && height == 1)
+    if (member.type.bufferRank == 1 && height == 1 && slices == 1)
       return zeros({width}, member.type, what);
-    if (member.type.bufferRank == 2)
+    if (member.type.bufferRank == 3)
+      return zeros({slices, height, width}, member.type, what);
+    if (member.type.bufferRank == 2 && slices == 1)
       return zeros({height, width}, member.type, what);
     throw Error(message::bufferSizeMissing(what, member.type.name),
                 description.rayGeneration->place);

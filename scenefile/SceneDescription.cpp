@@ -214,6 +214,7 @@ runtime::RenderOptions renderOptions(const RenderSettings &settings) {
   runtime::RenderOptions options;
   options.width = settings.width;
   options.height = settings.height;
+  options.slices = settings.slices;
   options.samplesPerPixel = settings.samplesPerPixel;
   options.maxDepth = settings.depth;
   options.seed = settings.seed;

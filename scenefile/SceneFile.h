@@ -131,7 +131,9 @@ struct GeometryDescription {
 /// "render", with the defaults for missing values.
 struct RenderSettings {
   runtime::Engine engine = runtime::Engine::Classic;
-  std::uint32_t width = 960, height = 540;
+  std::uint32_t width = 960, height = 540; // of all slices
+  std::uint32_t slices = 1;                // of a launch of three dimensions
+  std::string sizeBuffer;                  // the name of the buffer that gives the size; or empty
   std::uint32_t samplesPerPixel = 16;
   bool hasSamples = false; // the scene gives samplesPerPixel
   std::uint32_t depth = 8;

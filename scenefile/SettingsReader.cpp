@@ -37,15 +37,37 @@ static std::uint32_t lengthOfBuffer(const JsonValue &name, const SceneDescriptio
   }
 }
 
+/// Width, height and the number of slices of a launch of three dimensions.
+static void readSlices(const JsonValue &size, RenderSettings &render) {
+  readNumbers(size, 3, "`size`");
+  render.width = readInteger(size.elements[0], 1, runtime::mostPixelsOfSide, "the width");
+  const std::uint32_t height =
+      readInteger(size.elements[1], 1, runtime::mostPixelsOfSide, "the height");
+  render.slices =
+      readInteger(size.elements[2], 1, runtime::mostPixelsOfSide, "the number of slices");
+  const std::uint64_t rows = std::uint64_t(height) * render.slices;
+  const auto checkCount = [&](std::uint64_t count, std::uint32_t most, const char *what) {
+    if (count > most)
+      throw Error(message::launchTooLarge(count, what, most), size.place());
+  };
+  checkCount(rows, runtime::mostLaunchRows, "rows in all slices");
+  checkCount(rows * render.width, runtime::mostLaunchIndices, "launch indices");
+  render.height = std::uint32_t(rows);
+}
+
 void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
                   const JsonValue *rayGeneration) {
   if (const JsonValue *size = value.find("size")) {
+    render.slices = 1;
+    render.sizeBuffer = size->kind == Kind::String ? size->string : "";
     if (size->kind == Kind::String) {
       render.width = lengthOfBuffer(*size, scene, rayGeneration);
       render.height = 1;
     } else if (size->kind == Kind::Array && size->elements.size() == 1) {
       render.width = readInteger(size->elements[0], 1, runtime::mostLaunchWidth, "the size");
       render.height = 1;
+    } else if (size->kind == Kind::Array && size->elements.size() == 3) {
+      readSlices(*size, render);
     } else {
       readNumbers(*size, 2, "`size`");
       render.width = readInteger(size->elements[0], 1, runtime::mostPixelsOfSide, "the width");

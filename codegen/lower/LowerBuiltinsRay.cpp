@@ -1,5 +1,6 @@
 //===- LowerBuiltinsRay.cpp - trace, hit, rand and ambient ----------------===//
 #include "codegen/lower/Lowering.h"
+#include "language/formulas/Spaces.h"
 #include "sema/typed/Analysis.h"
 
 #include "runtime/device/ray/Abi.h"
@@ -51,6 +52,39 @@ Parts FunctionLowering::lowerAmbient(const typed::BuiltinExpr &expr) {
 Parts FunctionLowering::lowerLightCount(const typed::BuiltinExpr &expr) {
   emitter.setLoc(module.location(expr.range));
   return {emitter.make<ir::LightCountOp>(emitter.getI32Type())};
+}
+
+/// The matrices are those of the state at this point.
+Parts FunctionLowering::lowerSpaceChange(const typed::BuiltinExpr &expr) {
+  const Num given = num(value(*expr.args[0]));
+  emitter.setLoc(module.location(expr.range));
+  const auto load = [&](const char *state) {
+    const mlir::Type column = mlir::VectorType::get(4, emitter.getF32Type());
+    const Value matrix = emitter.make<ir::StateOp>(state, ir::ArrayType::get(4, column));
+    Columns columns;
+    for (unsigned i = 0; i < 4; ++i)
+      columns.push_back(num(emitter.load(emitter.element(matrix, i))));
+    return columns;
+  };
+  const auto toWorld = [&] { return load("ObjectToWorld"); };
+  const auto toObject = [&] { return load("WorldToObject"); };
+  const auto changed = [&] {
+    switch (expr.builtin) {
+    case Builtin::PointToWorld:
+      return formulas::pointToWorld(toWorld(), given);
+    case Builtin::PointToObject:
+      return formulas::pointToObject(toWorld(), toObject(), given);
+    case Builtin::VectorToWorld:
+      return formulas::transformVector(toWorld(), given);
+    case Builtin::VectorToObject:
+      return formulas::transformVector(toObject(), given);
+    case Builtin::NormalToWorld:
+      return formulas::transformNormal(toObject(), given);
+    default:
+      return formulas::transformNormal(toWorld(), given);
+    }
+  };
+  return {changed()};
 }
 
 Parts FunctionLowering::lowerVisitChild(const typed::BuiltinExpr &expr) {

@@ -275,6 +275,7 @@ private:
   Parts lowerIlluminateBySurface(const typed::BuiltinExpr &expr);
   Parts lowerLightCount(const typed::BuiltinExpr &expr);
   Parts lowerPrint(const typed::BuiltinExpr &expr);
+  Parts lowerSpaceChange(const typed::BuiltinExpr &expr);
   Parts lowerRand(const typed::BuiltinExpr &expr);
   Parts lowerTrace(const typed::BuiltinExpr &expr);
   Parts lowerTracePayload(const typed::BuiltinExpr &expr);

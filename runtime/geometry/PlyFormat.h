@@ -1,7 +1,7 @@
 //===- PlyFormat.h - header and values of PLY files -----------------------===//
 //
 // What a PLY file declares, and its values one after the other, in text and in both byte orders.
-// PlyFile.h reads meshes by it, and scenefile/files/PlyColumns.h columns of numbers.
+// PlyFile.h reads meshes by it, and runtime/buffers/PlyColumns.h columns of numbers.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

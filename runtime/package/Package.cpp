@@ -17,7 +17,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 7;
+constexpr std::uint32_t formatVersion = 8;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -30,10 +30,18 @@ struct Header {
 };
 static_assert(sizeof(Header) == 64);
 
-enum class SectionKind : std::uint32_t { Info = 1, Ptx, HostCode, Scene, Pointers, LaneBytes };
-constexpr SectionKind allKinds[] = {SectionKind::Info,     SectionKind::Ptx,
-                                    SectionKind::HostCode, SectionKind::Scene,
-                                    SectionKind::Pointers, SectionKind::LaneBytes};
+enum class SectionKind : std::uint32_t {
+  Info = 1,
+  Ptx,
+  HostCode,
+  Scene,
+  Pointers,
+  LaneBytes,
+  Buffers
+};
+constexpr SectionKind allKinds[] = {
+    SectionKind::Info,     SectionKind::Ptx,       SectionKind::HostCode, SectionKind::Scene,
+    SectionKind::Pointers, SectionKind::LaneBytes, SectionKind::Buffers};
 
 struct Section {
   std::uint32_t kind;
@@ -53,11 +61,11 @@ struct Layouts {
 
 struct Info {
   Layouts layouts;
-  std::uint32_t width, height, samplesPerPixel, maxDepth, seed;
+  std::uint32_t width, height, slices, unused, samplesPerPixel, maxDepth, seed;
   std::uint32_t stateCount, frameBytes, hostStackBytes, registers;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
-static_assert(sizeof(Info) == 88);
+static_assert(sizeof(Info) == 96);
 
 std::string_view bytesOf(const void *data, std::size_t size) {
   return {static_cast<const char *>(data), size};
@@ -81,6 +89,7 @@ Info infoOf(const Package &package) {
   info.layouts = Layouts();
   info.width = package.options.width;
   info.height = package.options.height;
+  info.slices = package.options.slices;
   info.samplesPerPixel = package.options.samplesPerPixel;
   info.maxDepth = package.options.maxDepth;
   info.seed = package.options.seed;
@@ -97,13 +106,15 @@ Info infoOf(const Package &package) {
 
 std::string serialize(const Package &package) {
   const Info info = infoOf(package);
+  const std::string buffers = serialize(package.buffers);
   const std::string_view contents[] = {
       bytesOf(&info, sizeof info),
       package.ptx,
       bytesOf(package.host.bytes.data(), package.host.bytes.size()),
       bytesOf(package.scene.bytes.data(), package.scene.bytes.size()),
       bytesOf(package.scene.pointers.data(), package.scene.pointers.size() * 8),
-      bytesOf(package.laneBytes.data(), sizeof package.laneBytes)};
+      bytesOf(package.laneBytes.data(), sizeof package.laneBytes),
+      buffers};
   constexpr std::size_t count = std::size(contents);
   static_assert(count == std::size(allKinds));
 
@@ -146,6 +157,7 @@ public:
     const std::string_view code = content(SectionKind::HostCode);
     package.host.bytes.assign(code.begin(), code.end());
     readScene(package.scene);
+    readBuffers(package);
     return package;
   }
 
@@ -206,6 +218,7 @@ private:
     std::memcpy(&info, bytes.data(), sizeof info);
     package.options.width = info.width;
     package.options.height = info.height;
+    package.options.slices = info.slices;
     package.options.samplesPerPixel = info.samplesPerPixel;
     package.options.maxDepth = info.maxDepth;
     package.options.seed = info.seed;
@@ -242,6 +255,14 @@ private:
       if (target >= bytes.size())
         refuseDamaged();
     }
+  }
+
+  void readBuffers(Package &package) const {
+    if (!parse(content(SectionKind::Buffers), package.buffers))
+      refuseDamaged();
+    for (const PackageBuffer &buffer : package.buffers)
+      if (buffer.place > package.scene.bytes.size() - sizeof(RtslBuffer))
+        refuseDamaged();
   }
 
   std::string_view file;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/accel/FlatScene.h"
+#include "runtime/package/Buffers.h"
 #include "runtime/render/RenderOptions.h"
 
 #include <array>
@@ -35,6 +36,7 @@ struct Package {
   std::uint32_t registers = 0; // GpuCode::maxRegisters
   NativeImage host;
   FlatScene scene; // not relocated
+  std::vector<PackageBuffer> buffers;
 };
 
 /// The same package gives the same bytes.

@@ -19,10 +19,7 @@ static constexpr std::uint64_t mostInSlice = 0x7fffffff;
 
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status) {
   RtslLaunch launch = scene.launch();
-  launch.width = options.width;
-  launch.height = options.height;
-  launch.maxDepth = options.maxDepth;
-  launch.seed = options.seed;
+  setLaunch(launch, options);
   launch.status = status;
   scene.setLaunch(launch);
 }

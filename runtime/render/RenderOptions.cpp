@@ -16,9 +16,28 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
     throw Error(message::optionOutOfRange(what, lowest, highest, value));
 }
 
-void checkOptions(const RenderOptions &options) {
+void setLaunch(RtslLaunch &launch, const RenderOptions &options) {
+  launch.width = options.width;
+  launch.height = options.height / options.slices;
+  launch.slices = options.slices;
+  launch.maxDepth = options.maxDepth;
+  launch.seed = options.seed;
+}
+
+static void checkSize(const RenderOptions &options) {
   checkRange("width", options.width, 1, options.height == 1 ? mostLaunchWidth : mostPixelsOfSide);
-  checkRange("height", options.height, 1, mostPixelsOfSide);
+  if (options.slices == 1)
+    return checkRange("height", options.height, 1, mostPixelsOfSide);
+  checkRange("number of slices", options.slices, 1, mostPixelsOfSide);
+  checkRange("number of rows", options.height, 1, mostLaunchRows);
+  checkRange("number of launch indices", std::uint64_t(options.width) * options.height, 1,
+             mostLaunchIndices);
+  if (options.height % options.slices != 0)
+    throw Error(message::rowsNotInSlices(options.height, options.slices));
+}
+
+void checkOptions(const RenderOptions &options) {
+  checkSize(options);
   if (const std::optional<Window> &crop = options.crop;
       crop && (crop->x0 >= crop->x1 || crop->y0 >= crop->y1 || crop->x1 > options.width ||
                crop->y1 > options.height))

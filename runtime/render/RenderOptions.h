@@ -24,6 +24,8 @@ constexpr std::uint32_t maxRayDepth = 256;
 constexpr std::uint32_t mostPixelsOfSide = 65536;
 /// The largest width of a launch with one row.
 constexpr std::uint32_t mostLaunchWidth = 1u << 28;
+/// The most indices of a launch of three dimensions, and its most rows.
+constexpr std::uint32_t mostLaunchIndices = 1u << 28, mostLaunchRows = 1u << 24;
 constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
 constexpr std::uint32_t mostThreads = 1024;
 
@@ -37,7 +39,9 @@ struct Window {
 };
 
 struct RenderOptions {
+  /// All rows: those of a launch of three dimensions are `slices` times as many as it has in y.
   std::uint32_t width = 960, height = 540;
+  std::uint32_t slices = 1;
   std::optional<Window>
       crop; // only these pixels are rendered: those of the whole picture, bit for bit
   std::uint32_t samplesPerPixel = 16;
@@ -95,6 +99,9 @@ struct RenderStatistics {
   std::vector<SampleId> notFinite;       // the first samples that are not finite
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
+
+/// Sets the size, depth and seed of a launch.
+void setLaunch(RtslLaunch &launch, const RenderOptions &options);
 
 /// Throws OutOfRange if the size, the crop, the samples or the depth make no picture.
 void checkOptions(const RenderOptions &options);

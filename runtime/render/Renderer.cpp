@@ -138,10 +138,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
     throw Error(message::noMemoryForTree());
   }
   self->launch.host = self->host.get();
-  self->launch.width = options.width;
-  self->launch.height = options.height;
-  self->launch.maxDepth = options.maxDepth;
-  self->launch.seed = options.seed;
+  setLaunch(self->launch, options);
   self->window = windowOf(options);
   self->tilesAcross = (self->window.width() + tileSize - 1) / tileSize;
   self->tileCount = self->tilesAcross * ((self->window.height() + tileSize - 1) / tileSize);

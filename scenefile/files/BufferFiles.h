@@ -6,23 +6,15 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/scene/ValueStore.h"
+#include "runtime/buffers/BufferFiles.h"
 #include "scenefile/json/JsonValue.h"
 
-#include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
 namespace rtsl::scene {
 
-struct BufferDescription {
-  std::string file;                 // resolved; empty: zeros
-  std::string element = "vertex";   // of .ply: whose columns
-  std::vector<std::string> columns; // of .csv and .ply; empty: all
-  // of zeros, or of a file without a format: then empty is one dimension
-  std::vector<std::uint32_t> shape;
-};
+using runtime::BufferDescription;
 
 /// Is it a buffer in a file, or of zeros? For the value of a member.
 bool isBuffer(const JsonValue &value);
@@ -31,18 +23,5 @@ bool isBuffer(const JsonValue &value);
 BufferDescription
 readBufferDescription(const JsonValue &buffer,
                       const std::function<std::string(const JsonValue &)> &resolve);
-
-/// As a block of memory for a member of this type. `what` names the member in messages.
-/// Throws WrongType, OutOfRange, BadBuffer, and the errors of reading a file.
-runtime::Value readBuffer(const BufferDescription &buffer, const runtime::ValueType &type,
-                          std::uint32_t colorComponents, const std::string &what);
-
-/// The number of elements along the first dimension, which is that of a file if it says so. Throws
-/// MissingKey, BadBuffer, and the errors of reading a file.
-std::size_t lengthOf(const BufferDescription &buffer);
-
-/// Zeros for a member of this type.
-runtime::Value zeros(const std::vector<std::uint32_t> &sizes, const runtime::ValueType &type,
-                     const std::string &what);
 
 } // namespace rtsl::scene

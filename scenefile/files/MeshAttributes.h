@@ -10,8 +10,7 @@
 #pragma once
 
 #include "runtime/geometry/Mesh.h"
-#include "runtime/program/Program.h"
-#include "runtime/scene/Value.h"
+#include "runtime/scene/SceneData.h"
 #include "scenefile/json/JsonValue.h"
 
 #include <string>

@@ -44,7 +44,7 @@ static RootModel primitiveModel() {
   const StateSet withCoordinates = withNormals | textureCoordinates;
   const StateSet withDerivatives = withCoordinates | surfaceDerivatives | textureDerivatives;
   const StateSet sees = withDerivatives | StateSet{S::PDF};
-  const AbilitySet ofAHit = {A::Random, A::ReadScratch};
+  const AbilitySet ofAHit = {A::Random, A::ReadScratch, A::Spaces};
   return {
       "rt_Primitive",
       sees,
@@ -69,7 +69,10 @@ static RootModel textureModel() {
                                  S::dv,           S::ObjectToWorld,     S::WorldToObject};
   return {"rt_Texture",
           sees,
-          {{"lookup", sees, {S::TextureColor, S::FloatTextureValue}, {A::Lookup, A::Random}}},
+          {{"lookup",
+            sees,
+            {S::TextureColor, S::FloatTextureValue},
+            {A::Lookup, A::Random, A::Spaces}}},
           false};
 }
 
@@ -87,7 +90,7 @@ static RootModel materialModel() {
                                  S::BSDFValue,
                                  S::du,
                                  S::dv};
-  const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch};
+  const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch, A::Spaces};
   // What the sampling methods are given and write: methods that call them write it, too.
   const StateSet sampling = {S::LightDirection, S::BSDFSeed, S::BSDFValue, S::PDF,
                              S::EmissionColor};
@@ -154,7 +157,7 @@ static RootModel missModel() {
 static RootModel selectorModel() {
   const StateSet sees = everyRay | StateSet{S::RayOrigin, S::RayDirection, S::InverseRayDirection,
                                             S::ObjectToWorld, S::WorldToObject};
-  return {"rt_Selector", sees, {{"visit", sees, {}, {A::VisitChild, A::Random}}}, false};
+  return {"rt_Selector", sees, {{"visit", sees, {}, {A::VisitChild, A::Random, A::Spaces}}}, false};
 }
 
 static RootModel exceptionModel() {
@@ -317,7 +320,7 @@ const Type *typeOf(typed::StateVariable variable, TypeContext &types) {
 #include "language/StateVariables.def"
   };
   const std::string keyword = keywords[static_cast<std::size_t>(variable)];
-  return types.named(keyword == "uint2" ? "uvec2" : keyword);
+  return types.named(keyword == "uint3" ? "uvec3" : keyword);
 }
 
 const std::vector<std::string> &stateVariableNames() {

@@ -52,6 +52,7 @@ enum class Ability : std::uint8_t {
   WriteMembers, // public and private members
   WriteBuffers, // elements of output buffers
   CallSampling, // BSDF, sampleBSDF, evaluatePDF and emission of the same object
+  Spaces,       // conversions between object space and world space
   CallColor,    // shade, or miss without payload, of the same object
 };
 

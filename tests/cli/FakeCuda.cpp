@@ -90,7 +90,8 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads) {
   for (std::uint32_t i = 0; i < launch.meshCount; ++i)
     isFine &= isAllocated(launch.meshes[i].positions, 12 * launch.meshes[i].vertexCount) &&
               isAllocated(launch.meshes[i].indices, 12 * launch.meshes[i].triangleCount);
-  isFine &= job.left + job.width <= launch.width && job.top + job.height <= launch.height;
+  isFine &=
+      job.left + job.width <= launch.width && job.top + job.height <= launch.height * launch.slices;
   if (!isFine)
     return IllegalAddress;
   const std::uint64_t first = job.status->nextSample,

@@ -184,6 +184,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
             "no mesh number 7",
             "rt_Selector",
             "member `center` of `Sphere` is read, but not set",
+            "has 2 values, and `the mesh` has 3 vertices",
             "no selection number 5",
             "holds no primitives",
         ),

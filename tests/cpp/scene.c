@@ -18,6 +18,8 @@ static int fail(const char *what) {
 }
 
 static int mistakes(void) {
+  const float values[] = {0.5f, 1.0f}, corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  const uint32_t indices[] = {0, 1, 2};
   const double one = 1.0, center[] = {0.0, 0.0, 0.0}, infinite[12] = {HUGE_VAL};
   RtslScene *scene;
   RtslObject sphere, endless;
@@ -58,6 +60,10 @@ static int mistakes(void) {
   rtslMember(scene, "center", center, 3);
   sphere = rtslSceneAddObject(scene, "Sphere");
   endless = rtslSceneAddObject(scene, "Endless");
+  if (!rtslMeshAttribute(scene, "wear", 1, values, 2, 0, RTSL_NUMBERS) ||
+      rtslSceneAddTriangles(scene, corners, 3, indices, 1, endless) != 0)
+    return fail("fewer values than vertices");
+  printf("%s\n", rtslError());
   if (!rtslMark(scene, 3, 5) || rtslSceneAddPrimitive(scene, sphere, endless) != 0)
     return fail("an instance below no selector");
   printf("%s\n", rtslError());

@@ -63,6 +63,7 @@ int main(int argc, char **argv) {
   memcpy(&launch, scene, sizeof launch);
   launch.width = options[0];
   launch.height = options[1];
+  launch.slices = 1;
   launch.maxDepth = options[3];
   launch.seed = options[4];
   launch.status = &status;

@@ -307,6 +307,7 @@ World::World(const runtime::Program &code, const Program &program)
   launch.colorComponents = code.colorComponents;
   launch.width = 5;
   launch.height = 3;
+  launch.slices = 1;
   launch.seed = program.seed;
   addMotion();
   launch.transforms = transforms.data();

@@ -52,14 +52,17 @@ void addSizeOption(CLI::App &command, std::optional<PictureSize> &size) {
       ->type_name("WxH");
 }
 
-void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format) {
-  command.add_option("-o,--output", output, "the picture: .png or .exr; - is standard output")
-      ->required()
-      ->type_name("IMAGE");
+CLI::Option *addPictureOption(CLI::App &command, std::string &output,
+                              runtime::PictureFormat &format) {
+  CLI::Option *picture =
+      command.add_option("-o,--output", output, "the picture: .png or .exr; - is standard output")
+          ->required()
+          ->type_name("IMAGE");
   addChoice(command, "--format", format,
             Choices<runtime::PictureFormat>{{"png", runtime::PictureFormat::Png},
                                             {"exr", runtime::PictureFormat::Exr}},
             "the format of the picture; default: by its name, png for -");
+  return picture;
 }
 
 void checkPictureName(const std::string &output, runtime::PictureFormat format) {

@@ -23,7 +23,8 @@ void addSizeOption(CLI::App &command, std::optional<PictureSize> &size);
 void addCropOption(CLI::App &command, std::optional<runtime::Window> &crop);
 
 /// Adds -o IMAGE, which must be given, and --format.
-void addPictureOption(CLI::App &command, std::string &output, runtime::PictureFormat &format);
+CLI::Option *addPictureOption(CLI::App &command, std::string &output,
+                              runtime::PictureFormat &format);
 /// Throws where neither the name nor --format determines the format of the picture. When all
 /// options are read.
 void checkPictureName(const std::string &output, runtime::PictureFormat format);

@@ -6,12 +6,14 @@
 // and 143 if SIGINT or SIGTERM stopped it.
 //
 //===----------------------------------------------------------------------===//
+#include "runtime/buffers/BufferOutput.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
 #include "runtime/render/HostMegakernel.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
+#include "tools/common/BufferOptions.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
@@ -36,6 +38,7 @@ enum class Target : std::uint8_t { Gpu, Host };
 
 struct Options {
   std::string package, output, reference;
+  std::vector<tool::BufferFile> inputs, outputs;
   Target target = Target::Gpu;
   std::optional<std::uint32_t> samples, depth, seed;
   std::optional<tool::PictureSize> size;
@@ -51,6 +54,7 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   if (options.size) {
     render.width = options.size->width;
     render.height = options.size->height;
+    render.slices = 1;
   }
   render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
@@ -60,6 +64,7 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   render.tree = options.tree.value_or(runtime::TreeKind::Fast); // if the package has none
   render.cancel = tool::catchInterruptions();
   render.keepsUnfinished = true;
+  render.wantsPicture = !options.output.empty();
   return render;
 }
 
@@ -126,8 +131,10 @@ void report(const Options &options, const runtime::Package &package,
   if (options.quiet)
     return;
   fmt::print(stderr, "{}: {}x{}, {} spp; rendered in {:.3f} s ({:.2f} million samples/s)\n",
-             options.output == "-" ? "standard output" : options.output, render.width,
-             render.height, render.samplesPerPixel, statistics.renderSeconds,
+             options.output == "-"    ? "standard output"
+             : options.output.empty() ? options.package
+                                      : options.output,
+             render.width, render.height, render.samplesPerPixel, statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (gpu)
     fmt::print(stderr, "{}\n", tool::gpuText(*gpu));
@@ -168,15 +175,47 @@ bool compare(const runtime::Image &image, const runtime::Image &reference, const
   return different == 0;
 }
 
-int render(const Options &options) {
-  runtime::checkWritable(options.output, options.format);
-  refuseToOverwrite(options.output, {options.package});
+/// Rejects outputs that cannot be written, or that are inputs, before time is spent.
+void checkOutputs(const Options &options) {
+  std::vector<std::string> read{options.package};
   if (!options.reference.empty())
-    refuseToOverwrite(options.output, {options.reference});
+    read.push_back(options.reference);
+  for (const tool::BufferFile &input : options.inputs)
+    read.push_back(input.file);
+  if (!options.output.empty()) {
+    runtime::checkWritable(options.output, options.format);
+    refuseToOverwrite(options.output, read);
+  }
+  for (const tool::BufferFile &output : options.outputs) {
+    checkFileWritable(output.file);
+    refuseToOverwrite(output.file, read);
+  }
+}
+
+/// Reads the buffers of --in. The launch has the size of the one that gives it.
+void readBuffers(const Options &options, runtime::LaunchBuffers &buffers,
+                 runtime::RenderOptions &render) {
+  for (const tool::BufferFile &input : options.inputs) {
+    const runtime::PackageBuffer &buffer = buffers.find(input.name, "--in");
+    buffers.read(buffer, input.file);
+    if (!buffer.setsLaunchSize || options.size)
+      continue;
+    render.width = buffers.lengthOf(buffer);
+    render.height = render.slices = 1;
+  }
+  buffers.setSize(render);
+}
+
+int render(const Options &options) {
+  checkOutputs(options);
   runtime::Package package = runtime::readPackage(options.package);
   if (options.tree == runtime::TreeKind::Fast)
     package.scene.removeTrees();
-  const runtime::RenderOptions render = renderOptions(options, package);
+  runtime::RenderOptions render = renderOptions(options, package);
+  runtime::LaunchBuffers buffers(package.scene, package.buffers);
+  for (const tool::BufferFile &output : options.outputs)
+    buffers.find(output.name, "--out");
+  readBuffers(options, buffers, render);
   const std::optional<runtime::Image> reference = readReference(options, package, render);
   runtime::RenderStatistics statistics;
   std::optional<runtime::GpuStatistics> gpu;
@@ -185,16 +224,20 @@ int render(const Options &options) {
     runtime::CudaDevice device;
     const runtime::GpuCode code = {package.ptx, package.laneBytes[render.maxDepth],
                                    options.registers ? options.registers : package.registers};
-    runtime::GpuRenderer renderer(device, code, package.scene, render);
+    runtime::GpuRenderer renderer(device, code, buffers.scene(), render);
     image = renderer.render(&statistics);
     gpu = renderer.gpu();
   } else {
     const runtime::NativeCode code(package.host);
-    image = runtime::HostMegakernel(code.entries(), package.scene, render).render(&statistics);
+    image = runtime::HostMegakernel(code.entries(), buffers.scene(), render).render(&statistics);
   }
   if (statistics.samples == 0)
     throw Error(message::stoppedBeforeFirstSample());
-  runtime::writeImage(options.output, image, options.format);
+  if (!options.output.empty())
+    runtime::writeImage(options.output, image, options.format);
+  if (!statistics.isUnfinished)
+    for (const tool::BufferFile &output : options.outputs)
+      runtime::writeBuffer(output.file, buffers.output(buffers.find(output.name, "--out")));
   report(options, package, render, statistics, gpu);
   return !reference || compare(image, *reference, options) ? Fine : Refused;
 }
@@ -204,7 +247,12 @@ void addOptions(CLI::App &app, Options &options) {
   app.add_option("PACKAGE", options.package,
                  "a package written by `rtslc pack`; - is standard input")
       ->required();
-  tool::addPictureOption(app, options.output, options.format);
+  tool::addPictureOption(app, options.output, options.format)->required(false);
+  tool::addBufferOption(
+      app, "--out", options.outputs,
+      "write an output buffer: .npy, .csv, or the elements as they lie in memory");
+  tool::addBufferOption(app, "--in", options.inputs,
+                        "replace the elements of a buffer by those of a file");
   tool::addChoice(app, "--target", options.target,
                   tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
                   "where to render: gpu, the first CUDA device; host, all cores");
@@ -231,7 +279,13 @@ void addOptions(CLI::App &app, Options &options) {
              "2 wrong arguments, 3 an internal error; 130 after SIGINT (Ctrl-C), 143 after "
              "SIGTERM.");
   app.callback([&options] {
-    tool::checkPictureName(options.output, options.format);
+    if (options.output.empty() && options.outputs.empty())
+      throw CLI::RequiredError("--output, a picture, or --out, a buffer,");
+    if (options.output.empty() && !options.reference.empty())
+      throw CLI::ValidationError("--compare", "there is no picture to compare without `-o`");
+    if (!options.output.empty())
+      tool::checkPictureName(options.output, options.format);
+    tool::checkOutputFiles(options.outputs, options.output);
     if (options.json && options.output == "-")
       throw CLI::ValidationError("--json", "standard output is the picture; give a file to `-o`");
   });

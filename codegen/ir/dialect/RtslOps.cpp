@@ -283,7 +283,7 @@ LogicalResult StateOp::verify() {
   return verifyPart(*this, llvm::StringSwitch<mlir::Type>(kind)
                                .Case("float", f32)
                                .Case("int", i32)
-                               .Case("uint2", vector(2, i32))
+                               .Case("uint3", vector(3, i32))
                                .Case("vec2", vector(2, f32))
                                .Case("vec3", vector(3, f32))
                                .Case("mat4", ArrayType::get(4, vector(4, f32))));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rtsl/shader/Elementary.h"
+#include "rtsl/shader/Geometry.h"
 #include "rtsl/shader/State.h"
 
 namespace rtsl {
@@ -86,6 +87,42 @@ inline bool hit(State<N> &rt, Scratch &scratch, float t, Error... error) {
 template <int N>
 inline void visitChild(State<N> &rt, int child) {
   rtsl_visit_child(rawState(rt), child);
+}
+
+/// A direction or a difference of points.
+inline glm::vec3 transformVector(const glm::mat4 &m, const glm::vec3 &v) {
+  return (glm::vec3(m[0]) * v.x + glm::vec3(m[1]) * v.y) + glm::vec3(m[2]) * v.z;
+}
+/// A normal, by the matrix of the other direction.
+inline glm::vec3 transformNormal(const glm::mat4 &m, const glm::vec3 &n) {
+  return {rtsl::dot(n, glm::vec3(m[0])), rtsl::dot(n, glm::vec3(m[1])),
+          rtsl::dot(n, glm::vec3(m[2]))};
+}
+
+/// Points, vectors and normals between the object space of what is hit and world space.
+template <int N>
+inline glm::vec3 pointToWorld(const State<N> &rt, const glm::vec3 &p) {
+  return transformVector(rt.ObjectToWorld, p) + glm::vec3(rt.ObjectToWorld[3]);
+}
+template <int N>
+inline glm::vec3 pointToObject(const State<N> &rt, const glm::vec3 &p) {
+  return transformVector(rt.WorldToObject, p - glm::vec3(rt.ObjectToWorld[3]));
+}
+template <int N>
+inline glm::vec3 vectorToWorld(const State<N> &rt, const glm::vec3 &v) {
+  return transformVector(rt.ObjectToWorld, v);
+}
+template <int N>
+inline glm::vec3 vectorToObject(const State<N> &rt, const glm::vec3 &v) {
+  return transformVector(rt.WorldToObject, v);
+}
+template <int N>
+inline glm::vec3 normalToWorld(const State<N> &rt, const glm::vec3 &n) {
+  return transformNormal(rt.WorldToObject, n);
+}
+template <int N>
+inline glm::vec3 normalToObject(const State<N> &rt, const glm::vec3 &n) {
+  return transformNormal(rt.ObjectToWorld, n);
 }
 
 /// Uniform in [0, 1).

@@ -42,7 +42,7 @@ struct [[gnu::may_alias]] State {
 
 #define RTSL_SHADER_float float
 #define RTSL_SHADER_int int
-#define RTSL_SHADER_uint2 glm::uvec2
+#define RTSL_SHADER_uint3 glm::uvec3
 #define RTSL_SHADER_vec2 glm::vec2
 #define RTSL_SHADER_vec3 glm::vec3
 #define RTSL_SHADER_mat4 glm::mat4

@@ -30,11 +30,9 @@ inline void inherit(RtslState &state, const RtslState &parent) {
   if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = parent.TimeSeed;
   state.Time = parent.Time; // rays with a payload pass it on, whether it is read or not
-  if (needs & RTSL_NEEDS_LAUNCH) {
-    state.LaunchIndex[0] = parent.LaunchIndex[0];
-    state.LaunchIndex[1] = parent.LaunchIndex[1];
-    state.LaunchSize[0] = parent.LaunchSize[0];
-    state.LaunchSize[1] = parent.LaunchSize[1];
+  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
+    state.LaunchIndex[i] = parent.LaunchIndex[i];
+    state.LaunchSize[i] = parent.LaunchSize[i];
   }
   state.rayMask = parent.rayMask;
   state.rayRoot = parent.rayRoot;
@@ -177,7 +175,8 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
 }
 
-/// The start of a sample of a pixel. Row 0 is the top of the image, where ScreenCoord.y is near 1.
+/// The start of a sample of a pixel; rows count on from slice to slice. Row 0 is the top of the
+/// image, where ScreenCoord.y is near 1.
 inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
   beginState(state, &launch);
@@ -185,15 +184,19 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   const SampleNumbers numbers = beginRandomNumbers(state, x, y, index, launch.seed);
   state.Depth = 0;
   uint32_t needs = rtsl_needs(&launch);
+  const uint32_t slice = launch.slices > 1 ? y / launch.height : 0;
+  const uint32_t row = y - slice * launch.height;
   if (needs & RTSL_NEEDS_LAUNCH) {
     state.LaunchIndex[0] = x;
-    state.LaunchIndex[1] = y;
+    state.LaunchIndex[1] = row;
+    state.LaunchIndex[2] = slice;
     state.LaunchSize[0] = launch.width;
     state.LaunchSize[1] = launch.height;
+    state.LaunchSize[2] = launch.slices;
   }
 
   state.ScreenCoord[0] = (float(x) + numbers.pixel[0]) / float(launch.width);
-  state.ScreenCoord[1] = 1.0f - (float(y) + numbers.pixel[1]) / float(launch.height);
+  state.ScreenCoord[1] = 1.0f - (float(row) + numbers.pixel[1]) / float(launch.height);
   if (needs & RTSL_NEEDS_LENS) {
     state.LensCoord[0] = numbers.lens[0];
     state.LensCoord[1] = numbers.lens[1];

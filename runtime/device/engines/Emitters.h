@@ -277,8 +277,10 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   state.randomKey[0] = key.x;
   state.randomKey[1] = key.y;
   state.dimension = 0;
-  state.LaunchIndex[0] = state.LaunchIndex[1] = 0;
-  state.LaunchSize[0] = state.LaunchSize[1] = 1;
+  for (int i = 0; i < 3; ++i) {
+    state.LaunchIndex[i] = 0;
+    state.LaunchSize[i] = 1;
+  }
   state.Time = state.TimeSeed = 0;
   state.Depth = 0;
   state.rayType = 0;

@@ -67,7 +67,7 @@ inline uint32_t wordsOf(KeptField field, uint32_t components) {
 #define RTSL_WORDS_float 1
 #define RTSL_WORDS_int 1
 #define RTSL_WORDS_vec2 2
-#define RTSL_WORDS_uint2 2
+#define RTSL_WORDS_uint3 3
 #define RTSL_WORDS_vec3 3
 #define RTSL_WORDS_mat4 16
 #define RTSL_WORDS_color components

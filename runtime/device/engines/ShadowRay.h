@@ -18,7 +18,7 @@ struct ShadowRay {
   RtslEvents *events;
   Vec3 origin;
   float time, timeSeed;
-  uint32_t launchIndex[2], launchSize[2];
+  uint32_t launchIndex[3], launchSize[3];
   uint32_t mask;
   int32_t root, depth;
   uint32_t randomKey[2];
@@ -31,7 +31,7 @@ inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
   ray.origin = point;
   ray.time = shading.Time;
   ray.timeSeed = shading.TimeSeed;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 3; ++i) {
     ray.launchIndex[i] = shading.LaunchIndex[i];
     ray.launchSize[i] = shading.LaunchSize[i];
   }
@@ -48,11 +48,12 @@ inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   state.events = ray.events;
   state.TimeSeed = ray.timeSeed;
   state.Time = ray.time;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 3; ++i) {
     state.LaunchIndex[i] = ray.launchIndex[i];
     state.LaunchSize[i] = ray.launchSize[i];
-    state.randomKey[i] = ray.randomKey[i];
   }
+  for (int i = 0; i < 2; ++i)
+    state.randomKey[i] = ray.randomKey[i];
   state.rayMask = ray.mask;
   state.rayRoot = ray.root;
   state.rayType = 0;

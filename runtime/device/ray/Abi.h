@@ -201,6 +201,7 @@ typedef struct RtslLaunch {
   // the maximum number of references from one object to the next, in a chain
   uint32_t referenceChain;
   uint32_t width, height;
+  uint32_t slices; // of three dimensions: as many parts of `height` rows, one after the other
   uint32_t seed;
   uint32_t needs;           // RTSL_NEEDS_*: what the classes of the scene read
   const RtslBvhNode *nodes; // device traversal, the root first; null if the host's own is used
@@ -319,7 +320,7 @@ typedef struct RtslState {
 
 #define RTSL_TYPE_float(n) float n
 #define RTSL_TYPE_int(n) int32_t n
-#define RTSL_TYPE_uint2(n) uint32_t n[2]
+#define RTSL_TYPE_uint3(n) uint32_t n[3]
 #define RTSL_TYPE_vec2(n) float n[2]
 #define RTSL_TYPE_vec3(n) float n[3]
 #define RTSL_TYPE_mat4(n) float n[16]

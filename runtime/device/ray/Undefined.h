@@ -41,6 +41,8 @@ inline void takeFromSample(RtslState &state, const RtslState &other) {
   for (int i = 0; i < 2; ++i) {
     state.ScreenCoord[i] = other.ScreenCoord[i];
     state.LensCoord[i] = other.LensCoord[i];
+  }
+  for (int i = 0; i < 3; ++i) {
     state.LaunchIndex[i] = other.LaunchIndex[i];
     state.LaunchSize[i] = other.LaunchSize[i];
   }

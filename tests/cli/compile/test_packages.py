@@ -7,6 +7,7 @@ import subprocess
 import unittest
 
 from harness import DIAGNOSED, EXAMPLES, FINE, SECONDS, USAGE, Case
+from numpy_files import npy
 
 RTSL_RUN = os.environ["RTSL_RUN"]
 INTERNAL = 3
@@ -82,6 +83,78 @@ class Packages(Case):
             (figures["size"], figures["spp"], figures["frameBytes"]), ([32, 18], 2, 28)
         )
         self.assertNotIn("rendered in", error)
+
+    def test_buffers_are_written_and_read(self):
+        """The bits of `rtslc run`, for the scene's own inputs and for others of another length."""
+        self.write(
+            "steps.rtsl",
+            """struct Cell { float share; ivec2 at; };
+class Steps : rt_RayGeneration {
+  public float origins[];
+  public out Cell cells[];
+  public inout int counts[];
+  void generate() {
+    uint i = rt_LaunchIndex.x;
+    cells[i] = Cell(origins[i] + rand(), ivec2(int(i), origins.length()));
+    atomicAdd(counts[i % uint(counts.length())], 1);
+  }
+};""",
+        )
+        scene = {
+            "rtsl": 1,
+            "import": ["steps.rtsl"],
+            "buffers": {"starts": {"buffer": "starts.npy"}},
+            "rayGeneration": {
+                "class": "Steps",
+                "origins": "starts",
+                "counts": {"size": [2]},
+            },
+            "render": {"engine": "programs", "size": "origins", "spp": 1},
+        }
+        self.write("scene.json", json.dumps(scene))
+        self.write("starts.npy", npy("f", (3,), [0.5, 1, 2]))
+        self.write("more.npy", npy("d", (5,), [1, 2, 3, 4, 5]))
+        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
+        for inputs in ([], ["--in=starts=more.npy"], ["--in=origins=more.npy"]):
+            outputs = ["--out=cells=cells.npy", "--out=counts=counts.csv"]
+            self.run_rtslc("run", "scene.json", "-q", *inputs, *outputs)
+            expected = [(self.folder / name).read_bytes() for name in ("cells.npy", "counts.csv")]
+            done = self.run_alone(*inputs, *outputs, "--target=host", "-q")
+            self.assertEqual(done.stderr, b"")
+            for name, content in zip(("cells.npy", "counts.csv"), expected):
+                self.assertEqual((self.folder / name).read_bytes(), content, (name, inputs))
+        self.assertIn(b"counts`", self.run_alone("--out=count=a.npy", status=1).stderr)
+        self.assertIn(
+            b"the launch only reads this buffer",
+            self.run_alone("--out=origins=a.npy", "--target=host", status=1).stderr,
+        )
+        self.assertIn(
+            b"`--in nothing`: the package has no buffer of this name; it has",
+            self.run_alone("--in=nothing=more.npy", "--out=cells=a.npy", status=1).stderr,
+        )
+        self.assertIn(
+            b"`more.npy` is an input and would be overwritten",
+            self.run_alone(
+                "--in=origins=more.npy", "--out=cells=more.npy", "--target=host", status=1
+            ).stderr,
+        )
+        self.write("bad.npy", npy("f", (2, 2), [1, 2, 3, 4]))
+        self.assertIn(
+            b"`--in origins` is a `float[]`",
+            self.run_alone("--in=origins=bad.npy", "--out=cells=a.npy", status=1).stderr,
+        )
+        self.assertIn(b"--out, a buffer, is required", self.run_alone(status=2).stderr)
+        for bad in ("--out=cells", "--in==x", "--out=cells=a --out=cells=b"):
+            self.run_alone(*bad.split(), status=2)
+        self.assertNotIn("a.npy", self.files())
+
+    def run_alone(self, *arguments, status=FINE):
+        """rtsl-run on the package, without a picture."""
+        done = subprocess.run(
+            [RTSL_RUN, "x.rtslpkg", *arguments], cwd=self.folder, capture_output=True
+        )
+        self.assertEqual(done.returncode, status, done.stderr)
+        return done
 
     def test_needs_no_compiler(self):
         done = subprocess.run(

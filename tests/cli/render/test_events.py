@@ -74,8 +74,8 @@ class Events(Case):
         self.assertEqual(
             said,
             [
-                f"pixel {x},{y} sample {s}: at uvec2({x}, {y}) is {'true' if x == 1 else 'false'} "
-                "ivec2(-1, 2) "
+                f"pixel {x},{y} sample {s}: at uvec3({x}, {y}, 0) is "
+                f"{'true' if x == 1 else 'false'} ivec2(-1, 2) "
                 "color(0.5, 0.5, 0.5) mat2(1, 0, 0, 1) -0.125"
                 for x, y, s in places
             ],

@@ -176,7 +176,6 @@ class EveryPath(MotionCase):
         self.write(
             "Spaces.rtsl",
             """
-            import std.spaces;
             class Spaces : rt_Material {
               bool near(vec3 a, vec3 b) { return distance(a, b) < 1e-4; }
               void shade() {

@@ -68,6 +68,86 @@ class OutputBuffers(Case):
         self.run_rtslc("run", "scene.json", "-q", *(f"--out={name}={name}.npy" for name in names))
         return {name: read_npy(self.folder / f"{name}.npy") for name in names}
 
+    def test_launches_of_three_dimensions(self):
+        """Every index runs once, on every path, and knows its place; its rays have it, too."""
+        self.write(
+            "volume.rtsl",
+            """
+struct Ray { uvec3 at; };
+class Volume : rt_RayGeneration {
+  public out ivec3 at[][][];
+  public out float noise[][][];
+  public inout int count[];
+  public out vec2 screen[][][];
+  void generate() {
+    uvec3 i = rt_LaunchIndex;
+    Ray ray = Ray(uvec3(0u));
+    trace(vec3(0.0), vec3(0.0, 0.0, 1.0), 0.0, 1.0, ray);
+    at[i.z][i.y][i.x] = ivec3(ray.at);
+    noise[i.z][i.y][i.x] = rand();
+    screen[i.z][i.y][i.x] = rt_ScreenCoord * vec2(rt_LaunchSize.xy);
+    atomicAdd(count[0], 1);
+    atomicAdd(count[1], int(rt_LaunchSize.x + 10u * rt_LaunchSize.y + 100u * rt_LaunchSize.z));
+  }
+};
+class Sky : rt_Miss { void miss(inout Ray ray) { ray.at = rt_LaunchIndex; } };
+""",
+        )
+        self.scene(
+            start={"class": "Volume", "count": {"size": [2]}},
+            size=(5, 3, 4),
+            background={"class": "Sky"},
+            **{"import": ["volume.rtsl"], "objects": [], "materials": {}},
+        )
+        first = None
+        names = ("at", "noise", "count", "screen")
+        for way, options in PATHS.items():
+            self.run_rtslc(
+                "run", "scene.json", "-q", *options, *(f"--out={name}={name}.npy" for name in names)
+            )
+            files = {name: (self.folder / f"{name}.npy").read_bytes() for name in names}
+            first = first or files
+            self.assertEqual(files, first, way)
+        shape, at = read_npy(self.folder / "at.npy")
+        self.assertEqual(shape, (4, 3, 5, 3))
+        every = [(x, y, z) for z in range(4) for y in range(3) for x in range(5)]
+        self.assertEqual(list(at), [number for index in every for number in index])
+        self.assertEqual(read_npy(self.folder / "count.npy")[1], (60, 60 * 435))
+        self.assertEqual(len(set(read_npy(self.folder / "noise.npy")[1])), 60)
+        _, screen = read_npy(self.folder / "screen.npy")
+        for i, (x, y, _) in enumerate(every):
+            self.assertTrue(x <= screen[2 * i] <= x + 1 and y <= 3 - screen[2 * i + 1] <= y + 1)
+        said, _ = self.run_rtslc("run", "scene.json", "--json")
+        self.assertEqual(json.loads(said)["launches"][0]["size"], [5, 3, 4])
+
+    def test_bad_sizes_of_three_dimensions(self):
+        for size, text in (
+            ([5, 3, 0], "the number of slices"),
+            ([5, 3, 2.5], "the number of slices"),
+            ([70000, 3, 2], "the width"),
+            ([1, 65536, 65536], "the launch has 4294967296 rows in all slices"),
+            ([65536, 65536, 2], "the launch has 8589934592 launch indices"),
+            ([5, 3, 2, 2], "`size`"),
+            ([], "`size`"),
+        ):
+            self.scene(size=size)
+            found = self.diagnose("run", "scene.json")
+            self.assertEqual(len(found), 1, found)
+            self.assertIn(text, found[0]["message"])
+            self.assertGreater(found[0]["range"]["begin"]["line"], 0)
+        # A buffer of two dimensions has no size of its own in such a launch.
+        self.write(
+            "one.rtsl",
+            "class One : rt_RayGeneration { public out float a[][]; "
+            "void generate() { a[rt_LaunchIndex.y][rt_LaunchIndex.x] = 1.0; } };",
+        )
+        self.scene(
+            start={"class": "One"},
+            size=(2, 2, 2),
+            **{"import": ["one.rtsl"], "objects": [], "materials": {}},
+        )
+        self.assert_message(self.diagnose("run", "scene.json"), "E0815", "needs a size")
+
     def test_every_path_writes_the_same_bits(self):
         self.scene()
         first = None
@@ -390,7 +470,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.assert_message(
             self.diagnose("run", "scene.json", "--out=twice=t.npy"),
             "E0806",
-            "`size` is one or two numbers, or the name of a buffer",
+            "`size` is one to three numbers, or the name of a buffer",
         )
         self.scene(start={"class": "One", "a": {"size": [0]}}, **changes)
         self.assert_message(
@@ -429,8 +509,8 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         self.write(
             "more.rtsl",
             "class Two : Probe { public inout int again[]; };"
-            "class Cube : rt_RayGeneration { public out float cube[][][]; void generate() { "
-            "cube[0][0][0] = 1.0; } };",
+            "class Row : rt_RayGeneration { public out float row[]; "
+            "void generate() { row[0] = 1.0; } };",
         )
         more = {"import": ["probe.rtsl", "more.rtsl"]}
         refused(
@@ -439,7 +519,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
             start={**start, "class": "Two", "again": "histogram"},
             **more,
         )
-        refused('needs a size: {"size": [...]}', "E0815", start={"class": "Cube"}, **more)
+        refused('needs a size: {"size": [...]}', "E0815", start={"class": "Row"}, **more)
 
     def test_more_memory_than_there_is(self):
         for size in ([4000000000, 4000000000], [4000000000, 100000]):

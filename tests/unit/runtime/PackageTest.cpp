@@ -114,9 +114,9 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 8;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 8, and this program reads format "
-                            "7: use a newer rtsl-run");
+  newer[8] = 9;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 9, and this program reads format "
+                            "8: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
@@ -138,17 +138,20 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
   constexpr std::size_t sections = 64, sectionBytes = 24, info = 256;
   EXPECT_EQ(refusal(forged(info + 36, 30)), ""); // the width, as it was
   EXPECT_NE(refusal(forged(12, 1000000)), "");   // sections
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 7; ++i) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes, 77)), "") << i;              // kind
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 8, 0x7fffffc0)), "") << i;  // offset
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 72, 3)), ""); // an entry after the code
+  EXPECT_NE(refusal(forged(info + 80, 3)), ""); // an entry after the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);
   EXPECT_NE(refusal(forged(scene, 0x10000)), ""); // a pointer that leads out of the scene
+  std::uint64_t buffers;
+  std::memcpy(&buffers, &whole[sections + 6 * sectionBytes + 8], sizeof buffers);
+  EXPECT_NE(refusal(forged(buffers, 1000)), ""); // more buffers than follow
   std::uint64_t pointers;
   std::memcpy(&pointers, &whole[sections + 4 * sectionBytes + 8], sizeof pointers);
   EXPECT_NE(refusal(forged(pointers, 0x10000)), ""); // a pointer beyond the scene

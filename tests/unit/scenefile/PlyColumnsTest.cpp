@@ -2,8 +2,8 @@
 #include "ErrorText.h"
 #include "Folder.h"
 
+#include "runtime/buffers/PlyColumns.h"
 #include "scenefile/files/BufferFiles.h"
-#include "scenefile/files/PlyColumns.h"
 
 #include <gtest/gtest.h>
 
@@ -13,6 +13,7 @@
 #include <limits>
 
 using namespace rtsl;
+using namespace rtsl::runtime;
 using namespace rtsl::scene;
 using namespace rtsl::scene::test;
 

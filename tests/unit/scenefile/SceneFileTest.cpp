@@ -98,8 +98,8 @@ TEST(SceneFile, WrongTypesAndRanges) {
             "dir/s.json:2:19+1: outOfRange: `spp` must be between 1 and 2147483647, not 0");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"spp\": 1.5}")),
             "dir/s.json:2:19+3: wrongType: `spp` must be an integer, not 1.5");
-  EXPECT_EQ(parseError(withCamera("\"render\": {\"size\": [4, 3, 2]}")),
-            "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 3");
+  EXPECT_EQ(parseError(withCamera("\"render\": {\"size\": [4, 3, 2, 1]}")),
+            "dir/s.json:2:20+1: wrongType: `size` takes 2 numbers, not 4");
   EXPECT_EQ(parseError(withCamera("\"render\": {\"engine\": \"bdpt\"}")),
             "dir/s.json:2:23+4: notSupported: there is no engine `bdpt`; there are `classic`, "
             "`programs`, `path`, `volume`, `occlusion`, `normals`, `depth`, `id`, `albedo`");

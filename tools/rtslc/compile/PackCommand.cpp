@@ -13,6 +13,9 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <cstring>
+
 #include <memory>
 #include <optional>
 
@@ -33,6 +36,36 @@ struct PackOptions {
 runtime::FlatScene flatten(const runtime::Scene &scene, std::optional<runtime::TreeKind> tree) {
   return tree == runtime::TreeKind::Fast ? runtime::flatten(scene)
                                          : runtime::flatten(scene, runtime::buildBvh(scene));
+}
+
+/// The buffers of the ray generation, for `rtsl-run --in` and `--out`.
+std::vector<runtime::PackageBuffer> buffersOf(const runtime::Scene &scene,
+                                              const runtime::FlatScene &flat,
+                                              const scene::SceneDescription &description) {
+  std::vector<runtime::PackageBuffer> buffers;
+  const RtslLaunch launch = scene.launch();
+  if (!description.rayGeneration || launch.rayGeneration == 0)
+    return buffers;
+  const scene::ObjectDescription &object = *description.rayGeneration;
+  std::uint64_t records = 0; // where they are in the flat scene
+  std::memcpy(&records, flat.bytes.data() + offsetof(RtslLaunch, records), sizeof records);
+  for (const runtime::MemberInfo &member : scene.classOf(launch.rayGeneration).members) {
+    if (member.type.bufferRank == 0 || !member.isPublic ||
+        member.type.kind == runtime::ValueType::Kind::Reference)
+      continue;
+    runtime::PackageBuffer buffer;
+    buffer.name = member.name;
+    for (const auto &[key, value] : object.members)
+      if (key.text == member.name && value->kind == scene::JsonValue::Kind::String)
+        buffer.sceneName = value->string;
+    buffer.type = member.type;
+    buffer.place = records + launch.rayGeneration + member.offset;
+    buffer.hasLaunchSize = member.type.isOutput && !scene::isGiven(object, member.name);
+    const std::string &sized = description.render.sizeBuffer;
+    buffer.setsLaunchSize = !sized.empty() && buffer.isNamed(sized);
+    buffers.push_back(std::move(buffer));
+  }
+  return buffers;
 }
 
 void packScene(const PackOptions &options, Messages &messages) {
@@ -61,6 +94,7 @@ void packScene(const PackOptions &options, Messages &messages) {
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
   package.scene = flatten(*scene, options.tree);
+  package.buffers = buffersOf(*scene, package.scene, description);
 
   const runtime::NativeCode code(package.host);
   const std::uint32_t chain = package.scene.launch().referenceChain;

@@ -97,7 +97,9 @@ runtime::Identity identityOf(const RenderInput &input) {
   std::vector<Dependence> &all = identity.dependences;
   const CompileOptions &compile = input.options.compile;
   const runtime::RenderOptions &render = input.render;
-  all.push_back({"the size", fmt::format("{}x{}", render.width, render.height)});
+  all.push_back({"the size",
+                 fmt::format("{}x{}{}", render.width, render.height,
+                             render.slices > 1 ? fmt::format(", {} slices", render.slices) : "")});
   const runtime::Window window = windowOf(render);
   all.push_back(
       {"the crop", fmt::format("{},{},{},{}", window.x0, window.y0, window.x1, window.y1)});

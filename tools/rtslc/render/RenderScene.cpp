@@ -50,6 +50,7 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
   if (options.size) {
     render.width = options.size->width;
     render.height = options.size->height;
+    render.slices = 1;
   }
   render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(

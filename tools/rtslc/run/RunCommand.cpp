@@ -5,12 +5,13 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 
+#include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"
-#include "scenefile/files/BufferOutput.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
+#include "tools/common/BufferOptions.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/Outcome.h"
@@ -251,6 +252,14 @@ private:
   std::vector<std::unique_ptr<runtime::Scene>> scenes; // which the targets outlive
 };
 
+/// Of each dimension; two unless the launch has three.
+std::vector<std::uint32_t> sizeOf(const runtime::RenderOptions &render) {
+  std::vector<std::uint32_t> sizes{render.width, render.height / render.slices};
+  if (render.slices > 1)
+    sizes.push_back(render.slices);
+  return sizes;
+}
+
 std::string fileOf(const RunOptions &options, const std::string &buffer) {
   for (const BufferFile &output : options.outputs)
     if (output.name == buffer)
@@ -262,7 +271,7 @@ std::string toJson(const RunOptions &options, const Launches &all) {
   Json document = {{"version", 1}, {"launches", Json::array()}, {"buffers", Json::array()}};
   for (const Launch &launch : all.launches) {
     document["launches"].push_back({{"rayGeneration", launch.rayGeneration},
-                                    {"size", {launch.render.width, launch.render.height}},
+                                    {"size", sizeOf(launch.render)},
                                     {"spp", launch.render.samplesPerPixel},
                                     {"seconds",
                                      {{"compile", launch.compileSeconds},
@@ -298,10 +307,10 @@ void printSummary(const RunOptions &options, const Launches &all) {
   if (options.quiet || options.common.jsonDiagnostics) // there standard error is one JSON document
     return;
   for (const Launch &launch : all.launches) {
-    fmt::print(stderr, "{}: {}x{}, {} spp; compiled in {:.0f} ms, ran in {:.3f} s\n",
-               launch.rayGeneration.empty() ? "camera" : launch.rayGeneration, launch.render.width,
-               launch.render.height, launch.render.samplesPerPixel, launch.compileSeconds * 1e3,
-               launch.statistics.renderSeconds);
+    fmt::print(stderr, "{}: {}, {} spp; compiled in {:.0f} ms, ran in {:.3f} s\n",
+               launch.rayGeneration.empty() ? "camera" : launch.rayGeneration,
+               fmt::join(sizeOf(launch.render), "x"), launch.render.samplesPerPixel,
+               launch.compileSeconds * 1e3, launch.statistics.renderSeconds);
     if (options.repeats > 0)
       fmt::print(stderr, "repeated {} times: {:.3f} ms in the median\n", options.repeats,
                  launch.repeatSeconds[launch.repeatSeconds.size() / 2] * 1e3);
@@ -339,42 +348,10 @@ void runScene(const RunOptions &options, Messages &messages) {
   if (!launches.run(description))
     return;
   for (const BufferFile &output : options.outputs)
-    scene::writeBuffer(output.file, *launches.find(output.name));
+    runtime::writeBuffer(output.file, *launches.find(output.name));
   if (!options.picture.empty())
     runtime::writeImage(options.picture, launches.picture, runtime::PictureFormat::ByName);
   printSummary(options, launches);
-}
-
-/// Adds an option with values NAME=FILE.
-void addBufferOption(CLI::App &command, const char *name, std::vector<BufferFile> &files,
-                     const char *text) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          name,
-          [&files, name](const std::vector<std::string> &values) {
-            for (const std::string &value : values) {
-              const std::size_t equals = value.find('=');
-              if (equals == 0 || equals == std::string::npos || equals + 1 == value.size())
-                throw CLI::ValidationError(
-                    name, fmt::format("`{}` is not NAME=FILE: a buffer and its file", value));
-              files.push_back({value.substr(0, equals), value.substr(equals + 1)});
-            }
-          },
-          text)
-      ->type_name("NAME=FILE")
-      ->allow_extra_args(false);
-}
-
-/// Rejects a file that two options would write.
-void checkFiles(const RunOptions &options) {
-  std::set<std::string> files, names;
-  if (!options.picture.empty())
-    files.insert(options.picture);
-  for (const BufferFile &output : options.outputs)
-    if (!files.insert(output.file).second)
-      throw CLI::ValidationError("--out", fmt::format("`{}` is given twice", output.file));
-    else if (!names.insert(output.name).second)
-      throw CLI::ValidationError("--out", fmt::format("`{}` is given twice", output.name));
 }
 
 } // namespace
@@ -410,7 +387,7 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
 }
 
 void completeRunOptions(const CLI::App &command, RunOptions &options) {
-  checkFiles(options);
+  checkOutputFiles(options.outputs, options.picture);
   if (options.target == TargetName::Gpu && options.prints)
     throw CLI::ValidationError("--print",
                                "a GPU cannot print; `--target=host-megakernel` prints, and "

@@ -1,6 +1,7 @@
 //===- RunCommand.h - what commands that run launches share ---------------===//
 #pragma once
 
+#include "tools/common/BufferOptions.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/render/RenderTarget.h"
 
@@ -8,11 +9,6 @@
 #include <vector>
 
 namespace rtsl::tool {
-
-/// A buffer and its file: --in NAME=FILE, --out NAME=FILE.
-struct BufferFile {
-  std::string name, file;
-};
 
 struct RunOptions {
   CommonOptions common;

@@ -5,8 +5,8 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 #include "codegen/driver/StandardLibrary.h"
-#include "scenefile/files/NumberFiles.h"
-#include "scenefile/files/PlyColumns.h"
+#include "runtime/buffers/NumberFiles.h"
+#include "runtime/buffers/PlyColumns.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 #include "tools/rtslc/common/Messages.h"
@@ -38,14 +38,14 @@ std::string extensionOf(const std::string &file) {
 std::vector<std::size_t> shapeOf(const TraceOptions &options) {
   const std::string &file = options.rays, extension = extensionOf(file);
   if (extension == ".csv")
-    return scene::readCsv(file, options.columns).shape;
+    return runtime::readCsv(file, options.columns).shape;
   if (extension == ".ply")
-    return scene::readPly(file, options.element, options.columns).shape;
+    return runtime::readPly(file, options.element, options.columns).shape;
   if (extension != ".npy")
     throw Error(message::rayFormatUnknown(file));
   if (!options.columns.empty())
     throw Error(message::rayFileWithoutColumns(file));
-  return scene::NpyFile(file, scene::NpyFile::Part::Header).shape();
+  return runtime::NpyFile(file, runtime::NpyFile::Part::Header).shape();
 }
 
 /// How many numbers a ray of the file has: 6 or 8.

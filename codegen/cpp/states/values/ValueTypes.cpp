@@ -35,7 +35,7 @@ static const Type *stateType(TypeContext &types, llvm::StringRef name) {
   const auto found = stateVariables().find(name.str());
   if (found == stateVariables().end())
     return nullptr;
-  return types.named(found->second == "uint2" ? "uvec2" : found->second);
+  return types.named(found->second == "uint3" ? "uvec3" : found->second);
 }
 
 const Type *ValueTypes::vec3() {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace rtsl::scene {
+namespace rtsl::runtime {
 
 /// Numbers in rows: the last index varies fastest.
 struct NumberArray {
@@ -45,4 +45,4 @@ NumberArray readCsv(const std::string &path, const std::vector<std::string> &col
 std::vector<std::size_t> placesOf(const std::string &where, const std::vector<std::string> &columns,
                                   const std::vector<std::string> &names);
 
-} // namespace rtsl::scene
+} // namespace rtsl::runtime

@@ -1,13 +1,13 @@
 //===- PlyColumns.h - numbers in PLY files --------------------------------===//
 #pragma once
 
-#include "scenefile/files/NumberFiles.h"
+#include "runtime/buffers/NumberFiles.h"
 
 #include <cstddef>
 #include <string>
 #include <vector>
 
-namespace rtsl::scene {
+namespace rtsl::runtime {
 
 /// Reads properties of the elements of this name, an element a row. `columns` chooses them by name,
 /// in this order; empty: all but lists, which cannot be chosen. The rest of the file must be there,
@@ -19,4 +19,4 @@ NumberArray readPly(const std::string &path, const std::string &element,
 /// reading a file.
 std::size_t plyCount(const std::string &path, const std::string &element);
 
-} // namespace rtsl::scene
+} // namespace rtsl::runtime

@@ -1,4 +1,4 @@
-#include "scenefile/files/NumberFiles.h"
+#include "runtime/buffers/NumberFiles.h"
 
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
@@ -17,7 +17,7 @@
 #include <fstream>
 #include <string_view>
 
-namespace rtsl::scene {
+namespace rtsl::runtime {
 
 namespace {
 
@@ -234,4 +234,4 @@ NumberArray readCsv(const std::string &path, const std::vector<std::string> &col
   return array;
 }
 
-} // namespace rtsl::scene
+} // namespace rtsl::runtime

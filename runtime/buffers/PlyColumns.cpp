@@ -1,4 +1,4 @@
-#include "scenefile/files/PlyColumns.h"
+#include "runtime/buffers/PlyColumns.h"
 
 #include "runtime/geometry/PlyFormat.h"
 #include "support/AtomicFile.h"
@@ -13,9 +13,7 @@
 #include <optional>
 #include <string_view>
 
-namespace rtsl::scene {
-
-namespace ply = runtime::ply;
+namespace rtsl::runtime {
 
 namespace {
 
@@ -147,4 +145,4 @@ std::size_t plyCount(const std::string &path, const std::string &element) {
   return find(headerOf(path, readFile(path)), element, path).count;
 }
 
-} // namespace rtsl::scene
+} // namespace rtsl::runtime

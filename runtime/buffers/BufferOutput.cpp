@@ -1,4 +1,4 @@
-#include "scenefile/files/BufferOutput.h"
+#include "runtime/buffers/BufferOutput.h"
 
 #include "support/AtomicFile.h"
 #include "support/Error.h"
@@ -11,10 +11,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace rtsl::scene {
-
-using runtime::OutputBuffer;
-using runtime::ValueType;
+namespace rtsl::runtime {
 
 namespace {
 
@@ -50,7 +47,7 @@ std::string numpyType(const ValueType &type, bool isInStruct = false) {
     return "'<u4'";
   case ValueType::Kind::Struct: {
     std::vector<std::string> fields;
-    for (const runtime::MemberInfo &field : type.fields) {
+    for (const MemberInfo &field : type.fields) {
       const std::vector<std::uint32_t> shape = elementShape(field.type, field.type.size);
       fields.push_back(fmt::format("('{}', {}{})", field.name, numpyType(field.type, true),
                                    shape.empty() ? "" : ", " + tupleOf(shape)));
@@ -122,4 +119,4 @@ void writeBuffer(const std::string &path, const OutputBuffer &buffer) {
                 : std::string(reinterpret_cast<const char *>(buffer.elements), buffer.bytes));
 }
 
-} // namespace rtsl::scene
+} // namespace rtsl::runtime
