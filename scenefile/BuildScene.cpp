@@ -48,6 +48,7 @@ public:
       if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
         scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration", true));
     });
+    scene.setLampChoice(description.lampChoice);
     if (description.shutter)
       scene.setShutter((*description.shutter)[0], (*description.shutter)[1]);
     // Named objects are created in the order of their names, after those that they refer to. With

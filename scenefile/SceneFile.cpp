@@ -460,6 +460,21 @@ private:
     scene.shutter = {float(times[0]), float(times[1])};
   }
 
+  /// How surfaces that shine are chosen to light a point.
+  void readLightSampler(const JsonValue &value) {
+    expect(value, Kind::String, "`lightSampler`");
+    constexpr std::pair<const char *, runtime::LampChoice> choices[] = {
+        {"auto", runtime::LampChoice::Automatic},
+        {"power", runtime::LampChoice::ByPower},
+        {"tree", runtime::LampChoice::ByTree}};
+    for (const auto &[name, choice] : choices)
+      if (value.string == name) {
+        scene.lampChoice = choice;
+        return;
+      }
+    throw Error(message::noSuchLightSampler(value.string), value.place());
+  }
+
   void readPart(const JsonValue &part, GeometryDescription &geometry) const {
     expect(part, Kind::String, "`part`");
     for (const MeshPath &key : geometry.mesh)
@@ -481,9 +496,12 @@ private:
 
   void readRender(const JsonValue &value) {
     expect(value, Kind::Object, "`render`");
-    checkKeys(value, {"engine", "size", "spp", "depth", "seed", "shutter"}, "`render`");
+    checkKeys(value, {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler"},
+              "`render`");
     if (const JsonValue *shutter = value.find("shutter"))
       readShutter(*shutter);
+    if (const JsonValue *sampler = value.find("lightSampler"))
+      readLightSampler(*sampler);
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");

@@ -180,6 +180,7 @@ struct SceneDescription {
   const JsonValue *ambient = nullptr;
   RenderSettings render;
   std::optional<std::array<float, 2>> shutter; // `render.shutter`: when it opens and closes
+  runtime::LampChoice lampChoice = runtime::LampChoice::Automatic; // `render.lightSampler`
   std::vector<Warning> warnings;
   std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes

@@ -214,6 +214,8 @@ constexpr GraphPart graphParts[] = {
      "it has `sampleDirection` and `directionPDF`", "the background cannot choose any"},
     {RTSL_HAS_NO_BACKS, "back faces", "some mesh leaves them out: the side of a hit is tested",
      "no mesh leaves them out: both sides of triangles are hit"},
+    {RTSL_HAS_LIGHT_TREE, "light tree", "many surfaces shine",
+     "few surfaces shine, or none: they are chosen by their power"},
 };
 
 } // namespace

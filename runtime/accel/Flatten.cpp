@@ -74,6 +74,8 @@ static FlatScene flatten(const Scene &scene, const Bvh *bvh) {
   flattener.addAt(offsetof(RtslLaunch, lights), launch.lights, launch.lightCount);
   flattener.addAt(offsetof(RtslLaunch, emitters), launch.emitters, launch.emitterCount);
   flattener.addAt(offsetof(RtslLaunch, partChances), launch.partChances, launch.partChanceCount);
+  flattener.addAt(offsetof(RtslLaunch, lightNodes), launch.lightNodes, launch.lightNodeCount);
+  flattener.addAt(offsetof(RtslLaunch, lightLeaves), launch.lightLeaves, launch.lightLeafCount);
   for (std::uint32_t i = 0; i < launch.meshCount; ++i) {
     const RtslMesh &mesh = launch.meshes[i];
     const std::uint64_t place = meshes + i * sizeof(RtslMesh);

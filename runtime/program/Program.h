@@ -160,8 +160,8 @@ struct Program {
   } slots;
 
   /// The program's rtsl_emitted_power; null if it does not choose points on surfaces that shine.
-  float (*emittedPower)(const RtslLaunch *, std::uint32_t instance, std::uint32_t triangle,
-                        std::uint32_t sample) = nullptr;
+  float (*emittedPower)(const RtslLaunch *, std::uint32_t instance, std::uint32_t part,
+                        std::uint32_t sample, float *normal) = nullptr;
 
   /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;

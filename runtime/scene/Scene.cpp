@@ -17,12 +17,15 @@ struct Scene::Implementation {
   Geometry geometry;
   CameraAndLights cameraAndLights;
   std::vector<Warning> warnings;
+  LampChoice lampChoice = LampChoice::Automatic;
   std::optional<Emitters> emitters; // found with the first program that can, when all are there
 
-  void findEmitters(const RtslLaunch &launch) {
+  void fillEmitters(RtslLaunch &launch) {
     const Program &program = objects.program();
     if (!emitters && program.emittedPower && program.needs & RTSL_NEEDS_EMITTERS)
-      emitters.emplace(objects, launch);
+      emitters.emplace(objects, launch, lampChoice);
+    if (emitters)
+      emitters->fill(launch);
   }
 
   /// The current launch, complete or not.
@@ -155,6 +158,10 @@ void Scene::setRayGeneration(RtslRef rayGeneration) {
 void Scene::setBackground(RtslRef miss) {
   self->cameraAndLights.setBackground(self->objects, miss);
 }
+void Scene::setLampChoice(LampChoice choice) {
+  self->emitters.reset();
+  self->lampChoice = choice;
+}
 void Scene::setException(RtslRef exception) {
   self->cameraAndLights.setException(self->objects, exception);
 }
@@ -184,8 +191,8 @@ SceneFacts Scene::facts() const {
   for (const Objects::Object &object : self->objects.all())
     if (reached.count(object.reference))
       facts.objects.push_back({object.classInfo->name, self->objects.record(object.reference)});
-  const RtslLaunch launch = self->launch();
-  self->findEmitters(launch);
+  RtslLaunch launch = self->launch();
+  self->fillEmitters(launch);
   facts.records = launch.records;
   facts.recordBytes = self->objects.recordBytes();
   facts.hasBuffers = !self->objects.buffers().empty();
@@ -203,9 +210,7 @@ SceneFacts Scene::facts() const {
 RtslLaunch Scene::launch() const {
   self->cameraAndLights.requireCamera(program().engine);
   RtslLaunch launch = self->launch();
-  self->findEmitters(launch);
-  if (self->emitters)
-    self->emitters->fill(launch);
+  self->fillEmitters(launch);
   return launch;
 }
 

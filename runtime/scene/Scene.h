@@ -81,6 +81,8 @@ public:
   /// Of the programs engine, in place of a camera.
   void setRayGeneration(RtslRef rayGeneration);
   void setBackground(RtslRef miss);
+  /// How `illuminate(P)` chooses one of the surfaces that shine.
+  void setLampChoice(LampChoice choice);
   /// What samples are that meet an exception, in programs with RTSL_FEATURE_EXCEPTIONS.
   void setException(RtslRef exception);
   /// As many numbers as the program's color has components, red, green and blue, or one for all.

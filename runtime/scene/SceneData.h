@@ -36,6 +36,10 @@ struct Placement {
   bool hasBackFaces = true;
 };
 
+/// How one of the surfaces that shine is chosen to light a point: by their power, by a light tree,
+/// or by a tree if there are many.
+enum class LampChoice : std::uint8_t { Automatic, ByPower, ByTree };
+
 /// A box. A side may be infinite.
 using Bounds = RtslBox;
 

@@ -38,8 +38,8 @@ uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float 
 }
 
 float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
-                         uint32_t sample) {
-  return device::emittedPower(*launch, instance, part, sample);
+                         uint32_t sample, float *normal) {
+  return device::emittedPower(*launch, instance, part, sample, normal);
 }
 
 #ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp calls the program

@@ -1,8 +1,9 @@
 //===- Emitters.h - surfaces that shine, as lights ------------------------===//
 //
-// `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters, with the
-// probability that the table gives, and a point on it: on a mesh uniformly by area, on a primitive
-// by its `generateSample`; of an object with several primitives one of them, likewise. A ray
+// `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters: with the
+// probability that the table gives, or, where there are many, by a light tree (LightTree.h). Then
+// it chooses a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of
+// an object with several primitives one of them, likewise. A ray
 // towards the point finds what is seen there; only if that is the point itself does its light
 // count, so that each direction has the density of one point. A ray that meets an emitter by chance
 // finds the same density in rt_PDF: an engine weighs the two against one another (Veach and Guibas,
@@ -13,6 +14,7 @@
 
 #include "runtime/device/engines/Background.h"
 #include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/engines/LightTree.h"
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Sampler.h"
@@ -105,6 +107,29 @@ inline float areaScale(const RtslTransform &transform, Vec3 worldNormal) {
   return absolute(dot(c0, cross(c1, c2))) / squareRoot(dot(back, back));
 }
 
+/// Does the program choose emitters by a light tree?
+inline bool hasLightTree(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_LIGHT_TREE) != 0 && launch.lightNodes;
+}
+
+/// The probability with which `illuminate` at `point` chooses this part of an emitter; of one that
+/// is a single primitive: it.
+inline float chanceOfPart(const RtslLaunch &launch, uint32_t number, uint32_t part, Vec3 point) {
+  const RtslEmitter &emitter = launch.emitters[number];
+  float chance;
+  if (hasLightTree(launch)) {
+    const uint32_t leaf = launch.lightLeaves[emitter.firstLeaf + (emitter.isDivided ? part : 0)];
+    chance = leaf == RTSL_NO_LIGHT_LEAF ? 0 : chanceOfLeaf(launch.lightNodes, leaf, point);
+    if (emitter.isDivided)
+      return chance;
+  } else {
+    chance = probabilityOf(number, chancesOfEmitters(launch));
+  }
+  if (partsOf(launch, instanceAt(launch, emitter.instance)) == 0)
+    return chance;
+  return chance * probabilityOf(part, chancesOfParts(launch, emitter));
+}
+
 /// The density with which `illuminate` at the ray's origin chooses the direction of this ray, by
 /// solid angle, because of the point that it has hit; 0 if that is not on an emitter.
 inline float emitterDensity(const RtslState &hit) {
@@ -122,14 +147,11 @@ inline float emitterDensity(const RtslState &hit) {
     return 0;
   const RtslInstance &instance = instanceAt(launch, hit.instance);
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
-  float density = (1 - backgroundChance(launch)) * probabilityOf(first, chancesOfEmitters(launch));
-  const float ofPart =
-      partsOf(launch, instance) == 0
-          ? 1
-          : probabilityOf(hit.primitive, chancesOfParts(launch, launch.emitters[first]));
+  float density = (1 - backgroundChance(launch)) *
+                  chanceOfPart(launch, first, hit.primitive, load(hit.RayOrigin));
   if (instance.primitive == 0) {
     const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive, hit.Time));
-    density *= 2 * ofPart / squareRoot(dot(twice, twice));
+    density *= 2 / squareRoot(dot(twice, twice));
   } else {
     RtslState state;
     beginState(state, hit.launch);
@@ -153,7 +175,7 @@ inline float emitterDensity(const RtslState &hit) {
       scale = areaScale(transform, normal);
     }
     rtsl_rt_Primitive_samplePDF(&state, instance.primitive);
-    density *= ofPart * state.PDF / scale;
+    density *= state.PDF / scale;
   }
   const float along = absolute(dot(direction, normal));
   const float square = dot(direction, direction);
@@ -173,6 +195,31 @@ inline void describeEmitter(RtslState &state) {
 struct EmitterChoice {
   float emitter, part, u, v;
 };
+
+/// An emitter and a part of it; of one that is a single primitive: 0.
+struct ChosenPart {
+  uint32_t emitter; // RTSL_NO_LIGHT_LEAF: none shines at the point
+  uint32_t part;
+};
+
+inline ChosenPart choosePart(const RtslLaunch &launch, const EmitterChoice &choice, Vec3 point,
+                             const uint32_t key[2]) {
+  ChosenPart chosen = {0, RTSL_WHOLE_EMITTER};
+  if (hasLightTree(launch)) {
+    const uint32_t leaf = chooseLeaf(launch.lightNodes, point, choice.emitter, key);
+    if (leaf == RTSL_NO_LIGHT_LEAF)
+      return {RTSL_NO_LIGHT_LEAF, 0};
+    chosen = {launch.lightNodes[leaf].first, launch.lightNodes[leaf].part};
+  } else {
+    chosen.emitter = chosenOf(launch.emitterCount, choice.emitter, chancesOfEmitters(launch));
+  }
+  if (chosen.part != RTSL_WHOLE_EMITTER)
+    return chosen;
+  const RtslEmitter &emitter = launch.emitters[chosen.emitter];
+  const uint32_t parts = partsOf(launch, instanceAt(launch, emitter.instance));
+  chosen.part = parts ? chosenOf(parts, choice.part, chancesOfParts(launch, emitter)) : 0;
+  return chosen;
+}
 
 /// A point on an instance in world space, and with it GeometricNormal and PDF (by area, in object
 /// space) of a primitive in `state`.
@@ -198,16 +245,17 @@ __attribute__((noinline))
 #endif
 inline void lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice, EmittedLight *light) {
   const RtslLaunch &launch = *ray.launch;
-  const RtslEmitter &emitter =
-      launch.emitters[chosenOf(launch.emitterCount, choice.emitter, chancesOfEmitters(launch))];
-  const RtslInstance &instance = instanceAt(launch, emitter.instance);
-  const uint32_t parts = partsOf(launch, instance);
-  const uint32_t part = parts ? chosenOf(parts, choice.part, chancesOfParts(launch, emitter)) : 0;
   light->density = 0;
+  light->direction = {0, 0, 0};
+  const ChosenPart chosen = choosePart(launch, choice, ray.origin, ray.randomKey);
+  if (chosen.emitter == RTSL_NO_LIGHT_LEAF)
+    return;
+  const RtslEmitter &emitter = launch.emitters[chosen.emitter];
+  const RtslInstance &instance = instanceAt(launch, emitter.instance);
   RtslState state;
   startShadowRay(state, ray);
   light->direction =
-      pointOnInstance(state, launch, instance, part, choice.u, choice.v) - ray.origin;
+      pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v) - ray.origin;
 
   // How much the hit's distance may differ from that of the point.
   constexpr float tolerance = 0x1p-10f;
@@ -267,8 +315,8 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
 }
 
 /// rtsl_emitted_power.
-inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t part,
-                          uint32_t sample) {
+inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t part, uint32_t sample,
+                          float *worldNormal) {
   const RtslInstance &instance = instanceAt(launch, number);
   RtslState state;
   beginState(state, &launch);
@@ -304,6 +352,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
       area *= areaScale(transform, normal);
     }
   }
+  store(worldNormal, normalized(normal));
   // Seen from either side in turn.
   const bool isBack = (sample & 1) != 0;
   if (isBack && hasNoBacks(launch, number))

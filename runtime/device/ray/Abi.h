@@ -170,7 +170,26 @@ typedef struct RtslEmitter {
   uint32_t firstPart;
   // the probability that this one or one before it is chosen; of the last: 1
   float chances;
+  // with a light tree: of RtslLaunch::lightLeaves, the leaf of this emitter, or if it is divided,
+  // those of its parts
+  uint32_t firstLeaf, isDivided;
 } RtslEmitter;
+
+/// A node of the light tree: what shines below it. The first node is the root.
+typedef struct RtslLightNode {
+  float middle[3], squareRadius; // a ball around the boxes of its lamps
+  float axis[3], cosine;         // a cone of the normals of its lamps; -1: all directions
+  float power;                   // its share of that of the root
+  uint32_t parent;               // and RTSL_SHINES_ON_BOTH_SIDES
+  // of an inner node: its two children, first and first + 1; of a leaf: its emitter
+  uint32_t first;
+  uint32_t part; // RTSL_INNER_LIGHT_NODE, RTSL_WHOLE_EMITTER, or the number of the emitter's part
+} RtslLightNode;
+
+#define RTSL_SHINES_ON_BOTH_SIDES 0x80000000u
+#define RTSL_INNER_LIGHT_NODE 0xffffffffu
+#define RTSL_WHOLE_EMITTER 0xfffffffeu
+#define RTSL_NO_LIGHT_LEAF 0xffffffffu
 
 /// What all rays of a launch share.
 typedef struct RtslLaunch {
@@ -213,7 +232,10 @@ typedef struct RtslLaunch {
   // of the triangles of an emitter's mesh, or of its primitives: the probability that this one or
   // one before it is chosen
   const float *partChances;
+  const RtslLightNode *lightNodes; // null: emitters are chosen by their power alone
+  const uint32_t *lightLeaves;     // numbers of nodes; RTSL_NO_LIGHT_LEAF: it does not shine
   uint32_t emitterCount, partChanceCount;
+  uint32_t lightNodeCount, lightLeafCount;
   uint32_t nodeCount;
   const void *host; // the host's own (for example its Embree scene); never read by device code
   struct RtslStatus
@@ -390,9 +412,11 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_SHUTTER 4194304u   // each sample has a time of its own; otherwise the time is 0
 #define RTSL_HAS_SAMPLED_BACKGROUND 8388608u // directions of the background can be chosen
 #define RTSL_HAS_NO_BACKS 16777216u          // some mesh's back faces are left out
+#define RTSL_HAS_LIGHT_TREE 33554432u        // emitters are chosen by a light tree
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
-   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS)
+   RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS |       \
+   RTSL_HAS_LIGHT_TREE)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u
@@ -504,9 +528,10 @@ uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float 
 /// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of
 /// its own choice times the area that the point stands for; for a mesh the radiance at a point of
 /// the triangle. `part` is the triangle, or one of the primitives of an object. The mean of the
-/// color's components; not finite: unknown. `sample` numbers the points.
+/// color's components; not finite: unknown. `sample` numbers the points; odd ones are seen from
+/// behind. Writes the normal there, of length 1 in world space: three floats.
 float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,
-                         uint32_t sample);
+                         uint32_t sample, float *normal);
 
 /// `rand()`: uniform in [0, 1).
 float rtsl_rand(RtslState *state);
