@@ -5,6 +5,7 @@
 #include "scenefile/gltf/Parts.h"
 #include "scenefile/graph/TransformReader.h"
 #include "scenefile/json/Reader.h"
+#include "scenefile/obj/Model.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,10 @@ const gltf::File &ModelFiles::open(const std::string &path, const std::optional<
   auto found = opened.find(path);
   if (found == opened.end()) {
     try {
-      found = opened.emplace(path, std::make_unique<gltf::File>(path)).first;
+      found = opened
+                  .emplace(path, obj::isObj(path) ? obj::readModel(path)
+                                                  : std::make_unique<gltf::File>(path))
+                  .first;
     } catch (Error &error) {
       if (place && (!error.place || error.place->line == 0))
         error.place = place;

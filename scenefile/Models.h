@@ -1,4 +1,4 @@
-//===- Models.h - glTF files that a scene mentions ------------------------===//
+//===- Models.h - glTF and OBJ files that a scene mentions ----------------===//
 //
 // {"model": "chair.glb"} in the place of a node is short for the nodes, materials, images and
 // lights that an author would write for the file: they are added to the scene's JSON before it is
@@ -20,7 +20,7 @@
 
 namespace rtsl::scene {
 
-/// The glTF files of a scene, each opened once.
+/// The glTF and OBJ files of a scene, each opened once.
 class ModelFiles {
 public:
   /// The file at a path, opened on first use. The mistakes in it are thrown each time; those of

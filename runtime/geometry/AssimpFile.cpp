@@ -3,12 +3,15 @@
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -137,6 +140,42 @@ Transform transformOf(const aiMatrix4x4 &m) {
   return transform;
 }
 
+const aiScene &readFile(Assimp::Importer &importer, const std::string &path) {
+  const aiScene *scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
+  if (scene && scene->mRootNode)
+    return *scene;
+  std::string reason = importer.GetErrorString();
+  while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
+    reason.pop_back();
+  if (reason.find("bad_alloc") != std::string::npos) // assimp catches the reader's exceptions
+    throw Error(message::noMemoryForMesh(path), Place{path});
+  throw Error(message::meshDamaged(path, reason.empty() ? "the file is damaged" : reason),
+              Place{path});
+}
+
+/// Appends all meshes of a file to those that `wholeOf` gives for them.
+template <typename WholeOf>
+void appendAll(const aiScene &scene, const std::vector<Source> &sources, const std::string &path,
+               WholeOf wholeOf) {
+  bool normals = false, uvs = false;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    normals |= scene.mMeshes[i]->HasNormals();
+    uvs |= scene.mMeshes[i]->HasTextureCoords(0);
+  }
+  std::vector<std::pair<const aiNode *, Transform>> open{{scene.mRootNode, Transform()}};
+  while (!open.empty()) {
+    auto [node, above] = open.back();
+    open.pop_back();
+    Transform transform = transformOf(node->mTransformation).then(above);
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+      const aiMesh &part = *scene.mMeshes[node->mMeshes[i]];
+      append(wholeOf(part), part, transform, normals, uvs, sources, path);
+    }
+    for (unsigned i = node->mNumChildren; i-- > 0;)
+      open.emplace_back(node->mChildren[i], transform);
+  }
+}
+
 } // namespace
 
 bool isReadByAssimp(const std::string &extension) {
@@ -145,36 +184,30 @@ bool isReadByAssimp(const std::string &extension) {
 
 Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
   Assimp::Importer importer;
-  const aiScene *scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
-  if (!scene || !scene->mRootNode) {
-    std::string reason = importer.GetErrorString();
-    while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
-      reason.pop_back();
-    if (reason.find("bad_alloc") != std::string::npos) // assimp catches the reader's exceptions
-      throw Error(message::noMemoryForMesh(path), Place{path});
-    throw Error(message::meshDamaged(path, reason.empty() ? "the file is damaged" : reason),
-                Place{path});
-  }
-
-  bool normals = false, uvs = false;
-  for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
-    normals |= scene->mMeshes[i]->HasNormals();
-    uvs |= scene->mMeshes[i]->HasTextureCoords(0);
-  }
+  const aiScene &scene = readFile(importer, path);
   Mesh whole;
-  const std::vector<Source> sources = sourcesOf(*scene, request, whole.otherAttributes);
-  std::vector<std::pair<const aiNode *, Transform>> open{{scene->mRootNode, Transform()}};
-  while (!open.empty()) {
-    auto [node, above] = open.back();
-    open.pop_back();
-    Transform transform = transformOf(node->mTransformation).then(above);
-    for (unsigned i = 0; i < node->mNumMeshes; ++i)
-      append(whole, *scene->mMeshes[node->mMeshes[i]], transform, normals, uvs, sources, path);
-    for (unsigned i = node->mNumChildren; i-- > 0;)
-      open.emplace_back(node->mChildren[i], transform);
-  }
+  const std::vector<Source> sources = sourcesOf(scene, request, whole.otherAttributes);
+  appendAll(scene, sources, path, [&](const aiMesh &) -> Mesh & { return whole; });
   validateMesh(whole, path);
   return whole;
+}
+
+std::vector<MeshGroup> readGroupsByAssimp(const std::string &path) {
+  Assimp::Importer importer;
+  const aiScene &scene = readFile(importer, path);
+  std::map<std::string, Mesh> byName;
+  appendAll(scene, {}, path, [&](const aiMesh &part) -> Mesh & {
+    aiString name;
+    if (part.mMaterialIndex < scene.mNumMaterials)
+      scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
+    // What assimp calls the material of triangles without one.
+    return byName[name == aiString(AI_DEFAULT_MATERIAL_NAME) ? "" : name.C_Str()];
+  });
+  std::vector<MeshGroup> groups;
+  for (auto &[name, mesh] : byName)
+    if (!mesh.indices.empty())
+      groups.push_back({name, std::move(mesh)});
+  return groups;
 }
 
 } // namespace rtsl::runtime

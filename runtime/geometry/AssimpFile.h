@@ -4,6 +4,7 @@
 #include "runtime/geometry/Mesh.h"
 
 #include <string>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -14,5 +15,8 @@ bool isReadByAssimp(const std::string &extension);
 /// so on, and `tangent`, of those meshes of the file that have them; zeros in the others.
 /// Throws BadMesh, OutOfMemory.
 Mesh readByAssimp(const std::string &path, const MeshRequest &request = {});
+
+/// The same by the names of the materials.
+std::vector<MeshGroup> readGroupsByAssimp(const std::string &path);
 
 } // namespace rtsl::runtime

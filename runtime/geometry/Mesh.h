@@ -37,6 +37,15 @@ struct Mesh {
 /// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.
 Mesh loadMesh(const std::string &path, const MeshRequest &request = {});
 
+/// The triangles of a file that have one material, by its name; empty: they have none.
+struct MeshGroup {
+  std::string material;
+  Mesh mesh;
+};
+
+/// The same, as a mesh for each material of an OBJ file, in the order of their names in it.
+std::vector<MeshGroup> loadMeshGroups(const std::string &path);
+
 /// Adds an attribute whose values are in the order of the vertices, or of the faces, of the file
 /// that the mesh is from; it replaces another one of its name. `file` is for messages. Throws
 /// BadMesh, and NotSupported if the order is not known.

@@ -99,4 +99,23 @@ Mesh loadMesh(const std::string &path, const MeshRequest &request) {
   }
 }
 
+std::vector<MeshGroup> loadMeshGroups(const std::string &path) {
+  checkReadable(path);
+  try {
+    if (isPipe(path))
+      throw Error(message::meshUnreadableFromPipe(path), Place{path});
+    if (std::optional<std::vector<MeshGroup>> groups = readPlainObjGroups(readFile(path))) {
+      for (const MeshGroup &group : *groups)
+        validateMesh(group.mesh, path);
+      return std::move(*groups);
+    }
+    std::vector<MeshGroup> groups = readGroupsByAssimp(path);
+    if (groups.empty())
+      validateMesh({}, path); // throws: there is no triangle
+    return groups;
+  } catch (const std::bad_alloc &) {
+    throw Error(message::noMemoryForMesh(path), Place{path});
+  }
+}
+
 } // namespace rtsl::runtime

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <map>
+#include <string>
 
 namespace rtsl::runtime {
 
@@ -96,6 +99,35 @@ public:
     return !indices.empty();
   }
 
+  /// The triangles of each material, by the name of the last `usemtl` above them.
+  std::vector<MeshGroup> takeGroups() {
+    const std::vector<MaterialUse> used = std::move(uses);
+    const Mesh whole = takeMesh();
+    std::vector<MeshGroup> groups;
+    std::map<std::string, std::size_t, std::less<>> numbers;
+    std::vector<std::vector<std::uint32_t>> triangles; // of each group
+    std::size_t use = 0, group = none;
+    for (std::uint32_t i = 0; i < whole.triangleCount(); ++i) {
+      const std::size_t before = use;
+      while (use < used.size() && used[use].firstIndex <= 3 * std::size_t(i))
+        ++use;
+      if (use != before || group == none) {
+        const std::string name(use == 0 ? std::string_view() : used[use - 1].material);
+        const auto [known, isNew] = numbers.emplace(name, groups.size());
+        group = known->second;
+        if (isNew) {
+          groups.push_back({name, {}});
+          triangles.emplace_back();
+        }
+      }
+      triangles[group].push_back(i);
+    }
+    std::vector<std::uint32_t> places(whole.vertexCount(), none); // in the group that is made
+    for (std::size_t i = 0; i < groups.size(); ++i)
+      groups[i].mesh = part(whole, triangles[i], places);
+    return groups;
+  }
+
   Mesh takeMesh() {
     normalize(normals);
     Mesh mesh;
@@ -110,6 +142,41 @@ public:
   }
 
 private:
+  struct MaterialUse {
+    std::size_t firstIndex; // of the triangles that follow
+    std::string_view material;
+  };
+
+  /// Some triangles of a mesh, with the vertices that they use. `places` are `none`, before and
+  /// after.
+  static Mesh part(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
+                   std::vector<std::uint32_t> &places) {
+    Mesh mesh;
+    mesh.otherAttributes = whole.otherAttributes;
+    std::vector<std::uint32_t> used;
+    for (const std::uint32_t triangle : triangles)
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t vertex = whole.indices[3 * std::size_t(triangle) + corner];
+        if (places[vertex] == none) {
+          places[vertex] = std::uint32_t(used.size());
+          used.push_back(vertex);
+        }
+        mesh.indices.push_back(places[vertex]);
+      }
+    const auto gather = [&](const std::vector<float> &from, std::vector<float> &to,
+                            std::size_t width) {
+      for (const std::uint32_t vertex : used)
+        if (!from.empty())
+          to.insert(to.end(), &from[width * vertex], &from[width * vertex] + width);
+    };
+    gather(whole.positions, mesh.positions, 3);
+    gather(whole.normals, mesh.normals, 3);
+    gather(whole.uvs, mesh.uvs, 2);
+    for (const std::uint32_t vertex : used)
+      places[vertex] = none;
+    return mesh;
+  }
+
   /// The attribute `color`, if every position has one.
   void addColors(Mesh &mesh) const {
     if (hasColors && !wantsColors)
@@ -189,9 +256,21 @@ private:
       return readTextureCoordinates();
     if (word == "f")
       return readFace();
-    const bool meansNothing =
-        word == "g" || word == "o" || word == "s" || word == "usemtl" || word == "mtllib";
+    if (word == "usemtl")
+      return readMaterial();
+    const bool meansNothing = word == "g" || word == "o" || word == "s" || word == "mtllib";
     return meansNothing && skipLine();
+  }
+
+  /// The rest of the line, which may contain blanks.
+  bool readMaterial() {
+    skipBlanks();
+    const char *start = at, *last = at;
+    for (; !isAtEnd(); ++at)
+      if (!isBlank(*at))
+        last = at + 1;
+    uses.push_back({indices.size(), {start, std::size_t(last - start)}});
+    return (last == start || last[-1] != '\\') && endLine();
   }
 
   bool readNumber(float &number) {
@@ -308,6 +387,7 @@ private:
   std::size_t faceCount = 0;
   Vertices vertices;
   std::vector<std::uint32_t> indices;
+  std::vector<MaterialUse> uses; // in the order of the file
 };
 
 } // namespace
@@ -317,6 +397,14 @@ std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &reque
   if (!reader.readAll())
     return std::nullopt;
   return reader.takeMesh();
+}
+
+std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text) {
+  const MeshRequest nothing;
+  Reader reader(text, nothing);
+  if (!reader.readAll())
+    return std::nullopt;
+  return reader.takeGroups();
 }
 
 } // namespace rtsl::runtime

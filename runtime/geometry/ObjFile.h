@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -15,5 +16,8 @@ namespace rtsl::runtime {
 /// damaged: such files are left to the general reader (MeshFile.cpp), which also reports errors,
 /// but is ten times slower for small files.
 std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request = {});
+
+/// The same, by the names that follow `usemtl`.
+std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text);
 
 } // namespace rtsl::runtime

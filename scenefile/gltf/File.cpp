@@ -92,7 +92,7 @@ int valueOfBase64(char c) {
 } // namespace
 
 bool isModel(const std::string &path) {
-  return hasEnding(path, ".gltf") || hasEnding(path, ".glb");
+  return hasEnding(path, ".gltf") || hasEnding(path, ".glb") || hasEnding(path, ".obj");
 }
 
 bool isDataUri(const std::string &uri) {
@@ -164,6 +164,12 @@ File::File(const std::string &bytes, std::string path) : name(std::move(path)) {
   } catch (const Error &error) {
     throw named(error, name);
   }
+}
+
+File::File(JsonValue given, std::string bytes, std::string path, Prepared prepared)
+    : name(std::move(path)), json(std::move(given)), binary(std::move(bytes)), hasBinary(true),
+      ready(std::move(prepared)), allWarnings(ready->warnings) {
+  checkRoot();
 }
 
 /// A header of 12 bytes, then chunks: a length, a type, and so many bytes.
@@ -320,6 +326,8 @@ std::vector<std::string> File::files() const {
                                                    !isDataUri(uri->string) &&
                                                    uri->string.find("://") == std::string::npos)
       found.push_back(resolve(*uri));
+  if (ready)
+    found.insert(found.end(), ready->files.begin(), ready->files.end());
   return found;
 }
 

@@ -10,17 +10,32 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "scenefile/gltf/Parts.h"
 #include "scenefile/json/JsonValue.h"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace rtsl::scene::gltf {
+
+struct Mention;
+
+/// What a file of another format has that was made a glTF file.
+struct Prepared {
+  /// Makes what an author would write for a material, in place of what its JSON says.
+  std::function<JsonValue(std::size_t material, const Mention &mention, Modules &modules,
+                          std::vector<Warning> &warnings)>
+      material;
+  std::vector<std::string> files; // that it refers to, for dependencies
+  std::vector<Warning> warnings;
+};
 
 class File {
 public:
@@ -29,6 +44,9 @@ public:
   explicit File(std::string path);
   /// The same for bytes in memory; `path` is for messages and for relative paths.
   File(const std::string &bytes, std::string path);
+
+  /// A file of another format, as JSON with one buffer.
+  File(JsonValue json, std::string binary, std::string path, Prepared prepared);
 
   const std::string &path() const { return name; }
   const JsonValue &root() const { return json; }
@@ -56,6 +74,9 @@ public:
   /// The file itself and those of its buffers, for dependencies.
   std::vector<std::string> files() const;
 
+  /// Null: its materials are those of its JSON.
+  const Prepared *prepared() const { return ready ? &*ready : nullptr; }
+
   /// What the file uses that has no meaning here, by name.
   const std::vector<Warning> &warnings() const { return allWarnings; }
 
@@ -69,12 +90,13 @@ private:
   JsonValue json;
   std::string binary; // of the container
   bool hasBinary = false;
+  std::optional<Prepared> ready;
   std::vector<Warning> allWarnings;
   mutable std::mutex mutex;
   mutable std::map<std::size_t, std::string> buffers; // those that were read
 };
 
-/// Is it a glTF file, by its name?
+/// Is it a file of a model, glTF or OBJ, by its name?
 bool isModel(const std::string &path);
 
 /// Is it a `data:` URI? Then its bytes are in it.

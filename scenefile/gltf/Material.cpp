@@ -222,6 +222,8 @@ private:
 
 JsonValue materialOf(const File &file, std::size_t index, const Mention &mention, Modules &modules,
                      std::vector<Warning> &warnings) {
+  if (const Prepared *prepared = file.prepared())
+    return prepared->material(index, mention, modules, warnings);
   return MaterialReader(file, index, mention, modules, warnings).read();
 }
 

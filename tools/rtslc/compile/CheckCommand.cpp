@@ -133,7 +133,7 @@ void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   CLI::App *command = app.add_subcommand("check", "check RTSL files and scenes for mistakes");
   command
       ->add_option("FILE", options->files,
-                   "RTSL files, which are checked together; scenes (.json) and glTF models, each "
+                   "RTSL files, which are checked together; scenes (.json) and models, each "
                    "with its shaders; - is standard input")
       ->required();
   command->add_flag("--fix", options->fix, "apply unambiguous fixes to the files");

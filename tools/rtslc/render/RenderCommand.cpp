@@ -216,7 +216,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command
       ->add_option(
           "FILE", options->scene,
-          "a scene (.json); a glTF model (.gltf, .glb) or RTSL (.rtsl), of which one class "
+          "a scene (.json); a model (.gltf, .glb, .obj) or RTSL (.rtsl), of which one class "
           "is shown, in a standard scene; - is a scene on standard input")
       ->required();
   command

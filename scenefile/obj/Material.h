@@ -1,0 +1,18 @@
+//===- Material.h - a material of an MTL file as one of the library -------===//
+#pragma once
+
+#include "scenefile/gltf/Textures.h"
+#include "scenefile/obj/Mtl.h"
+
+namespace rtsl::scene::obj {
+
+/// What an author would write for it; docs/scene-format.md says what becomes of each statement.
+/// `size` is that of the model, for heights that are given without a unit. Statements that have no
+/// meaning here are warned of by name. Throws WrongType, OutOfRange.
+JsonValue materialOf(const Material &material, double size, const gltf::Mention &mention,
+                     gltf::Modules &modules, std::vector<Warning> &warnings);
+
+/// Of triangles without a material.
+JsonValue defaultMaterial(const JsonValue &source, gltf::Modules &modules);
+
+} // namespace rtsl::scene::obj
