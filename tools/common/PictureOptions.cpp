@@ -11,15 +11,25 @@ namespace rtsl::tool {
 namespace {
 
 PictureSize parseSize(const std::string &text) {
-  unsigned width = 0, height = 0;
+  PictureSize size{0, 0};
   int used = 0;
-  const bool isSize = text.size() < 32 &&
-                      std::sscanf(text.c_str(), "%5ux%5u%n", &width, &height, &used) == 2 &&
-                      static_cast<std::size_t>(used) == text.size();
-  if (!isSize || width < 1 || height < 1 || width > 65536 || height > 65536)
-    throw CLI::ValidationError(
-        "--size", "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as 960x540");
-  return {width, height};
+  const char *const given = text.c_str();
+  const auto isComplete = [&] { return static_cast<std::size_t>(used) == text.size(); };
+  const bool isSize =
+      text.size() < 32 && text.find_first_not_of("0123456789x") == text.npos &&
+      ((std::sscanf(given, "%5ux%5u%n", &size.width, &size.height, &used) == 2 && isComplete()) ||
+       (std::sscanf(given, "%5ux%5ux%5u%n", &size.width, &size.height, &size.slices, &used) == 3 &&
+        isComplete()));
+  for (const std::uint32_t side : {size.width, size.height, size.slices})
+    if (!isSize || side < 1 || side > 65536)
+      throw CLI::ValidationError("--size",
+                                 "give WIDTHxHEIGHT in pixels, each from 1 to 65536, such as "
+                                 "960x540; and x the slices of a launch of three dimensions");
+  if (std::uint64_t(size.height) * size.slices > runtime::mostLaunchRows)
+    throw CLI::ValidationError("--size", "a launch has at most " +
+                                             std::to_string(runtime::mostLaunchRows) +
+                                             " rows in all of its slices");
+  return size;
 }
 
 runtime::Window parseCrop(const std::string &text) {
@@ -48,8 +58,9 @@ void addCropOption(CLI::App &command, std::optional<runtime::Window> &crop) {
 void addSizeOption(CLI::App &command, std::optional<PictureSize> &size) {
   command
       .add_option_function<std::string>(
-          "--size", [&size](const std::string &text) { size = parseSize(text); }, "size in pixels")
-      ->type_name("WxH");
+          "--size", [&size](const std::string &text) { size = parseSize(text); },
+          "size in pixels; a third number: slices")
+      ->type_name("WxH[xS]");
 }
 
 CLI::Option *addPictureOption(CLI::App &command, std::string &output,

@@ -14,9 +14,16 @@ namespace rtsl::tool {
 
 struct PictureSize {
   std::uint32_t width, height; // in pixels
+  std::uint32_t slices = 1;    // of a launch of three dimensions
+
+  void apply(runtime::RenderOptions &render) const {
+    render.width = width;
+    render.height = height * slices;
+    render.slices = slices;
+  }
 };
 
-/// Adds --size WxH, each from 1 to 65536.
+/// Adds --size WxH or WxHxSLICES, each from 1 to 65536.
 void addSizeOption(CLI::App &command, std::optional<PictureSize> &size);
 
 /// Adds --crop x0,y0,x1,y1.

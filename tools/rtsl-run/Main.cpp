@@ -51,11 +51,8 @@ struct Options {
 
 runtime::RenderOptions renderOptions(const Options &options, const runtime::Package &package) {
   runtime::RenderOptions render = package.options;
-  if (options.size) {
-    render.width = options.size->width;
-    render.height = options.size->height;
-    render.slices = 1;
-  }
+  if (options.size)
+    options.size->apply(render);
   render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
   render.maxDepth = options.depth.value_or(render.maxDepth);

@@ -148,6 +148,53 @@ class Steps : rt_RayGeneration {
             self.run_alone(*bad.split(), status=2)
         self.assertNotIn("a.npy", self.files())
 
+    def test_launches_of_three_dimensions(self):
+        """Of the scene's size and of another one: the bits of `rtslc run`. A buffer of fewer
+        dimensions cannot have an element for each index."""
+        declared = {
+            "volume": "float cells[][][]",
+            "plane": "float cells[][]",
+            "row": "float cells[]",
+        }
+        index = {"volume": "[i.z][i.y][i.x]", "plane": "[i.y][i.x]", "row": "[i.x]"}
+        sizes = {"volume": [4, 3, 2], "plane": [4, 3], "row": [4]}
+        for name, member in declared.items():
+            self.write(
+                "cells.rtsl",
+                f"class Cells : rt_RayGeneration {{ public out {member}; void generate() {{ "
+                f"uvec3 i = rt_LaunchIndex; cells{index[name]} = rand() + float(i.z); }} }};",
+            )
+            scene = {
+                "rtsl": 1,
+                "import": ["cells.rtsl"],
+                "rayGeneration": {"class": "Cells"},
+                "render": {"engine": "programs", "size": sizes[name], "spp": 1},
+            }
+            self.write("scene.json", json.dumps(scene))
+            self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
+            for size in ("4x3x2", "2x5x3", "7x2", "5x1"):
+                numbers = [int(number) for number in size.split("x")]
+                dimensions = 3 if len(numbers) == 3 else 2 if numbers[1] > 1 else 1
+                arguments = ("--size", size, "--target=host", "-q", "--out=cells=packed.npy")
+                if dimensions > len(sizes[name]):
+                    said = self.run_alone(*arguments, status=DIAGNOSED).stderr
+                    self.assertIn(b"the launch cannot have more dimensions", said)
+                    self.assertNotIn("packed.npy", self.files())
+                    continue
+                self.run_alone(*arguments)
+                self.run_rtslc(
+                    "run", "scene.json", "-q", f"--set=render.size={numbers}", "--out=cells=a.npy"
+                )
+                self.assertEqual(
+                    (self.folder / "packed.npy").read_bytes(),
+                    (self.folder / "a.npy").read_bytes(),
+                    (name, size),
+                )
+                (self.folder / "packed.npy").unlink()
+        for bad in ("4x3x", "4x3x0", "4x3x2x1", "x3x2", "4x65536x65536", "4x 3"):
+            said = self.run_alone("--size", bad, "--out=cells=a.npy", status=USAGE).stderr
+            self.assertIn(b"--size", said)
+
     def run_alone(self, *arguments, status=FINE):
         """rtsl-run on the package, without a picture."""
         done = subprocess.run(

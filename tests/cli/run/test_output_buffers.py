@@ -135,6 +135,13 @@ class Sky : rt_Miss { void miss(inout Ray ray) { ray.at = rt_LaunchIndex; } };
             self.assertEqual(len(found), 1, found)
             self.assertIn(text, found[0]["message"])
             self.assertGreater(found[0]["range"]["begin"]["line"], 0)
+        for size in ([0], [0, 3], [5, 0]):
+            self.scene(size=size)
+            found = self.diagnose("run", "scene.json")
+            self.assertEqual(len(found), 1, found)
+            self.assertIn("between 1 and", found[0]["message"])
+        self.scene(rayGeneration=None, passes=[])
+        self.assert_message(self.diagnose("run", "scene.json"), "E0818", "no ray generation")
         # A buffer of two dimensions has no size of its own in such a launch.
         self.write(
             "one.rtsl",

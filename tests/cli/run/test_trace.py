@@ -277,6 +277,10 @@ class Trace(Case):
                 "trace", "soup.obj", "--rays", "bad.npy", "--out", "hits.npy", "-q", *options
             )
             self.assertEqual(read_hits(self.folder / "hits.npy"), [(-1, -1, 0, 0)] * 4, options)
+            self.run_rtslc(
+                "trace", "soup.obj", "--rays=bad.npy", "--any", "--out=any.npy", "-q", *options
+            )
+            self.assertEqual(read_bools(self.folder / "any.npy"), [False] * 4, options)
 
 
 if __name__ == "__main__":

@@ -369,6 +369,41 @@ def graph():
     }
 
 
+def spaces(transforms):
+    """The functions between spaces, below transforms of all kinds or of one."""
+    nodes = {
+        "ball": {"primitive": {"class": "Ball"}, "material": {"class": "Spaces"}},
+        "small": {"primitive": {"class": "Ball", "radius": 0.5}, "material": {"class": "Spaces"}},
+        "either": {"selector": {"class": "Side"}, "children": ["ball", "small"]},
+    }
+    children = [{"child": "either", "transform": transform} for transform in transforms]
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Spaces.rtsl")],
+        "camera": {"class": "Look"},
+        "nodes": {**nodes, "world": {"children": ["small", *children]}},
+        "root": "world",
+        "render": {"size": [40, 30], "spp": 4},
+    }
+
+
+PLACES = [
+    {"translate": [-2, 0.5, 0]},
+    {"keys": [{"translate": [2, 1, 0]}, {"translate": [2.5, 2, -1]}]},
+]
+SPACES = [
+    spaces(PLACES),
+    spaces(
+        [
+            *PLACES,
+            {"scale": [1.5, -0.5, 1], "rotate": [20, 30, 40], "translate": [0, 1.5, -1]},
+            {"keys": [{"rotate": [0, 0, 0]}, {"rotate": [0, 90, 200]}]},
+            {"matrix": [1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 2, 0, 1, -1, 1, 1]},
+        ]
+    ),
+]
+
+
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
@@ -397,6 +432,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--trace=recurse", "--exceptions"], [outputs()]),
     ("g++", ["-O1"], ["--undefined=nan"], [graph()]),
     ("clang++-22", ["-O1"], ["--trace=recurse", "--undefined=bytes"], [graph()]),
+    ("g++", ["-O1"], ["--undefined=nan"], SPACES),
+    ("clang++-22", ["-O1"], ["--trace=recurse"], SPACES),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]

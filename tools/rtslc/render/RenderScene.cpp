@@ -47,11 +47,8 @@ std::vector<std::string> overridesOf(const RenderCommandOptions &options) {
 runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
                                      const scene::RenderSettings &settings) {
   runtime::RenderOptions render = scene::renderOptions(settings);
-  if (options.size) {
-    render.width = options.size->width;
-    render.height = options.size->height;
-    render.slices = 1;
-  }
+  if (options.size)
+    options.size->apply(render);
   render.crop = options.crop;
   render.samplesPerPixel = options.samples.value_or(
       options.isOpenEnded() ? runtime::mostSamplesPerPixel : render.samplesPerPixel);

@@ -402,8 +402,7 @@ std::optional<LoadedScene> load(const ReportOptions &options, Messages &messages
     loaded.filesRead.push_back(options.reference);
   loaded.render = scene::renderOptions(loaded.description.render);
   if (options.size) {
-    loaded.render.width = options.size->width;
-    loaded.render.height = options.size->height;
+    options.size->apply(loaded.render);
   } else if (!options.reference.empty()) { // the size that can be compared
     const runtime::Image reference = runtime::readImage(options.reference);
     loaded.render.width = reference.width;
