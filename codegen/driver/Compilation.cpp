@@ -40,7 +40,7 @@ static void bindToScene(Compilation &compilation) {
   // With arithmetic in double, members of the scene stay variables: a constant index would change
   // which values are in memory, and so where a number is rounded.
   if (compilation.options.floatingPoint == FloatingPoint::Double) {
-    request.keep.add(Item::Parameters);
+    request.keep.add(ItemSet::ofMembers());
     request.keep.add(Item::Lights);
   }
   const runtime::SceneFacts facts =

@@ -151,7 +151,8 @@ void dropReadsThatNeverRun(const CompileInput &input, const CompileOptions &opti
     read.insert((object + "." + op.getMember()).str());
   });
   for (Finding &finding : findings)
-    if (finding.item == Item::Parameters && finding.isNeeded && !read.count(finding.subject)) {
+    if (ItemSet::ofMembers().has(finding.item) && finding.isNeeded &&
+        !read.count(finding.subject)) {
       finding.isNeeded = false;
       finding.reason = "read only by code that never runs with the numbers of the scene";
     }

@@ -14,6 +14,7 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/link/BindTables.h"
+#include "codegen/link/Members.h"
 #include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/BindMembers.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
@@ -140,10 +141,28 @@ std::string valueText(mlir::Type type, const std::vector<std::int32_t> &words) {
   return words.size() == 1 ? text : "(" + text + ")";
 }
 
+/// The item of --keep that a member belongs to.
+Item itemOf(const std::string &className, mlir::Type type) {
+  if (isSampler(className))
+    return Item::Images;
+  mlir::Type element = type;
+  if (const auto buffer = llvm::dyn_cast<ir::BufferType>(element))
+    element = buffer.getElement();
+  while (const auto array = llvm::dyn_cast<ir::ArrayType>(element))
+    element = array.getElement();
+  if (element != type && llvm::isa<ir::RefType>(element))
+    return Item::Bindless;
+  return llvm::isa<ir::BufferType>(type) ? Item::Buffers : Item::Parameters;
+}
+
 Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t objects,
                  const std::vector<std::int32_t> &words, const Readers &readers) {
   const std::string className = record.getSymName().str();
-  Finding finding = {Item::Parameters, className + "." + member.getSymName().str(), false, {}, {}};
+  Finding finding = {itemOf(className, member.getType()),
+                     className + "." + member.getSymName().str(),
+                     false,
+                     {},
+                     {}};
   const auto reader = readers.find({className, member.getSymName().str()});
   if (reader == readers.end()) {
     const bool isEmpty =
@@ -196,25 +215,33 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
 
 /// One thing that a scene may have.
 struct GraphPart {
+  Item item;
   std::uint32_t need; // RTSL_HAS_*
   const char *subject, *present, *absent;
 };
 constexpr GraphPart graphParts[] = {
-    {RTSL_HAS_TRANSFORMS, "transforms", "some instance has one",
+    {Item::Transforms, RTSL_HAS_TRANSFORMS, "transforms", "some instance has one",
      "no instance has one: rays stay in world space"},
-    {RTSL_HAS_ROOTS, "roots", "the scene has several", "all instances are below root 0"},
-    {RTSL_HAS_COUNTS, "counts", "some object holds several primitives",
+    {Item::Transforms, RTSL_HAS_LINEAR, "linear parts of transforms",
+     "some transform turns, scales or shears", "every transform is a translation"},
+    {Item::Roots, RTSL_HAS_ROOTS, "roots", "the scene has several",
+     "all instances are below root 0"},
+    {Item::Counts, RTSL_HAS_COUNTS, "counts", "some object holds several primitives",
      "each object is one primitive"},
-    {RTSL_HAS_SELECTORS, "selectors", "some instance is below one", "the scene has none"},
-    {RTSL_HAS_MOTION, "motion", "some transform has keys", "no transform has keys"},
-    {RTSL_HAS_MESH_KEYS, "mesh keys", "some mesh has several", "no mesh has several"},
-    {RTSL_HAS_SHUTTER, "shutter", "each sample has a time of its own",
+    {Item::Selectors, RTSL_HAS_SELECTORS, "selectors", "some instance is below one",
+     "the scene has none"},
+    {Item::Motion, RTSL_HAS_MOTION, "motion", "some transform has keys", "no transform has keys"},
+    {Item::Motion, RTSL_HAS_MESH_KEYS, "mesh keys", "some mesh has several", "no mesh has several"},
+    {Item::Motion, RTSL_HAS_SHUTTER, "shutter", "each sample has a time of its own",
      "nothing moves: the time of all rays is 0"},
-    {RTSL_HAS_SAMPLED_BACKGROUND, "directions of the background",
-     "it has `sampleDirection` and `directionPDF`", "the background cannot choose any"},
-    {RTSL_HAS_NO_BACKS, "back faces", "some mesh leaves them out: the side of a hit is tested",
+    {Item::Masks, RTSL_HAS_MASKS, "masks", "some instance has one",
+     "all instances are seen by rays of all masks"},
+    {Item::BackFaces, RTSL_HAS_NO_BACKS, "back faces",
+     "some mesh leaves them out: the side of a hit is tested",
      "no mesh leaves them out: both sides of triangles are hit"},
-    {RTSL_HAS_LIGHT_TREE, "light tree", "many surfaces shine",
+    {Item::Lights, RTSL_HAS_SAMPLED_BACKGROUND, "directions of the background",
+     "it has `sampleDirection` and `directionPDF`", "the background cannot choose any"},
+    {Item::Lights, RTSL_HAS_LIGHT_TREE, "light tree", "many surfaces shine",
      "few surfaces shine, or none: they are chosen by their power"},
 };
 
@@ -222,13 +249,15 @@ constexpr GraphPart graphParts[] = {
 
 std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &request,
                          Findings *findings) {
-  std::uint32_t needs = request.keep.has(Item::Graph) ? RTSL_HAS_ALL : scene.needs;
+  std::uint32_t needs = scene.needs;
   for (const GraphPart &part : graphParts) {
     const bool isNeeded = scene.needs & part.need;
     if (findings)
       findings->push_back(
-          {Item::Graph, part.subject, isNeeded, isNeeded ? part.present : part.absent, {}});
-    if (request.without.count({Item::Graph, part.subject}))
+          {part.item, part.subject, isNeeded, isNeeded ? part.present : part.absent, {}});
+    if (request.keep.has(part.item))
+      needs |= part.need;
+    if (request.without.count({part.item, part.subject}))
       needs &= ~part.need;
   }
   return needs;
@@ -265,10 +294,10 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
       std::vector<std::int32_t> words = commonWords(classes, member, objects->second);
       if (findings)
         findings->push_back(describe(record, member, objects->second.size(), words, readers));
-      if (request.without.count(
-              {Item::Parameters, (record.getSymName() + "." + member.getSymName()).str()}))
+      const Item item = itemOf(record.getSymName().str(), member.getType());
+      if (request.without.count({item, (record.getSymName() + "." + member.getSymName()).str()}))
         words = commonWords(classes, member, llvm::ArrayRef(objects->second).take_front());
-      if (!words.empty() && !keep.has(Item::Parameters))
+      if (!words.empty() && !keep.has(item))
         ir::attr::bound.set(member, builder.getDenseI32ArrayAttr(words));
     }
   }

@@ -41,4 +41,11 @@ ItemSet ItemSet::only(Item item) {
   return set;
 }
 
+ItemSet ItemSet::ofMembers() {
+  ItemSet set;
+  for (Item item : {Item::Parameters, Item::Buffers, Item::Images, Item::Bindless})
+    set.add(item);
+  return set;
+}
+
 } // namespace rtsl

@@ -42,6 +42,8 @@ public:
   void add(ItemSet items) { bits |= items.bits; }
   static ItemSet all();
   static ItemSet only(Item item);
+  /// Those of members of objects.
+  static ItemSet ofMembers();
 
 private:
   std::uint32_t bits = 0;

@@ -3,6 +3,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
 
+#include "codegen/link/Members.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/BoundHitError.h"
@@ -58,7 +59,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::emptyReferences(context);
   linking::findUsedObjects(context);
   linking::deriveHitErrors(context);
-  if (!request.hasCounts && !request.keep.has(Item::Graph))
+  if (!request.hasCounts && !request.keep.has(Item::Counts))
     ir::attr::singlePrimitives.set(ir);
   linking::resolveSlots(context);
   linking::dropUnreached(context);
@@ -83,7 +84,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     info.id = linked.id;
     info.needs = needsOfClasses[index];
     for (runtime::MemberInfo &member : info.members)
-      member.isRead = membersOfProgram.contains(member.name);
+      member.isRead = membersOfProgram.contains(member.name) ||
+                      (request.keep.has(Item::Images) && isSampler(info.name));
     info.attributes = linking::meshAttributesOf(context, info.name);
     if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);
@@ -96,6 +98,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.needs =
       (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : needs) & ~linking::needsLeftOut(context);
   program.keepsMeshes = request.keep.has(Item::Meshes);
+  program.keepsMeshAttributes = request.keep.has(Item::MeshAttributes);
   return true;
 }
 

@@ -23,6 +23,9 @@ typedef struct RtslScene RtslScene;
 
 /* An object of the scene; 0 is none. */
 typedef uint32_t RtslObject;
+/* A node, and memory for a buffer; 0 is none. */
+typedef uint32_t RtslNode;
+typedef uint32_t RtslBufferNumber;
 
 /* The error of the last function that failed in this thread; "" if none did. Valid until the next
  * call. */
@@ -40,6 +43,18 @@ int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object);
 
 /* Creates an object of the class with these values, which are then cleared. */
 RtslObject rtslSceneAddObject(RtslScene *scene, const char *className);
+
+/* Memory of `words` 32-bit words, initially 0, for buffers of members. Launches read and write it
+ * where it is: nothing is copied. */
+RtslBufferNumber rtslSceneAddBuffer(RtslScene *scene, size_t words);
+/* The words, between launches: they stay where they are as long as the scene. */
+void *rtslMapBuffer(RtslScene *scene, RtslBufferNumber buffer);
+/* The launches that follow see what was written. */
+int rtslUnmapBuffer(RtslScene *scene, RtslBufferNumber buffer);
+/* Sets a member of the next rtslSceneAddObject, a buffer of 1 to 3 dimensions of these sizes, which
+ * must fill the memory. Several members may share a buffer unless one of them is an output. */
+int rtslMemberBuffer(RtslScene *scene, const char *member, RtslBufferNumber buffer,
+                     const uint32_t *sizes, uint32_t dimensions);
 
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
  * and the mask of the next instance that is added. Fails if a number is not finite. */
@@ -59,9 +74,22 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
 /* Sets rt_InstanceId of the next instance that is added, and the `selection` (rtslSceneAddSelector)
  * below which it is; 0: none. */
 int rtslMark(RtslScene *scene, int32_t id, uint32_t selection);
+/* Rays that enter at root r see the instances that are added next if bit r is set; 1 unless it is
+ * set: the rays that name no root. */
+int rtslSetRoots(RtslScene *scene, uint32_t roots);
 /* Whether rays meet triangles of the meshes that are added next along rt_GeometricNormal; 1 unless
  * it is set. */
 int rtslSetBackFaces(RtslScene *scene, int areHit);
+
+/* Enters a new node, whose transform is what rtslPlace, rtslPlaceMoving or rtslPlaceTurning has
+ * set. Instances and selectors that are added from here on are in its space, and so are nodes that
+ * are entered in it, up to rtslLeave. Meshes and objects are shared by all nodes. */
+RtslNode rtslEnter(RtslScene *scene);
+int rtslLeave(RtslScene *scene);
+/* A variable of the node that is entered, or of the scene: objects that are created in it, without
+ * constructor arguments, take the nearest one for a public member of its name that is not set. */
+int rtslVariable(RtslScene *scene, const char *name, const double *numbers, size_t count);
+int rtslVariableObject(RtslScene *scene, const char *name, RtslObject object);
 
 /* Adds a selector with as many children, in the space of `transform` (as above; null: world space).
  * Returns the selection of child 0; those of the others follow. `above`: that of the selector
@@ -102,6 +130,23 @@ int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path);
 /* Another instance of a mesh: of rtslSceneLoadMesh's, or of the n-th that was added, from 0. */
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material);
 
+/* Between renderings: what has moved is seen where it is now, and nothing is compiled. Trees keep
+ * their shapes as long as that is good enough, which is several times faster than building them.
+ *
+ * Gives an instance, by its number in the order of addition from 0, or a node the transform that
+ * rtslPlace, rtslPlaceMoving or rtslPlaceTurning has set. */
+int rtslMoveInstance(RtslScene *scene, uint32_t instance);
+int rtslMoveNode(RtslScene *scene, RtslNode node);
+/* The positions of a mesh, 3 floats per vertex, to be changed; the scene sees them when they are
+ * unmapped, and renders only when all are. If one is not finite, rtslUnmapVertices fails and the
+ * mesh stays as it was. */
+float *rtslMapVertices(RtslScene *scene, int32_t mesh);
+int rtslUnmapVertices(RtslScene *scene, int32_t mesh);
+/* Sets a public member of an object that exists, but of no primitive. */
+int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const double *numbers,
+                  size_t count);
+int rtslSetMemberObject(RtslScene *scene, RtslObject object, const char *member, RtslObject value);
+
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
 /* Samples have times between these two, 0 <= open <= close <= 1. Without it they have times from 0
@@ -121,13 +166,18 @@ typedef struct RtslRenderSettings {
   uint32_t maxDepth; /* 0: camera rays only */
   uint32_t seed;
   uint32_t threads; /* 0: all cores */
+  uint32_t slices;  /* of a launch of three dimensions: each has `height` rows. 0 is 1 */
 } RtslRenderSettings;
 
-/* 960 x 540, 16 samples, depth 8, seed 1, all cores. */
+/* 960 x 540, 16 samples, depth 8, seed 1, all cores, one slice. */
 RtslRenderSettings rtslRenderDefaults(void);
 
-/* Renders into `pixels`: width * height * channels floats of linear light, rows from the top, with
- * as many channels as the shaders' colors have (rtslSceneChannels). */
+/* Runs the ray generation once for each sample, and makes no picture: what it computes is in its
+ * output buffers. One rendering of a scene after the other uses the trees of the one before. */
+int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings);
+
+/* Renders into `pixels`: width * height * slices * channels floats of linear light, rows from the
+ * top, with as many channels as the shaders' colors have (rtslSceneChannels). */
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels);
 uint32_t rtslSceneChannels(const RtslScene *scene);
 /* Renders and writes an .exr or .png. */
@@ -148,6 +198,31 @@ RtslRenderFacts rtslLastRendering(void);
  * call, in the order of pixels. */
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
                     void *context);
+
+/* Rays of an application's own against triangles, without shaders: what `rtslc trace` does, on
+ * arrays, which are read and written where they are. Queries may run in several threads. `threads`
+ * 0: all cores, for each query. */
+typedef struct RtslQuery RtslQuery;
+/* Hits at tMin < t < tMax, in units of the direction's length. */
+typedef struct RtslQueryRay {
+  float origin[3], tMin, direction[3], tMax;
+} RtslQueryRay;
+/* u and v: barycentric coordinates at the second and third vertex. Nothing is hit: -1, -1, 0, 0. */
+typedef struct RtslQueryHit {
+  float t;
+  int32_t triangle;
+  float u, v;
+} RtslQueryHit;
+RtslQuery *rtslQueryCreate(const float *positions, size_t vertices, const uint32_t *indices,
+                           size_t triangles, uint32_t threads);
+RtslQuery *rtslQueryLoad(const char *path, uint32_t threads);
+void rtslQueryDestroy(RtslQuery *query);
+int rtslQueryNearest(const RtslQuery *query, const RtslQueryRay *rays, size_t count,
+                     RtslQueryHit *hits);
+/* 1 for each ray that hits something, otherwise 0. */
+int rtslQueryAny(const RtslQuery *query, const RtslQueryRay *rays, size_t count, uint8_t *hits);
+/* Other positions of as many vertices. Not while queries run. */
+int rtslQueryMove(RtslQuery *query, const float *positions, size_t vertices);
 
 #ifdef __cplusplus
 }

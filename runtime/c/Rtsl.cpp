@@ -1,7 +1,7 @@
 //===- Rtsl.cpp - the runtime for C ---------------------------------------===//
 #include "rtsl/rtsl.h"
 
-#include "rtsl/runtime.h"
+#include "runtime/c/Handle.h"
 #include "support/ErrorMessages.h"
 
 #include <algorithm>
@@ -13,91 +13,8 @@
 
 namespace runtime = rtsl::runtime;
 
-struct RtslScene {
-  runtime::Scene scene;
-  std::vector<runtime::NamedValue> arguments, members; // of the next object
-  runtime::Placement placement;                        // of the next instance
-  std::vector<runtime::NamedAttribute> attributes;     // of the next mesh
-
-  /// The placement of the instance that is being added; the one after it has none.
-  runtime::Placement takePlacement() { return std::exchange(placement, {}); }
-
-  runtime::Mesh loadMesh(const char *path) const {
-    runtime::MeshRequest request = runtime::requestOf(scene.program());
-    request.keepsOrder = !attributes.empty();
-    return runtime::loadMesh(path, request);
-  }
-
-  /// Gives a mesh the attributes that were set for it. `name` is for messages.
-  void giveAttributes(runtime::Mesh &mesh, const char *name) {
-    for (runtime::NamedAttribute &attribute : std::exchange(attributes, {}))
-      runtime::addInFileOrder(mesh, std::move(attribute), name);
-  }
-};
-
-namespace {
-
-std::string &lastError() {
-  static thread_local std::string message;
-  return message;
-}
-
-/// Runs `work`; what it throws becomes the error, and `failed` the result.
-template <typename Result, typename Work>
-Result guarded(Result failed, Work work) {
-  lastError().clear();
-  try {
-    return work();
-  } catch (const std::exception &error) {
-    lastError() = error.what();
-  } catch (...) {
-    lastError() = "unknown error";
-  }
-  return failed;
-}
-
-/// One number, or a list of them.
-runtime::Value valueOf(const double *numbers, std::size_t count) {
-  if (count == 1)
-    return runtime::Value(numbers[0]);
-  return runtime::Value(std::vector<runtime::Value>(numbers, numbers + count));
-}
-
-/// Of 12 numbers, four columns of three.
-runtime::Transform transformOf(const double *numbers) {
-  runtime::Transform transform;
-  for (std::size_t column = 0; column < 4; ++column)
-    std::copy_n(numbers + 3 * column, 3, transform.columns[column].begin());
-  return transform;
-}
-
-runtime::RenderOptions optionsOf(const RtslRenderSettings *settings) {
-  const RtslRenderSettings requested = settings ? *settings : rtslRenderDefaults();
-  runtime::RenderOptions options;
-  options.width = requested.width;
-  options.height = requested.height;
-  options.samplesPerPixel = requested.samplesPerPixel;
-  options.maxDepth = requested.maxDepth;
-  options.seed = requested.seed;
-  options.threads = requested.threads;
-  return options;
-}
-
-RtslRenderFacts &lastRendering() {
-  static thread_local RtslRenderFacts facts{};
-  return facts;
-}
-
-runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings) {
-  runtime::RenderStatistics statistics;
-  lastRendering() = {};
-  runtime::Image image = runtime::render(scene->scene, optionsOf(settings), &statistics);
-  lastRendering() = {statistics.samples, statistics.samplesNotFinite,
-                     statistics.pixelsWithoutSample, statistics.raysTooDeep, statistics.badRays};
-  return image;
-}
-
-} // namespace
+using rtsl::c::guarded;
+using rtsl::c::lastError;
 
 extern "C" {
 
@@ -109,7 +26,7 @@ RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
   return guarded<RtslScene *>(nullptr, [&] {
     if (!shaders)
       throw rtsl::Error(rtsl::message::noShaders());
-    return new RtslScene{runtime::Scene(rtsl::program(shaders)), {}, {}, {}, {}};
+    return new RtslScene(rtsl::program(shaders));
   });
 }
 
@@ -119,7 +36,7 @@ void rtslSceneDestroy(RtslScene *scene) {
 
 int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count) {
   return guarded(0, [&] {
-    scene->arguments.push_back({parameter, valueOf(numbers, count)});
+    scene->arguments.push_back({parameter, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
@@ -133,7 +50,7 @@ int rtslArgumentObject(RtslScene *scene, const char *parameter, RtslObject objec
 
 int rtslMember(RtslScene *scene, const char *member, const double *numbers, size_t count) {
   return guarded(0, [&] {
-    scene->members.push_back({member, valueOf(numbers, count)});
+    scene->members.push_back({member, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
@@ -153,21 +70,14 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
     values.members = std::move(scene->members);
     scene->arguments.clear();
     scene->members.clear();
+    scene->addVariables(className, values);
     return scene->scene.addObject(className, values);
   });
 }
 
-static runtime::Transform finiteTransform(const double *transform) {
-  if (!transform)
-    return {};
-  if (!std::all_of(transform, transform + 12, [](double x) { return std::isfinite(x); }))
-    throw rtsl::Error(rtsl::message::transformNotFinite());
-  return transformOf(transform);
-}
-
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
   return guarded(0, [&] {
-    scene->placement.transform = finiteTransform(transform);
+    scene->placement.transform = rtsl::c::finiteTransform(transform);
     scene->placement.mask = mask;
     return 1;
   });
@@ -194,7 +104,7 @@ int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *tim
     runtime::MotionFactor factor;
     factor.times = keyTimes(times, count, sizeof *times);
     for (std::uint32_t i = 0; i < count; ++i)
-      factor.maps.push_back(finiteTransform(transforms + 12 * std::size_t(i)));
+      factor.maps.push_back(rtsl::c::finiteTransform(transforms + 12 * std::size_t(i)));
     scene->placement.transform = runtime::MovingTransform(std::move(factor));
     scene->placement.mask = mask;
     return 1;
@@ -244,6 +154,13 @@ int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
   });
 }
 
+int rtslSetRoots(RtslScene *scene, uint32_t roots) {
+  return guarded(0, [&] {
+    scene->roots = roots;
+    return 1;
+  });
+}
+
 int rtslSetBackFaces(RtslScene *scene, int areHit) {
   return guarded(0, [&] {
     scene->placement.hasBackFaces = areHit != 0;
@@ -254,7 +171,8 @@ int rtslSetBackFaces(RtslScene *scene, int areHit) {
 uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
                               const double *transform, uint32_t above) {
   return guarded<uint32_t>(0, [&] {
-    return scene->scene.addSelector(selector, children, finiteTransform(transform), above);
+    return scene->scene.addSelector(selector, children,
+                                    scene->inNode(rtsl::c::finiteTransform(transform)), above);
   });
 }
 
@@ -289,7 +207,9 @@ int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject mat
 int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t count,
                            RtslObject material) {
   return guarded(0, [&] {
-    scene->scene.addPrimitive(primitive, material, scene->takePlacement(), count);
+    const runtime::Placement placement = scene->takePlacement();
+    scene->noteInstance(
+        scene->scene.addPrimitive(primitive, material, scene->inNode(placement), count), placement);
     return 1;
   });
 }
@@ -300,9 +220,8 @@ int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *trans
     runtime::Mesh mesh = scene->loadMesh(path);
     scene->giveAttributes(mesh, path);
     if (transform)
-      mesh.apply(transformOf(transform));
-    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material,
-                                 scene->takePlacement());
+      mesh.apply(rtsl::c::transformOf(transform));
+    scene->addMeshInstance(scene->scene.addMesh(std::move(mesh), path), material);
     return 1;
   });
 }
@@ -317,8 +236,7 @@ int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
 
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material) {
   return guarded(0, [&] {
-    scene->scene.addMeshInstance(static_cast<std::uint32_t>(mesh), material,
-                                 scene->takePlacement());
+    scene->addMeshInstance(static_cast<std::uint32_t>(mesh), material);
     return 1;
   });
 }
@@ -331,8 +249,7 @@ int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t verte
     mesh.indices.assign(indices, indices + 3 * triangleCount);
     mesh.order = {true, vertexCount, triangleCount, {}, {}};
     scene->giveAttributes(mesh, "the mesh");
-    scene->scene.addMeshInstance(scene->scene.addMesh(std::move(mesh)), material,
-                                 scene->takePlacement());
+    scene->addMeshInstance(scene->scene.addMesh(std::move(mesh)), material);
     return 1;
   });
 }
@@ -382,45 +299,6 @@ int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t cou
 int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count) {
   return guarded(0, [&] {
     scene->scene.setAmbient({color, color + count});
-    return 1;
-  });
-}
-
-RtslRenderSettings rtslRenderDefaults(void) {
-  const runtime::RenderOptions defaults;
-  return {defaults.width,    defaults.height, defaults.samplesPerPixel,
-          defaults.maxDepth, defaults.seed,   defaults.threads};
-}
-
-uint32_t rtslSceneChannels(const RtslScene *scene) {
-  return scene->scene.program().colorComponents;
-}
-
-int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels) {
-  return guarded(0, [&] {
-    const runtime::Image image = render(scene, settings);
-    std::copy(image.pixels.begin(), image.pixels.end(), pixels);
-    return 1;
-  });
-}
-
-int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path) {
-  return guarded(0, [&] {
-    runtime::checkWritable(path);
-    runtime::writeImage(path, render(scene, settings));
-    return 1;
-  });
-}
-
-RtslRenderFacts rtslLastRendering(void) {
-  return lastRendering();
-}
-
-int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
-                    void *context) {
-  return guarded(0, [&] {
-    for (const std::string &line : runtime::takePrintLog().texts(scene->scene.program().prints))
-      take(line.c_str(), context);
     return 1;
   });
 }

@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/accel/Refit.h"
 #include "runtime/accel/TriangleBlocks.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/traverse/Traverse.h"
@@ -64,6 +65,7 @@ struct EmbreeLevel {
   const EmbreeSpace *owner = nullptr;
   float largestOrigin = 0; // the sum of its coordinates
   RTCScene scene = nullptr;
+  std::vector<RTCGeometry> geometries; // of a scene whose trees can follow what moves
   std::once_flag built;
 };
 
@@ -75,6 +77,10 @@ struct EmbreeSpace {
   LargeArray<TriangleBlock> blocks;
   std::vector<EmbreePrimitive> primitives;
   std::vector<EmbreeInstance> instances; // of the world
+  std::vector<MeshUse> meshes;           // in `blocks`
+  BoxOrder boxesWhenBuilt;               // once something has moved
+  bool follows = false;                  // since then
+  std::uint64_t moves = 0;               // Scene::movesOfMesh, of a mesh's space
   // by largestOrigin; the first one is built
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
 

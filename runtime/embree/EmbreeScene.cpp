@@ -4,6 +4,7 @@
 #include "runtime/embree/HostScene.h"
 #include "runtime/program/ProgramHost.h"
 #include "support/ErrorMessages.h"
+#include "support/WorkerThreads.h"
 
 #include <fmt/format.h>
 
@@ -226,18 +227,22 @@ void setBounds(const RTCBoundsFunctionArguments *arguments, const float lower[3]
   *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
-void boundBlock(const RTCBoundsFunctionArguments *arguments) {
-  const TriangleBlock &block = levelOf(arguments).owner->blocks[arguments->primID];
-  float lower[3], upper[3];
+RtslBox boxOf(const TriangleBlock &block) {
+  RtslBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    lower[axis] = upper[axis] = block.vertices[0][axis][0];
+    box.lower[axis] = box.upper[axis] = block.vertices[0][axis][0];
     for (const auto &vertex : block.vertices)
       for (float x : vertex[axis]) {
-        lower[axis] = std::min(lower[axis], x);
-        upper[axis] = std::max(upper[axis], x);
+        box.lower[axis] = std::min(box.lower[axis], x);
+        box.upper[axis] = std::max(box.upper[axis], x);
       }
   }
-  setBounds(arguments, lower, upper);
+  return box;
+}
+
+void boundBlock(const RTCBoundsFunctionArguments *arguments) {
+  const RtslBox box = boxOf(levelOf(arguments).owner->blocks[arguments->primID]);
+  setBounds(arguments, box.lower, box.upper);
 }
 
 RtslBox boxOf(const EmbreeSpace &space, const EmbreePrimitive &primitive) {
@@ -254,11 +259,18 @@ void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
   setBounds(arguments, box.lower, box.upper);
 }
 
+RtslBox boxOf(const EmbreeSpace &space, const EmbreeInstance &one) {
+  const RtslInstance &instance = space.scene->launch.instances[one.instance];
+  RtslBox box;
+  std::copy_n(instance.lower, 3, box.lower);
+  std::copy_n(instance.upper, 3, box.upper);
+  return box;
+}
+
 void boundInstance(const RTCBoundsFunctionArguments *arguments) {
   const EmbreeSpace &space = *levelOf(arguments).owner;
-  const RtslInstance &instance =
-      space.scene->launch.instances[space.instances[arguments->primID].instance];
-  setBounds(arguments, instance.lower, instance.upper);
+  const RtslBox box = boxOf(space, space.instances[arguments->primID]);
+  setBounds(arguments, box.lower, box.upper);
 }
 
 //===----------------------------------------------------------------------===//
@@ -290,9 +302,13 @@ void attach(EmbreeLevel &level, std::size_t count, RTCBoundsFunction bounds,
   rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
   rtcSetGeometryIntersectFunction(geometry, intersect);
   rtcSetGeometryOccludedFunction(geometry, occluded);
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+  const bool follows = level.owner->follows;
+  rtcSetGeometryBuildQuality(geometry,
+                             follows ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(level.scene, geometry);
+  if (follows)
+    level.geometries.push_back(geometry); // which the scene keeps, too
   rtcReleaseGeometry(geometry);
 }
 
@@ -307,7 +323,11 @@ void attachContents(EmbreeLevel &level) {
 void buildLevel(EmbreeLevel &level) {
   const EmbreeSpace &space = *level.owner;
   level.scene = rtcNewScene(space.scene->device);
-  rtcSetSceneBuildQuality(level.scene, RTC_BUILD_QUALITY_MEDIUM);
+  // Only a scene of low quality, which has a tree for each geometry, keeps the shapes of trees.
+  rtcSetSceneBuildQuality(level.scene,
+                          space.follows ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+  if (space.follows)
+    rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_DYNAMIC);
   if (space.isWorld)
     attachContents<device::TriangleRay>(level);
   else
@@ -355,24 +375,101 @@ void addLevels(EmbreeSpace &self) {
   }
 }
 
-void buildSpace(EmbreeSpace &space, const std::vector<MeshUse> &meshes, unsigned threads) {
-  space.blocks = makeTriangleBlocks(space.scene->device, meshes, threads);
+void buildSpace(EmbreeSpace &space, unsigned threads) {
+  space.blocks = makeTriangleBlocks(space.scene->device, space.meshes, threads);
   check(*space.scene);
   addLevels(space);
   buildLevel(*space.levels[0]);
 }
 
+//===----------------------------------------------------------------------===//
+// What moves
+//===----------------------------------------------------------------------===//
+
+/// Copies the vertices of all triangles to their blocks again.
+void updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  const RtslLaunch &launch = space.scene->launch;
+  constexpr std::size_t atOnce = 1024;
+  forEachOnThreads(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
+    const std::size_t end = std::min(space.blocks.size(), (part + 1) * atOnce);
+    for (std::size_t i = part * atOnce; i < end; ++i) {
+      TriangleBlock &block = space.blocks[i];
+      for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
+        const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
+        const std::uint32_t instance = block.instance[isEmpty ? 0 : lane];
+        const RtslMesh &of = launch.meshes[space.isWorld ? launch.instances[instance].mesh : mesh];
+        block.setLane(lane, device::triangleVertices(of, block.triangle[lane]),
+                      block.instance[lane], block.triangle[lane]);
+      }
+    }
+  });
+}
+
+/// The boxes of everything in the space.
+std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
+  std::vector<RtslBox> boxes;
+  boxes.reserve(space.blocks.size() + space.primitives.size() + space.instances.size());
+  for (const TriangleBlock &block : space.blocks)
+    boxes.push_back(boxOf(block));
+  for (const EmbreePrimitive &primitive : space.primitives)
+    boxes.push_back(boxOf(space, primitive));
+  for (const EmbreeInstance &one : space.instances)
+    boxes.push_back(boxOf(space, one));
+  return boxes;
+}
+
+void releaseLevels(EmbreeSpace &space) {
+  for (const auto &level : space.levels)
+    if (level->scene)
+      rtcReleaseScene(level->scene);
+  space.levels.clear();
+}
+
+/// Trees for distant origins are built when they are needed again.
+void releaseDistantLevels(EmbreeSpace &space) {
+  for (std::size_t i = 1; i < space.levels.size(); ++i) {
+    if (!space.levels[i]->scene)
+      continue;
+    rtcReleaseScene(space.levels[i]->scene);
+    auto level = std::make_unique<EmbreeLevel>();
+    level->owner = &space;
+    level->largestOrigin = space.levels[i]->largestOrigin;
+    space.levels[i] = std::move(level);
+  }
+}
+
+/// The first change builds a tree that can follow the next ones. `mesh`: of a space of its own.
+/// True if the tree was built anew.
+bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  updateBlocks(space, mesh, threads);
+  const std::vector<RtslBox> boxes = boxesOf(space);
+  if (!space.follows || space.boxesWhenBuilt.degradation(boxes) > largestDegradation) {
+    space.follows = true;
+    releaseLevels(space);
+    buildSpace(space, threads);
+    space.boxesWhenBuilt = BoxOrder(boxesOf(space));
+    return true;
+  }
+  releaseDistantLevels(space);
+  EmbreeLevel &level = *space.levels[0];
+  for (const RTCGeometry geometry : level.geometries)
+    rtcCommitGeometry(geometry);
+  rtcCommitScene(level.scene);
+  check(*space.scene);
+  return false;
+}
+
+std::uint64_t newNumber() {
+  static std::atomic<std::uint64_t> scenes = 0;
+  return ++scenes;
+}
+
 } // namespace
 
 EmbreeScene::Implementation::~Implementation() {
-  const auto release = [](const EmbreeSpace &space) {
-    for (const auto &level : space.levels)
-      if (level->scene)
-        rtcReleaseScene(level->scene);
-  };
-  release(world);
+  releaseLevels(world);
   for (const auto &space : spaces)
-    release(*space.second);
+    releaseLevels(*space.second);
   if (device)
     rtcReleaseDevice(device);
 }
@@ -388,8 +485,7 @@ RTCScene EmbreeSpace::treeForFar(float origin) const {
 
 EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsigned threads)
     : self(std::make_unique<Implementation>()) {
-  static std::atomic<std::uint64_t> scenes = 0;
-  self->number = ++scenes;
+  self->number = newNumber();
   // With AVX-512 Embree orders the children of a node by instructions with a latency that a single
   // ray cannot hide: its code for AVX2 takes 0.92 to 0.98 of the time (Zen 5).
   std::string config = "max_isa=avx2";
@@ -414,17 +510,15 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
       space.primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, number, i});
   };
   // Blocks hold vertices, so triangles that move are items of their own.
-  const auto addMesh = [&](EmbreeSpace &space, std::vector<MeshUse> &meshes, std::uint32_t number,
-                           std::uint32_t asInstance) {
+  const auto addMesh = [&](EmbreeSpace &space, std::uint32_t number, std::uint32_t asInstance) {
     const RtslMesh &mesh = launch.meshes[launch.instances[number].mesh];
     if (!mesh.keyTimes) {
-      meshes.push_back({asInstance, &mesh});
+      space.meshes.push_back({asInstance, &mesh});
       return;
     }
     for (std::uint32_t i = 0; i < mesh.triangleCount; ++i)
       space.primitives.push_back({nullptr, number, i});
   };
-  std::vector<MeshUse> inWorld;
   for (std::uint32_t i = 0; i < launch.instanceCount; ++i) {
     const RtslInstance &instance = launch.instances[i];
     const bool isMesh = instance.primitive == 0;
@@ -434,21 +528,32 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
         inside = std::make_unique<EmbreeSpace>();
         inside->scene = self.get();
         inside->isWorld = false;
-        std::vector<MeshUse> meshes;
+        inside->moves = isMesh ? scene.movesOfMesh(instance.mesh) : 0;
         if (isMesh)
-          addMesh(*inside, meshes, i, 0);
+          addMesh(*inside, i, 0);
         else
           addPrimitives(*inside, i);
-        buildSpace(*inside, meshes, threads);
+        buildSpace(*inside, threads);
       }
       self->world.instances.push_back({i, inside.get()});
     } else if (isMesh) {
-      addMesh(self->world, inWorld, i, i);
+      addMesh(self->world, i, i);
     } else {
       addPrimitives(self->world, i);
     }
   }
-  buildSpace(self->world, inWorld, threads);
+  buildSpace(self->world, threads);
+}
+
+void EmbreeScene::update(const Scene &scene, unsigned threads) {
+  self->launch = scene.launch();
+  for (const auto &[number, space] : self->spaces)
+    if (number < self->launch.meshCount && space->moves != scene.movesOfMesh(number)) {
+      updateSpace(*space, number, threads);
+      space->moves = scene.movesOfMesh(number);
+    }
+  if (updateSpace(self->world, 0, threads))
+    self->number = newNumber(); // blocks that occluded a ray may be no more
 }
 
 EmbreeScene::~EmbreeScene() = default;

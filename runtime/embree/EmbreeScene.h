@@ -60,6 +60,10 @@ public:
   /// Calls `visitor` for items that the ray may hit. canFollow must accept the ray.
   void visit(RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;
 
+  /// Follows positions and transforms of the scene that have changed since it was built, or since
+  /// the last call. Not while rays are traced.
+  void update(const Scene &scene, unsigned threads);
+
   struct Implementation;
 
   /// Is the ray of `state` good, and can Embree trace it unscaled? Nearly always true, and fast

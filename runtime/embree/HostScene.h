@@ -30,6 +30,11 @@ public:
   /// Embree cannot trace (EmbreeScene::canFollow).
   const RtslLaunch &deviceLaunch() const;
 
+  /// Follows what has moved in the scene since the trees were built, or since the last call. Trees
+  /// keep their shapes, unless they have become bad (runtime/accel/Refit.h) or instances were
+  /// added. Not while rays are traced.
+  void update();
+
   /// Has our own tree been built?
   bool hasOwnTree() const { return launch.host != nullptr; }
 
@@ -42,6 +47,8 @@ public:
   std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
 private:
+  void buildEmbree();
+  void buildOwnTree() const;
   std::uint32_t traverseAny(RtslState &state, std::uint32_t how) const;
   template <typename Tree>
   std::uint32_t search(RtslState &state, std::uint32_t how, const Tree &tree) const;
@@ -53,8 +60,10 @@ private:
   std::unique_ptr<EmbreeScene> embree; // null: our own traversal
   // the same, if rays with the usual mask and root see all instances
   const EmbreeScene *seenByAll = nullptr;
+  std::uint64_t structure, moves; // of the scene, as the trees are
   mutable std::once_flag built;
   mutable Bvh bvh;
+  mutable std::vector<double> costsWhenBuilt; // of `bvh`
   mutable std::optional<TreeFigures> figures;
   mutable RtslLaunch launch{};
 };

@@ -1,10 +1,12 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/embree/HostScene.h"
 
+#include "runtime/accel/Refit.h"
 #include "runtime/accel/TreeItems.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/embree/EmbreeRay.h"
 
+#include <algorithm>
 #include <chrono>
 
 namespace rtsl::runtime {
@@ -16,29 +18,71 @@ RayCounters &rayCounters() {
 
 HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads,
                      std::optional<TreeKind> tree)
-    : ProgramHost{scene.program().slots}, scene(scene), threads(threads), tree(tree) {
-  if (!useEmbree) {
+    : ProgramHost{scene.program().slots}, scene(scene), threads(threads), tree(tree),
+      structure(scene.structure()), moves(scene.moves()) {
+  if (useEmbree)
+    buildEmbree();
+  else
     deviceLaunch();
-    return;
-  }
+}
+
+void HostScene::buildEmbree() {
   embree = std::make_unique<EmbreeScene>(scene, slots, threads);
-  if (!(scene.launch().needs & (RTSL_HAS_ROOTS | RTSL_HAS_SELECTORS)))
+  seenByAll = nullptr;
+  const RtslLaunch all = scene.launch();
+  const bool isHidden =
+      std::any_of(all.instances, all.instances + all.instanceCount,
+                  [](const RtslInstance &instance) { return instance.mask == 0; });
+  if (!(all.needs & (RTSL_HAS_ROOTS | RTSL_HAS_SELECTORS)) && !isHidden)
     seenByAll = embree.get();
 }
 
+void HostScene::buildOwnTree() const {
+  launch = scene.launch();
+  const auto start = std::chrono::steady_clock::now();
+  const TreeKind kind = treeKind(tree, itemCount(treesOf(launch)));
+  bvh = buildBvh(launch, threads, kind);
+  costsWhenBuilt.clear();
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  figures = TreeFigures{kind, std::uint32_t(bvh.nodes.size()), std::uint32_t(bvh.items.size()),
+                        bvh.cost, seconds.count()};
+  launch.host = this;
+  bvh.install(launch);
+}
+
 const RtslLaunch &HostScene::deviceLaunch() const {
-  std::call_once(built, [this] {
+  std::call_once(built, [this] { buildOwnTree(); });
+  return launch;
+}
+
+void HostScene::update() {
+  if (hasOwnTree()) { // something else may have changed
     launch = scene.launch();
-    const auto start = std::chrono::steady_clock::now();
-    const TreeKind kind = treeKind(tree, itemCount(treesOf(launch)));
-    bvh = buildBvh(launch, threads, kind);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    figures = TreeFigures{kind, std::uint32_t(bvh.nodes.size()), std::uint32_t(bvh.items.size()),
-                          bvh.cost, seconds.count()};
     launch.host = this;
     bvh.install(launch);
-  });
-  return launch;
+  }
+  const bool isOther = structure != scene.structure();
+  if (!isOther && moves == scene.moves())
+    return;
+  structure = scene.structure();
+  moves = scene.moves();
+  if (embree) {
+    if (isOther)
+      buildEmbree();
+    else
+      embree->update(scene, threads);
+  }
+  if (!hasOwnTree())
+    return;
+  if (isOther)
+    return buildOwnTree();
+  if (costsWhenBuilt.empty())
+    costsWhenBuilt = costsOfTrees(bvh);
+  refit(bvh, launch);
+  const std::vector<double> costs = costsOfTrees(bvh);
+  for (std::size_t i = 0; i < costs.size(); ++i)
+    if (costs[i] > largestDegradation * costsWhenBuilt[i])
+      return buildOwnTree();
 }
 
 /// With any tree.

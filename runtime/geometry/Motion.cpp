@@ -276,6 +276,27 @@ MovingTransform MovingTransform::then(const MovingTransform &next) const {
   return result;
 }
 
+static bool isTranslation(Transform transform) {
+  transform.columns[3] = {0, 0, 0};
+  return transform.isIdentity();
+}
+
+static bool isTranslation(const MotionFactor &factor) {
+  const auto rests = [](const Turn &turn) {
+    return turn.from == Quaternion{1, 0, 0, 0} && turn.angle == 0;
+  };
+  return factor.isRotation() ? std::all_of(factor.turns.begin(), factor.turns.end(), rests)
+                             : std::all_of(factor.maps.begin(), factor.maps.end(),
+                                           [](const Transform &map) { return isTranslation(map); });
+}
+
+bool isTranslation(const MovingTransform &transform) {
+  const std::vector<MotionFactor> &factors = transform.factors();
+  return transform.moves() ? std::all_of(factors.begin(), factors.end(),
+                                         [](const MotionFactor &one) { return isTranslation(one); })
+                           : isTranslation(transform.still());
+}
+
 bool operator==(const MovingTransform &a, const MovingTransform &b) {
   return compare(a, b) == 0;
 }

@@ -70,6 +70,9 @@ private:
   std::vector<MotionFactor> product;
 };
 
+/// Is it a translation at all times?
+bool isTranslation(const MovingTransform &transform);
+
 bool operator==(const MovingTransform &a, const MovingTransform &b);
 /// An order of any kind, for sorted containers.
 bool operator<(const MovingTransform &a, const MovingTransform &b);

@@ -168,8 +168,9 @@ struct Program {
   Paths paths = Paths::Random;
   /// RTSL_HAS_*: what the scenes that it renders may have.
   std::uint32_t sceneNeeds = RTSL_HAS_ALL;
-  /// Keep normals, texture coordinates and attributes of meshes even if nothing reads them.
-  bool keepsMeshes = true;
+  /// Keep normals and texture coordinates of meshes, and named attributes, even if nothing reads
+  /// them.
+  bool keepsMeshes = true, keepsMeshAttributes = true;
   /// The program's rtsl_sample, or rtsl_generate.
   void (*sample)(const RtslLaunch *, std::uint32_t x, std::uint32_t y, std::uint32_t sample,
                  float *color) = nullptr;

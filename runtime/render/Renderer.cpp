@@ -94,7 +94,7 @@ std::uint64_t stackBytes(const Program &program, const RtslLaunch &launch) {
 struct Renderer::Implementation {
   const Scene &scene;
   const RenderOptions &options;
-  std::unique_ptr<HostScene> host;
+  std::shared_ptr<HostScene> host;
   RtslLaunch launch{};
 
   // One rendering.
@@ -120,25 +120,25 @@ struct Renderer::Implementation {
   void add(Worker &worker);
 };
 
-Renderer::Renderer(const Scene &scene, const RenderOptions &options)
+Renderer::Renderer(const Scene &scene, const RenderOptions &options,
+                   std::shared_ptr<HostScene> hostScene)
     : Backend(options), self(std::make_unique<Implementation>(scene, this->options)) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  self->launch = scene.launch();
+  const RtslLaunch complete = scene.launch(); // or it throws
   const Program &program = scene.program();
   if (!program.sample)
     throw Error(message::noCodeForSamples());
   try {
-    self->host = std::make_unique<HostScene>(scene, options.traversal == Traversal::Embree,
-                                             threadCount(options), options.tree);
-    if (options.traversal == Traversal::Device)
-      self->launch = self->host->deviceLaunch();
-    makePicture(program.colorComponents);
+    self->host = std::move(hostScene);
+    if (!self->host)
+      self->host = std::make_shared<HostScene>(scene, options.traversal == Traversal::Embree,
+                                               threadCount(options), options.tree);
+    makePicture(complete.colorComponents);
+    update();
   } catch (const std::bad_alloc &) {
     throw Error(message::noMemoryForTree());
   }
-  self->launch.host = self->host.get();
-  setLaunch(self->launch, options);
   self->window = windowOf(options);
   self->tilesAcross = (self->window.width() + tileSize - 1) / tileSize;
   self->tileCount = self->tilesAcross * ((self->window.height() + tileSize - 1) / tileSize);
@@ -146,6 +146,18 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options)
 }
 
 Renderer::~Renderer() = default;
+
+void Renderer::update() {
+  self->host->update();
+  self->launch =
+      options.traversal == Traversal::Device ? self->host->deviceLaunch() : self->scene.launch();
+  self->launch.host = self->host.get();
+  setLaunch(self->launch, options);
+}
+
+std::shared_ptr<HostScene> Renderer::hostScene() const {
+  return self->host;
+}
 
 const RtslLaunch &Renderer::launch() const {
   return self->launch;

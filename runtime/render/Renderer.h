@@ -9,14 +9,25 @@
 
 namespace rtsl::runtime {
 
+class HostScene;
+
 /// Calls Program::sample for each sample, on all cores, with the traversal that the options select.
-/// Holds the acceleration structures of a scene, which must not change during its lifetime. The
-/// picture does not depend on the number of threads.
+/// Holds the acceleration structures of a scene, which may only change in the ways that update()
+/// follows. The picture does not depend on the number of threads.
 class Renderer final : public Backend {
 public:
   /// Throws OutOfMemory, OutOfRange, IncompleteScene, MissingMethod.
-  Renderer(const Scene &scene, const RenderOptions &options);
+  /// `hostScene`: that of another renderer of the same scene and traversal, or null.
+  Renderer(const Scene &scene, const RenderOptions &options,
+           std::shared_ptr<HostScene> hostScene = nullptr);
   ~Renderer() override;
+
+  /// To be called before render() if the scene has changed: if something has moved
+  /// (Scene::moveInstance, moveMesh) trees follow it, which takes a fraction of the time of
+  /// building them; if instances were added they are built anew. The picture is that of a new
+  /// renderer.
+  void update();
+  std::shared_ptr<HostScene> hostScene() const;
 
   /// The launch that is passed to the program, for tools that call the program themselves.
   const RtslLaunch &launch() const;

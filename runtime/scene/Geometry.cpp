@@ -82,12 +82,14 @@ std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std
   if (!transform.moves() && transform.still().isIdentity())
     return 0;
   transforms.push_back(roundedTransform(transform, name, where));
-  needs |= RTSL_HAS_TRANSFORMS;
+  needs |= RTSL_HAS_TRANSFORMS | (isTranslation(transform) ? 0 : RTSL_HAS_LINEAR);
+  const auto index = std::uint32_t(transforms.size() - 1);
   if (transform.moves()) {
     transforms.back().motion = addMotion(transform);
+    moving[index] = transform;
     needs |= RTSL_HAS_MOTION | RTSL_HAS_SHUTTER;
   }
-  return std::uint32_t(transforms.size() - 1);
+  return index;
 }
 
 /// Its index.
@@ -139,9 +141,10 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
   added.anyHit = objects.at(instance.material).classInfo->anyHit;
   treeItems += items;
   instanceNames.push_back(std::move(name));
-  needs |=
-      (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) | (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
-      (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0) | (instance.needs & RTSL_HAS_NO_BACKS);
+  needs |= (instance.roots != 1 ? RTSL_HAS_ROOTS : 0) |
+           (instance.boxCount != 0 ? RTSL_HAS_COUNTS : 0) |
+           (instance.selection != 0 ? RTSL_HAS_SELECTORS : 0) |
+           (instance.mask != ~0u ? RTSL_HAS_MASKS : 0) | (instance.needs & RTSL_HAS_NO_BACKS);
   return std::uint32_t(instances.size() - 1);
 }
 
@@ -226,7 +229,8 @@ std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
 std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
   std::string shown = name.empty() ? fmt::format("mesh {}", meshes.size()) : name;
   validateMesh(mesh, shown);
-  auto storage = std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown), {}});
+  auto storage =
+      std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown), {}, {}, 0});
   Mesh &kept = storage->mesh;
   RtslMesh table{};
   table.positions = kept.positions.data();
@@ -271,6 +275,89 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
                      instance.transform != 0 ? 1 : meshTable[mesh].triangleCount);
 }
 
+MovingTransform Geometry::transformOf(const RtslInstance &instance) const {
+  if (const auto found = moving.find(instance.transform); found != moving.end())
+    return found->second;
+  const RtslTransform &stored = transforms[instance.transform];
+  Transform transform;
+  for (std::size_t column = 0; column < 3; ++column)
+    std::copy_n(stored.linear + 3 * column, 3, transform.columns[column].begin());
+  std::copy_n(stored.translation, 3, transform.columns[3].begin());
+  return transform;
+}
+
+void Geometry::setBounds(RtslInstance &instance, const MovingTransform &transform) {
+  Bounds given;
+  if (instance.primitive == 0) {
+    given = meshBounds(instance.mesh);
+  } else {
+    std::copy_n(instance.boundMin, 3, given.lower);
+    std::copy_n(instance.boundMax, 3, given.upper);
+  }
+  setWorldBounds(instance, given, transform, shutterOpen, shutterClose);
+}
+
+void Geometry::moveInstance(std::uint32_t number, const MovingTransform &transform) {
+  if (number >= instances.size())
+    throw Error(message::noSuchInstance(number));
+  RtslInstance &instance = instances[number];
+  if (transform.moves() && !(needs & RTSL_HAS_MOTION))
+    throw Error(message::motionTooLate(instanceNames[number]));
+  if (instance.transform == 0) {
+    instance.transform = addTransform(transform, instanceNames[number], std::nullopt);
+    if (instance.transform == 0) // it stays where it is
+      return;
+    ++transformsGained;
+  } else {
+    RtslTransform moved = roundedTransform(transform, instanceNames[number], std::nullopt);
+    if (transform.moves()) {
+      moved.motion = addMotion(transform);
+      moving[instance.transform] = transform;
+    } else {
+      moving.erase(instance.transform);
+    }
+    transforms[instance.transform] = moved;
+    needs |= isTranslation(transform) ? 0 : RTSL_HAS_LINEAR;
+  }
+  setBounds(instance, transform);
+  ++moves;
+}
+
+const std::vector<float> &Geometry::positions(std::uint32_t mesh) const {
+  if (mesh >= meshes.size())
+    throw Error(message::noSuchMesh(mesh));
+  return meshes[mesh]->mesh.positions;
+}
+
+void Geometry::moveMesh(std::uint32_t number, std::vector<float> positions,
+                        std::vector<float> normals) {
+  if (number >= meshes.size())
+    throw Error(message::noSuchMesh(number));
+  NamedMesh &named = *meshes[number];
+  Mesh &mesh = named.mesh;
+  if (positions.size() != mesh.positions.size())
+    throw Error(
+        message::movedVertexCount(named.name, positions.size() / 3, mesh.positions.size() / 3));
+  Mesh moved; // to be checked
+  moved.indices = {0, 0, 0};
+  moved.keyTimes = mesh.keyTimes;
+  moved.positions = std::move(positions);
+  moved.normals = std::move(normals);
+  validateMesh(moved, named.name);
+  mesh.positions.swap(moved.positions);
+  meshTable[number].positions = mesh.positions.data();
+  if (!mesh.normals.empty() && !moved.normals.empty()) {
+    mesh.normals.swap(moved.normals);
+    meshTable[number].normals = mesh.normals.data();
+  }
+  named.bounds.reset();
+  for (RtslInstance &instance : instances)
+    if (instance.primitive == 0 && instance.mesh == number && instance.transform != 0)
+      setBounds(instance, transformOf(instance));
+  ++named.moves;
+  ++moves;
+}
+
 void Geometry::setValues(std::uint32_t mesh, const Program &program, std::uint32_t wanted) {
   attributeTable = attributesOf(program);
   meshes[mesh]->values = MeshValues(meshes[mesh]->mesh, program, wanted);
@@ -306,7 +393,7 @@ void Geometry::dropUnusedAttributes(const Program &program) {
     if (values.empty())
       return;
     bool isNeeded = (needs[i] & need) != 0;
-    attributes.push_back({meshes[i]->name, name, values.size() * sizeof(float), isNeeded});
+    attributes.push_back({meshes[i]->name, name, values.size() * sizeof(float), isNeeded, false});
     if (isNeeded || program.keepsMeshes)
       return;
     values = {};
@@ -320,8 +407,8 @@ void Geometry::dropUnusedAttributes(const Program &program) {
     for (NamedAttribute &attribute : mesh.attributes) {
       const bool isNeeded = meshes[i]->values.isRead(attribute, program);
       attributes.push_back({meshes[i]->name, fmt::format("attribute `{}`", attribute.name),
-                            4 * attribute.words.size(), isNeeded});
-      if (!isNeeded && !program.keepsMeshes)
+                            4 * attribute.words.size(), isNeeded, true});
+      if (!isNeeded && !program.keepsMeshAttributes)
         attribute.words = {};
     }
   }

@@ -40,6 +40,16 @@ public:
   std::uint32_t addMeshInstance(const Objects &objects, std::uint32_t mesh, RtslRef material,
                                 const Placement &placement);
 
+  /// Scene::moveInstance and moveMesh.
+  void moveInstance(std::uint32_t instance, const MovingTransform &transform);
+  void moveMesh(std::uint32_t mesh, std::vector<float> positions, std::vector<float> normals);
+  /// Scene::positions. Throws UnknownName.
+  const std::vector<float> &positions(std::uint32_t mesh) const;
+  /// Scene::moves, movesOfMesh and structure.
+  std::uint64_t allMoves() const { return moves; }
+  std::uint64_t movesOfMesh(std::uint32_t mesh) const { return meshes.at(mesh)->moves; }
+  std::uint64_t structure() const { return instances.size() + (transformsGained << 32); }
+
   /// Called after Objects::useProgram: updates RtslInstance::needs, and drops what of meshes
   /// no material reads, unless the program keeps them.
   void useProgram(const Objects &objects);
@@ -64,6 +74,7 @@ private:
     std::string name;
     std::optional<Bounds> bounds; // computed on first use
     MeshValues values = {};
+    std::uint64_t moves = 0;
   };
 
   /// `items`: of the tree in world space.
@@ -75,6 +86,9 @@ private:
                              const std::optional<rtsl::Place> &where);
   std::uint32_t addMotion(const MovingTransform &transform);
   const Bounds &meshBounds(std::uint32_t mesh);
+  /// Of an instance that has a transform, which moves or is as it is stored.
+  void setBounds(RtslInstance &instance, const MovingTransform &transform);
+  MovingTransform transformOf(const RtslInstance &instance) const;
   /// Sets RtslMesh::attributes for those in `wanted`.
   void setValues(std::uint32_t mesh, const Program &program, std::uint32_t wanted);
 
@@ -100,8 +114,10 @@ private:
   std::vector<RtslSelection> selections{RtslSelection{}}; // the first is unused
   std::map<RtslRef, PrimitiveSet> sets;                   // by primitive
   std::vector<RtslInstance> instances;
-  std::vector<std::string> instanceNames; // as long
+  std::vector<std::string> instanceNames;          // as long
+  std::map<std::uint32_t, MovingTransform> moving; // by index in `transforms`
   float shutterOpen = 0, shutterClose = 1;
+  std::uint64_t moves = 0, transformsGained = 0;
   std::uint64_t treeItems = 0;
   std::uint32_t needs = 0;
   std::vector<MeshAttribute> attributes; // for reports

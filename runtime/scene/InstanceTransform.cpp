@@ -34,7 +34,7 @@ RtslTransform rounded(const Transform &transform, const std::string &what,
   Transform exact; // of the rounded numbers
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row) {
-      const float value = float(transform.columns[column][row]);
+      const float value = float(transform.columns[column][row]) + 0.0f; // not -0
       if (!std::isfinite(value) || std::fabs(value) > largestSide)
         throw Error(message::matrixOutOfRange(what, row, column, transform.columns[column][row]),
                     place);

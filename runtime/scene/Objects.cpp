@@ -105,6 +105,19 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
   return object.reference;
 }
 
+void Objects::setMember(RtslRef reference, const NamedValue &value) {
+  const Object &object = at(reference);
+  if (object.classInfo->root == "rt_Primitive")
+    throw Error(message::memberOfPrimitive(value.name, object.name));
+  ObjectValues values;
+  values.members.push_back(value);
+  const std::size_t size = std::max(object.classInfo->recordSize, 4u);
+  std::vector<std::uint8_t> changed(recordOf(object), recordOf(object) + size);
+  storeMembers(*object.classInfo, object.name, values, changed.data(), storeContext());
+  std::copy(changed.begin(), changed.end(), recordOf(object));
+  measureChain(object);
+}
+
 void Objects::runConstructor(const Object &object, const ObjectValues &values,
                              const std::function<RtslLaunch()> &launch) {
   const ClassInfo &classInfo = *object.classInfo;

@@ -36,6 +36,9 @@ public:
   RtslRef add(const std::string &className, const ObjectValues &values, const std::string &name,
               const std::function<RtslLaunch()> &launch);
 
+  /// Scene::setMember. If it throws, nothing is changed.
+  void setMember(RtslRef reference, const NamedValue &value);
+
   struct Object {
     RtslRef reference;
     const ClassInfo *classInfo;

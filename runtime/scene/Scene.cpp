@@ -129,6 +129,32 @@ std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,
   return self->geometry.addMeshInstance(self->objects, mesh, material, placement);
 }
 
+void Scene::setMember(RtslRef object, const NamedValue &value) {
+  self->emitters.reset();
+  self->objects.setMember(object, value);
+}
+
+void Scene::moveInstance(std::uint32_t instance, const MovingTransform &transform) {
+  self->emitters.reset();
+  self->geometry.moveInstance(instance, transform);
+}
+void Scene::moveMesh(std::uint32_t mesh, std::vector<float> positions, std::vector<float> normals) {
+  self->emitters.reset();
+  self->geometry.moveMesh(mesh, std::move(positions), std::move(normals));
+}
+const std::vector<float> &Scene::positions(std::uint32_t mesh) const {
+  return self->geometry.positions(mesh);
+}
+std::uint64_t Scene::moves() const {
+  return self->geometry.allMoves();
+}
+std::uint64_t Scene::movesOfMesh(std::uint32_t mesh) const {
+  return self->geometry.movesOfMesh(mesh);
+}
+std::uint64_t Scene::structure() const {
+  return self->geometry.structure();
+}
+
 const std::vector<MeshAttribute> &Scene::meshAttributes() const {
   return self->geometry.meshAttributes();
 }

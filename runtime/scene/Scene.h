@@ -76,6 +76,26 @@ public:
   std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material,
                                 const Placement &placement = {});
 
+  /// Sets a public member of an object that exists. Throws what addObject throws, and NotSettable
+  /// for a primitive's, whose bounds are known already.
+  void setMember(RtslRef object, const NamedValue &value);
+
+  /// Gives an instance another transform. Bounds are computed anew, and all is checked that is
+  /// checked when an instance is added. A program that was linked for the scene (useProgram) knows
+  /// where instances were: this is for programs that can render any scene. Throws NotSettable for
+  /// keys if nothing in the scene had any, UnknownName, DegenerateGeometry.
+  void moveInstance(std::uint32_t instance, const MovingTransform &transform);
+  /// Gives a mesh other positions, of as many vertices (at all its keys), and other normals, if it
+  /// has any and they are given. Throws BadMesh and leaves the mesh as it was, UnknownName.
+  void moveMesh(std::uint32_t mesh, std::vector<float> positions, std::vector<float> normals = {});
+  /// Those that a mesh has, at all its keys.
+  const std::vector<float> &positions(std::uint32_t mesh) const;
+  /// How many times something was moved; and a mesh.
+  std::uint64_t moves() const;
+  std::uint64_t movesOfMesh(std::uint32_t mesh) const;
+  /// Changes whenever trees must be built anew, because instances were added or got transforms.
+  std::uint64_t structure() const;
+
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);
   /// Of the programs engine, in place of a camera.

@@ -49,6 +49,7 @@ struct MeshAttribute {
   std::string name; // "normals", "attribute `wear`"
   std::size_t bytes = 0;
   bool isNeeded = false; // by the material of some instance
+  bool isNamed = false;  // a named attribute
 };
 
 /// An RtslBuffer in the records of a scene.

@@ -25,6 +25,17 @@ BOUNDED_SECONDS = 30
 BOUNDED_BYTES = 2 << 30
 
 
+GRAPH_ITEMS = (
+    "transforms",
+    "roots",
+    "counts",
+    "selectors",
+    "motion",
+    "masks",
+    "back-faces",
+)
+
+
 def bounded():
     resource.setrlimit(resource.RLIMIT_CPU, (BOUNDED_SECONDS, BOUNDED_SECONDS))
     resource.setrlimit(resource.RLIMIT_AS, (BOUNDED_BYTES, BOUNDED_BYTES))
@@ -101,6 +112,17 @@ class Case(unittest.TestCase):
         picture = self.folder / f"{self.pictures}.exr"
         _, error = self.run_rtslc("render", path, "-o", picture, *options)
         return picture, error
+
+    def graph_parts(self, path):
+        """What `rtslc explain` calls needed of the things that a scene may have in its graph."""
+        said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
+        return {
+            entry["subject"]
+            for item in json.loads(said)["items"]
+            if item["item"] in GRAPH_ITEMS
+            for entry in item["entries"]
+            if entry["needed"]
+        }
 
     def stages(self):
         """What `rtslc compile --emit` takes, in order."""

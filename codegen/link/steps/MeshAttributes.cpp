@@ -78,7 +78,7 @@ bool mayBeOnMesh(const LinkContext &context, const std::string &className) {
 }
 
 void listMeshAttributes(LinkContext &context, const ClassesByName &classes) {
-  const bool areKept = context.request.keep.has(Item::Meshes);
+  const bool areKept = context.request.keep.has(Item::MeshAttributes);
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>()) {
     const auto owner = ir::attr::className.of(function);
     if (!owner || !mayBeOnMesh(context, owner.str()))

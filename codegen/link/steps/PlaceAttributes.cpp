@@ -120,13 +120,18 @@ std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &
   return attributes;
 }
 
+/// The item of --keep that it belongs to.
+Item itemOf(const Attribute &attribute) {
+  return attribute.primitives.count("mesh") ? Item::MeshAttributes : Item::Attributes;
+}
+
 void note(LinkContext &context, const Attribute &attribute) {
   ir::AttributeOp use =
       *std::find_if(attribute.uses.begin(), attribute.uses.end(),
                     [&](ir::AttributeOp op) { return isRead(op) == attribute.isRead; });
   const std::string function = shownName(use->getParentOfType<mlir::func::FuncOp>());
   context.findings.push_back(
-      {Item::Attributes, attribute.name, attribute.isRead,
+      {itemOf(attribute), attribute.name, attribute.isRead,
        attribute.isRead
            ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
            : fmt::format("`{}` writes it and nothing reads it", function),
@@ -194,13 +199,13 @@ void placeAttributes(LinkContext &context) {
   std::uint32_t words = 0;
   const typed::Member *last = nullptr;
   for (Attribute &attribute : attributes) {
-    if (attribute.isRead && context.isWithout(Item::Attributes, attribute.name))
+    if (attribute.isRead && context.isWithout(itemOf(attribute), attribute.name))
       eraseStores(attribute);
     attribute.offset = firstFit(attribute, placed);
     if (!attribute.isRead) {
       // Too large only because of attributes that are never read: these are dropped.
       const bool fits = attribute.offset + attribute.words <= RTSL_MAX_ATTRIBUTE_WORDS;
-      const bool isKept = context.request.keep.has(Item::Attributes) || !context.hasScene;
+      const bool isKept = context.request.keep.has(itemOf(attribute)) || !context.hasScene;
       if (!isKept || !fits) {
         eraseStores(attribute);
         continue;

@@ -348,7 +348,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
     area = 1 / state.PDF;
     if (isTransformed(launch, instance)) {
       const TransformAt transform(launch, instance, state.Time);
-      normal = normalToWorld(transform, normal);
+      normal = normalToWorld(launch, transform, normal);
       area *= areaScale(transform, normal);
     }
   }

@@ -50,11 +50,16 @@ private:
   RtslTransform moved;
 };
 
-/// A 3x3 matrix of doubles, stored as columns, times a vector.
+/// A 3x3 matrix of doubles, stored as columns, times a vector. A component that is 0 is not -0, as
+/// with the identity (positive below) whatever the signs of the other components are.
 inline Vec3 product(const double m[9], double x, double y, double z) {
-  return {float(__builtin_fma(m[6], z, __builtin_fma(m[3], y, m[0] * x))),
-          float(__builtin_fma(m[7], z, __builtin_fma(m[4], y, m[1] * x))),
-          float(__builtin_fma(m[8], z, __builtin_fma(m[5], y, m[2] * x)))};
+  return {float(__builtin_fma(m[6], z, __builtin_fma(m[3], y, __builtin_fma(m[0], x, 0.0)))),
+          float(__builtin_fma(m[7], z, __builtin_fma(m[4], y, __builtin_fma(m[1], x, 0.0)))),
+          float(__builtin_fma(m[8], z, __builtin_fma(m[5], y, __builtin_fma(m[2], x, 0.0))))};
+}
+/// The product with the identity.
+inline Vec3 positive(Vec3 v) {
+  return {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};
 }
 
 inline Vec3 pointToObject(const RtslTransform &transform, Vec3 p) {
@@ -64,6 +69,14 @@ inline Vec3 pointToObject(const RtslTransform &transform, Vec3 p) {
 }
 inline Vec3 vectorToObject(const RtslTransform &transform, Vec3 v) {
   return product(transform.inverse, double(v.x), double(v.y), double(v.z));
+}
+inline Vec3 pointToObject(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
+  // The difference of two floats in double, rounded to float, is their difference in float.
+  return hasLinear(launch) ? pointToObject(transform, p)
+                           : positive(p - load(transform.translation));
+}
+inline Vec3 vectorToObject(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
+  return hasLinear(launch) ? vectorToObject(transform, v) : positive(v);
 }
 
 /// Component `row` of the linear part times a vector, plus `offset`, rounded once.
@@ -84,22 +97,34 @@ inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
           rowToWorld(transform, 2, v, 0)};
 }
 
+inline Vec3 pointToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
+  return hasLinear(launch) ? pointToWorld(transform, p) : positive(p + load(transform.translation));
+}
+inline Vec3 vectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
+  return hasLinear(launch) ? vectorToWorld(transform, v) : positive(v);
+}
+
 /// The inverse transpose times a vector: not normalised.
 inline Vec3 covectorToWorld(const RtslTransform &transform, Vec3 n) {
   const double *m = transform.inverse;
   const double x = double(n.x), y = double(n.y), z = double(n.z);
-  return {float(__builtin_fma(m[2], z, __builtin_fma(m[1], y, m[0] * x))),
-          float(__builtin_fma(m[5], z, __builtin_fma(m[4], y, m[3] * x))),
-          float(__builtin_fma(m[8], z, __builtin_fma(m[7], y, m[6] * x)))};
+  return {float(__builtin_fma(m[2], z, __builtin_fma(m[1], y, __builtin_fma(m[0], x, 0.0)))),
+          float(__builtin_fma(m[5], z, __builtin_fma(m[4], y, __builtin_fma(m[3], x, 0.0)))),
+          float(__builtin_fma(m[8], z, __builtin_fma(m[7], y, __builtin_fma(m[6], x, 0.0))))};
+}
+inline Vec3 covectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 n) {
+  return hasLinear(launch) ? covectorToWorld(transform, n) : positive(n);
 }
 /// A normal: of length 1, and on the same side of the surface.
-inline Vec3 normalToWorld(const RtslTransform &transform, Vec3 n) {
-  return normalized(covectorToWorld(transform, n));
+inline Vec3 normalToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 n) {
+  return normalized(covectorToWorld(launch, transform, n));
 }
 
 /// Bound of the error, in any component in world space, of a vector whose components in object
 /// space have these errors.
-inline float errorToWorld(const RtslTransform &transform, Vec3 error) {
+inline float errorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 error) {
+  if (!hasLinear(launch))
+    return largest(error);
   const float *m = transform.linear;
   const auto row = [&](int i) {
     return absolute(m[i]) * error.x + absolute(m[3 + i]) * error.y + absolute(m[6 + i]) * error.z;
@@ -111,8 +136,10 @@ inline float errorToWorld(const RtslTransform &transform, Vec3 error) {
 /// space, components of the point and of the surface it was computed from are at most `size`;
 /// `world` is the point. A component is rounded once when the point is computed, and once more when
 /// the origin of a ray that leaves it is transformed back.
-inline float transformedPointError(const RtslTransform &transform, Vec3 size, Vec3 world) {
-  return trianglePointUnits * roundingUnit * (2 * errorToWorld(transform, size) + largest(world));
+inline float transformedPointError(const RtslLaunch &launch, const RtslTransform &transform,
+                                   Vec3 size, Vec3 world) {
+  return trianglePointUnits * roundingUnit *
+         (2 * errorToWorld(launch, transform, size) + largest(world));
 }
 
 /// A ray in the space of an instance that it has entered.
@@ -135,8 +162,8 @@ inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, ui
   if (widened.near > limit || widened.far < epsilon)
     return false;
   const TransformAt transform(launch, instance, time);
-  const Vec3 origin = pointToObject(transform, world.origin);
-  const Vec3 direction = vectorToObject(transform, world.direction);
+  const Vec3 origin = pointToObject(launch, transform, world.origin);
+  const Vec3 direction = vectorToObject(launch, transform, world.direction);
   if (!isFinite(origin) || !isFinite(direction) || isZero(direction))
     return false;
   static_cast<TriangleRay &>(entered) = makeTriangleRay(origin, direction);
@@ -173,7 +200,8 @@ public:
     const TransformAt toWorld(*state.launch, transform, state.Time);
     origin = load(state.RayOrigin);
     direction = load(state.RayDirection);
-    setRay(pointToObject(toWorld, origin), vectorToObject(toWorld, direction));
+    setRay(pointToObject(*state.launch, toWorld, origin),
+           vectorToObject(*state.launch, toWorld, direction));
   }
   InObjectSpace(RtslState &state, const RtslInstance &instance)
       : InObjectSpace(state, instance.transform) {}

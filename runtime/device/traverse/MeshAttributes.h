@@ -57,16 +57,18 @@ inline bool isMirror(const RtslTransform &transform) {
 /// Converts those that are points, vectors, normals and tangents from object to world space.
 inline void attributesToWorld(RtslState &state, const RtslMesh &mesh,
                               const RtslTransform &transform) {
-  forEachAttribute(*state.launch, mesh,
+  const RtslLaunch &launch = *state.launch;
+  forEachAttribute(launch, mesh,
                    [&](const RtslMeshAttribute &attribute, const RtslMeshValues &values) {
                      if (values.space == RTSL_ATTRIBUTE_NUMBERS)
                        return;
                      uint32_t *at = state.attributes + attribute.offset;
                      const Vec3 given = {floatOf(at[0]), floatOf(at[1]), floatOf(at[2])};
-                     const Vec3 world =
-                         values.space == RTSL_ATTRIBUTE_POINT    ? pointToWorld(transform, given)
-                         : values.space == RTSL_ATTRIBUTE_NORMAL ? normalToWorld(transform, given)
-                                                                 : vectorToWorld(transform, given);
+                     const Vec3 world = values.space == RTSL_ATTRIBUTE_POINT
+                                            ? pointToWorld(launch, transform, given)
+                                        : values.space == RTSL_ATTRIBUTE_NORMAL
+                                            ? normalToWorld(launch, transform, given)
+                                            : vectorToWorld(launch, transform, given);
                      at[0] = bitsOf(world.x);
                      at[1] = bitsOf(world.y);
                      at[2] = bitsOf(world.z);

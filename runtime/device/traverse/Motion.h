@@ -27,6 +27,13 @@ inline bool hasMotion(const RtslLaunch &launch) {
 inline bool moves(const RtslLaunch &launch, const RtslTransform &transform) {
   return hasMotion(launch) && transform.motion != 0;
 }
+
+/// Is some transform more than a translation? Otherwise the linear parts of all are the identity,
+/// and are not read: each function below then gives the same bits with less work.
+inline bool hasLinear(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_LINEAR) != 0;
+}
+
 /// Has the mesh several keys?
 inline bool moves(const RtslLaunch &launch, const RtslMesh &mesh) {
   return (rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS) != 0 && mesh.keyTimes;
@@ -149,8 +156,12 @@ inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &mot
   for (int i = 0; i < 9; ++i)
     transform.linear[i] = float(map.numbers[i]);
   for (int i = 0; i < 3; ++i)
-    transform.translation[i] = float(map.numbers[9 + i]);
-  invert(transform);
+    transform.translation[i] = float(map.numbers[9 + i]) + 0.0f; // not -0
+  if (hasLinear(launch))
+    invert(transform);
+  else
+    for (int i = 0; i < 9; ++i)
+      transform.inverse[i] = i % 4 == 0 ? 1.0 : 0.0;
   transform.motion = 0;
   return transform;
 }

@@ -79,26 +79,27 @@ inline Vec3 extents(const TriangleVertices &p) {
 /// the surface, not counting its own rounding.
 inline void surfaceToWorld(RtslState &state, const RtslTransform &transform, uint32_t needs,
                            Vec3 size, float offSurface) {
-  const Vec3 point = pointToWorld(transform, load(state.HitPoint));
+  const RtslLaunch &launch = *state.launch;
+  const Vec3 point = pointToWorld(launch, transform, load(state.HitPoint));
   store(state.HitPoint, point);
-  state.hitPointError = transformedPointError(transform, size, point);
+  state.hitPointError = transformedPointError(launch, transform, size, point);
   if (needs & RTSL_NEEDS_NORMALS) {
     const Vec3 geometric = load(state.GeometricNormal), shading = load(state.ShadingNormal);
     if (offSurface > 0) {
       // Parallel planes at a distance d have the distance d / |inverse transpose of n|.
-      const Vec3 covector = covectorToWorld(transform, normalized(geometric));
+      const Vec3 covector = covectorToWorld(launch, transform, normalized(geometric));
       const float length = squareRoot(dot(covector, covector));
       state.hitPointError +=
           length > 0 && length < infinity
               ? offSurface / length
-              : 3 * errorToWorld(transform, {offSurface, offSurface, offSurface});
+              : 3 * errorToWorld(launch, transform, {offSurface, offSurface, offSurface});
     }
-    store(state.GeometricNormal, normalToWorld(transform, geometric));
-    store(state.ShadingNormal, normalToWorld(transform, shading));
+    store(state.GeometricNormal, normalToWorld(launch, transform, geometric));
+    store(state.ShadingNormal, normalToWorld(launch, transform, shading));
   }
   if (needs & RTSL_NEEDS_DERIVATIVES) {
-    store(state.dPdu, vectorToWorld(transform, load(state.dPdu)));
-    store(state.dPdv, vectorToWorld(transform, load(state.dPdv)));
+    store(state.dPdu, vectorToWorld(launch, transform, load(state.dPdu)));
+    store(state.dPdv, vectorToWorld(launch, transform, load(state.dPdv)));
   }
 }
 

@@ -28,7 +28,8 @@ bool isSeen(RtslState &state, const RtslInstance &instance, const Slots &slots) 
                                ? uint32_t(state.rayRoot) < 32 &&
                                      (instance.roots >> (uint32_t(state.rayRoot) & 31) & 1) != 0
                                : state.rayRoot == 0;
-  return isBelowRoot && (instance.mask & state.rayMask) && isSelected(state, instance, slots);
+  const uint32_t mask = rtsl_needs(state.launch) & RTSL_HAS_MASKS ? instance.mask : ~0u;
+  return isBelowRoot && (mask & state.rayMask) && isSelected(state, instance, slots);
 }
 
 /// The same for an item with the ray in its space: an instance that the ray has entered is seen.

@@ -219,7 +219,9 @@ class Explain(Case):
             ],
             [False, True],
         )
-        self.assertEqual(self.document["items"][-1]["saved"]["memoryBytes"], 3 * 3 * 4)
+        saved = {item["item"]: item["saved"] for item in self.document["items"]}
+        self.assertEqual(saved["meshes"]["memoryBytes"], 3 * 3 * 4)
+        self.assertEqual(saved["mesh-attributes"]["memoryBytes"], 0)
 
     def test_text_names_every_left_out_thing_with_its_line(self):
         self.write_scene()

@@ -9,7 +9,7 @@ import shutil
 import struct
 import unittest
 
-from harness import EXAMPLES
+from harness import EXAMPLES, GRAPH_ITEMS
 from graph_case import CLUSTER, SHADERS, SQUASHED, GraphCase, balls, scene
 
 
@@ -25,7 +25,7 @@ class EveryPath(GraphCase):
             ["-O0"],
             ["--target=host-megakernel"],
             ["--keep=all"],
-            ["--target=host-megakernel", "--keep=graph"],
+            ["--target=host-megakernel", "--keep=transforms,counts,selectors,roots,motion,masks"],
         ):
             picture, _ = self.render_scene(scene(), *options)
             self.assert_same_bits(picture, expected, options)
@@ -51,15 +51,36 @@ class EveryPath(GraphCase):
             self.assert_same_bits(f"{number}.exr", first, options)
 
     def test_what_a_scene_does_not_have_is_left_out(self):
-        parts = {"transforms", "counts", "selectors"}
+        parts = {"transforms", "linear parts of transforms", "counts", "selectors"}
         plain = scene({"one": balls([0, 0, 0, 1])}, root="one")
         for one, needed in ((scene(), parts), (plain, set())):
             path = self.write("scene.json", json.dumps(one))
-            said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
-            graph = next(item for item in json.loads(said)["items"] if item["item"] == "graph")
-            self.assertEqual(
-                {entry["subject"] for entry in graph["entries"] if entry["needed"]}, needed
-            )
+            self.assertEqual(self.graph_parts(path), needed)
+
+    def test_each_thing_that_a_scene_does_not_have_can_be_kept(self):
+        plain = scene({"one": {**balls([0, 0, 0, 1]), "count": 1}}, root="one", variables={})
+        expected, _ = self.render_scene(plain)
+        for item in (*GRAPH_ITEMS, "buffers", "images", "bindless", "meshes", "mesh-attributes"):
+            for options in ([], ["--target=host-megakernel"]):
+                picture, _ = self.render_scene(plain, f"--keep={item}", *options)
+                self.assert_same_bits(picture, expected, item)
+
+    def test_what_has_no_mask_is_seen_and_what_has_none_set_is_not(self):
+        both = {"a": balls([0, 0, 0, 1]), "b": balls([3, 0, 0, 1])}
+        one, _ = self.render_scene(scene({"w": {"children": [both["a"]]}}, root="w"))
+        two, _ = self.render_scene(scene({"w": {"children": list(both.values())}}, root="w"))
+        self.assertGreater(self.mean_of(two), self.mean_of(one) + 0.005)
+        hidden = scene({"w": {"children": [both["a"], {**both["b"], "mask": 0}]}}, root="w")
+        path = self.write("scene.json", json.dumps(hidden))
+        self.assertIn("masks", self.graph_parts(path))
+        for options in (
+            [],
+            ["--trace=recurse"],
+            ["--traversal=device"],
+            ["--target=host-megakernel"],
+            ["--target=host-megakernel", "--keep=all"],
+        ):
+            self.assert_same_bits(self.render_scene(hidden, *options)[0], one, options)
 
     def test_in_double_precision_it_is_nearly_the_same(self):
         expected, _ = self.render_scene(scene())
@@ -266,6 +287,65 @@ class Under : rt_Camera {
         self.assert_message(
             self.diagnose("check", path), "E0816", "primitive 3 of `all` are inverted"
         )
+
+
+class Depth(GraphCase):
+    """Graphs of ten thousand nodes below each other."""
+
+    DEPTH = 10000
+
+    def chain(self, **more):
+        """Each node has the next one as its child."""
+        nodes = {
+            f"n{i}": {"child": f"n{i + 1}", **{key: of(i) for key, of in more.items()}}
+            for i in range(self.DEPTH)
+        }
+        nodes[f"n{self.DEPTH}"] = balls([0, 0, 0, 1])
+        return nodes
+
+    def test_transforms_add_up(self):
+        step = 2**-12  # no sum is rounded
+        deep = scene(self.chain(transform=lambda _: {"translate": [step, 0, 0]}), root="n0")
+        flat = scene(
+            {
+                "one": balls([0, 0, 0, 1]),
+                "n0": {"child": "one", "transform": {"translate": [self.DEPTH * step, 0, 0]}},
+            },
+            root="n0",
+        )
+        self.assert_same_picture(deep, flat)
+
+    def test_the_nearest_variable_of_all_counts(self):
+        tints = self.chain(variables=lambda i: {"tint": [i / self.DEPTH, 0.5, 0]})
+        last = {"tint": [(self.DEPTH - 1) / self.DEPTH, 0.5, 0]}
+        one = {"n0": {"child": "one", "variables": last}, "one": balls([0, 0, 0, 1])}
+        self.assert_same_picture(scene(tints, root="n0"), scene(one, root="n0"))
+
+    def test_selectors_below_each_other(self):
+        nodes = {
+            name: node
+            if "primitive" in node
+            else {"selector": {"class": "Some", "mask": 1}, "children": [node["child"]]}
+            for name, node in self.chain().items()
+        }
+        self.assert_same_picture(
+            scene(nodes, root="n0"), scene({"n0": balls([0, 0, 0, 1])}, root="n0")
+        )
+
+    def test_cycles_and_too_many_instances_and_nesting(self):
+        nodes = self.chain()
+        nodes[f"n{self.DEPTH}"] = {"child": "n0"}
+        found = self.mistakes(scene(nodes, root="n0"))
+        self.assert_message(found, "E0807", "the node `n0` is below itself: n0 > n1")
+        twice = {f"n{i}": {"children": [f"n{i + 1}"] * 2} for i in range(40)}
+        twice["n40"] = balls([0, 0, 0, 1])
+        self.assert_message(
+            self.mistakes(scene(twice, root="n0")), "E0805", "more than 67108864 instances"
+        )
+        path = self.write(
+            "nested.json", '{"rtsl": 1, "nodes": ' + '{"child": ' * 300 + '"a"' + "}" * 301
+        )
+        self.assert_message(self.diagnose("check", path), "E0800", "nested deeper than 256 levels")
 
 
 class Ids(GraphCase):

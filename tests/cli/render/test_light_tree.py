@@ -313,7 +313,7 @@ class Programs(LightTreeCase):
     def needs_tree(self):
         out, _ = self.run_rtslc("explain", "scene.json", "--no-savings", "--json")
         for item in json.loads(out)["items"]:
-            if item["item"] == "graph":
+            if item["item"] == "lights":
                 for entry in item["entries"]:
                     if entry["subject"] == "light tree":
                         return entry["needed"]
@@ -338,7 +338,7 @@ class Programs(LightTreeCase):
     def test_the_scene_with_few_lamps_is_the_same_with_the_code_of_a_tree(self):
         self.scene([(FLOOR, CLAY), *lamps(3)], camera="Under", spp=4, depth=1)
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
-        self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "--keep=graph")
+        self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "--keep=lights")
         self.assert_same_bits("a.exr", "b.exr")
 
     def test_an_unknown_sampler(self):

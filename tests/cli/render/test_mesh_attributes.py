@@ -183,7 +183,7 @@ class Attributes(Case):
             ["--traversal=device", "--trace=recurse", "-O0"],
             ["--target=host-megakernel"],
             ["--keep=all"],
-            ["--keep=meshes"],
+            ["--keep=meshes,mesh-attributes"],
         ):
             self.assert_same_bits(
                 self.render(self.everything(), "--spp", "4", *options), expected, options
@@ -252,7 +252,7 @@ class Attributes(Case):
         items = {
             (one["subject"], one["needed"])
             for item in json.loads(said)["items"]
-            if item["item"] == "meshes"
+            if item["item"] in ("meshes", "mesh-attributes")
             for one in item["entries"]
         }
         self.assertIn(

@@ -68,7 +68,7 @@ TEST_F(Attributes, AreInTheLaunch) {
 TEST_F(Attributes, ThatAreNotReadTakeNoMemory) {
   ASSERT_EQ(errorWith({paint, floatAttribute("rest", 1, {0, 0, 0}), wear}), "no error");
   auto program = std::make_shared<Program>(*readingProgram());
-  program->keepsMeshes = false;
+  program->keepsMeshes = program->keepsMeshAttributes = false;
   scene.useProgram(program);
   for (const MeshAttribute &attribute : scene.meshAttributes())
     EXPECT_EQ(attribute.isNeeded, attribute.name != "attribute `rest`") << attribute.name;

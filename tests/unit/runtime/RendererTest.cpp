@@ -289,6 +289,10 @@ TEST(Renderer, RefusesOptionsOutOfRange) {
             "outOfRange: the width must be between 1 and 65536, not 0");
   EXPECT_EQ(codeOf([](RenderOptions &o) { o.maxDepth = 1000; }),
             "outOfRange: the depth must be between 0 and 256, not 1000");
+  EXPECT_EQ(codeOf([](RenderOptions &o) { o.height = 7, o.slices = 2; }),
+            "outOfRange: 7 rows do not divide into 2 slices");
+  EXPECT_EQ(codeOf([](RenderOptions &o) { o.slices = 0; }),
+            "outOfRange: the number of slices must be between 1 and 65536, not 0");
 }
 
 TEST(Renderer, BadRaysAreCountedAndBlack) {

@@ -90,15 +90,17 @@ std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &o
                       {},
                       options.pairs,
                       {}};
-  what.render.width = options.size ? options.size->width : 320;
-  what.render.height = options.size ? options.size->height : 180;
+  options.size.value_or(PictureSize{320, 180}).apply(what.render);
   what.render.samplesPerPixel = options.samples;
   what.render.threads = 1;
   for (Item item : allItems) {
     const auto isLeftOut = [&](const Finding &finding) {
       return finding.item == item && !finding.isNeeded;
     };
-    const bool inMeshes = item == Item::Meshes && !loaded.scene->meshAttributes().empty();
+    const auto &ofMeshes = loaded.scene->meshAttributes();
+    const bool inMeshes = std::any_of(ofMeshes.begin(), ofMeshes.end(), [&](const auto &attribute) {
+      return itemOf(attribute) == item;
+    });
     if (loaded.request.keep.has(item) ||
         (!inMeshes &&
          std::none_of(explanation.findings.begin(), explanation.findings.end(), isLeftOut)))

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <map>
 
 namespace rtsl::tool {
 
@@ -34,21 +35,26 @@ std::int64_t difference(std::uint64_t kept, std::uint64_t now) {
 
 } // namespace
 
+Item itemOf(const runtime::Scene::MeshAttribute &attribute) {
+  return attribute.isNamed ? Item::MeshAttributes : Item::Meshes;
+}
+
 Explanation::Explanation(std::string scene, const SceneExplanation &program,
                          const std::vector<runtime::Scene::MeshAttribute> &meshes)
     : scene(std::move(scene)), size(program.size), hasSavings(program.hasSavings),
       findings(program.findings) {
-  std::int64_t meshBytes = 0;
+  std::map<Item, std::int64_t> meshBytes; // that are left out
   for (const runtime::Scene::MeshAttribute &attribute : meshes) {
+    const Item item = itemOf(attribute);
     findings.push_back(
-        {Item::Meshes,
+        {item,
          fmt::format("{} of {}", attribute.name, attribute.mesh),
          attribute.isNeeded,
          fmt::format("{} bytes, {}", grouped(static_cast<std::int64_t>(attribute.bytes)),
                      attribute.isNeeded ? "read by its material" : "not read by its materials"),
          {}});
     if (!attribute.isNeeded)
-      meshBytes += static_cast<std::int64_t>(attribute.bytes);
+      meshBytes[item] += static_cast<std::int64_t>(attribute.bytes);
   }
   for (Item item : allItems) {
     Entries entries;
@@ -63,7 +69,7 @@ Explanation::Explanation(std::string scene, const SceneExplanation &program,
       entries.saved = {difference(kept.instructions, size.instructions),
                        difference(kept.constantBytes, size.constantBytes),
                        difference(kept.frameBytes, size.frameBytes),
-                       difference(kept.states, size.states), item == Item::Meshes ? meshBytes : 0};
+                       difference(kept.states, size.states), meshBytes[item]};
     }
     items.push_back(std::move(entries));
   }

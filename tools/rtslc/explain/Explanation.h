@@ -10,6 +10,9 @@
 
 namespace rtsl::tool {
 
+/// The item of --keep that data of a mesh belongs to.
+Item itemOf(const runtime::Scene::MeshAttribute &attribute);
+
 /// `rtslc explain SCENE` (docs/explain.md).
 class Explanation {
 public:

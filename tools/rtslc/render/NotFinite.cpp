@@ -35,7 +35,7 @@ std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &s
                                               CompileOptions compile, runtime::Scene &scene,
                                               runtime::RenderOptions render,
                                               Diagnostics &diagnostics) {
-  request.keep.add(ItemSet::only(Item::Parameters)); // what folds has no line
+  request.keep.add(ItemSet::ofMembers()); // what folds has no line
   // Calls are the shortest way, and every way has the same bits.
   if (compile.target == Target::HostMegakernel)
     render.traversal = runtime::Traversal::Device;

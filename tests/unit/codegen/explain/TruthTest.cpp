@@ -96,7 +96,7 @@ bool isExempt(const Finding &finding) {
     return true;
   // A reference or a buffer is read where it is followed: there is nothing that could stand in its
   // place.
-  return finding.item == Item::Parameters && finding.isNeeded &&
+  return ItemSet::ofMembers().has(finding.item) && finding.isNeeded &&
          (finding.reason.find("a reference") != std::string::npos ||
           finding.reason.find("a buffer") != std::string::npos);
 }

@@ -1,0 +1,93 @@
+//===- Handle.h - what a scene of the C interface holds -------------------===//
+#pragma once
+
+#include "rtsl/rtsl.h"
+#include "rtsl/runtime.h"
+
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+struct RtslScene {
+  explicit RtslScene(std::shared_ptr<const rtsl::runtime::Program> program)
+      : scene(std::move(program)) {}
+
+  rtsl::runtime::Scene scene;
+  std::vector<rtsl::runtime::NamedValue> arguments, members; // of the next object
+  rtsl::runtime::Placement placement;                        // of the next instance
+  std::uint32_t roots = 1;                                   // of the next instances
+  std::vector<rtsl::runtime::NamedAttribute> attributes;     // of the next mesh
+
+  /// The placement of the instance that is being added; the one after it has none.
+  rtsl::runtime::Placement takePlacement();
+  rtsl::runtime::Mesh loadMesh(const char *path) const;
+  /// Gives a mesh the attributes that were set for it. `name` is for messages.
+  void giveAttributes(rtsl::runtime::Mesh &mesh, const char *name);
+  /// Adds an instance below the node that is entered.
+  void addMeshInstance(std::uint32_t mesh, RtslObject material);
+
+  //===--------------------------------------------------------------------===//
+  // Nodes (Nodes.cpp)
+  //===--------------------------------------------------------------------===//
+
+  struct Node {
+    std::uint32_t parent; // as RtslNode; 0: the scene
+    rtsl::runtime::MovingTransform transform;
+  };
+  std::vector<Node> nodes;                                           // the first is number 1
+  std::uint32_t entered = 0;                                         // the innermost
+  std::vector<std::vector<rtsl::runtime::NamedValue>> variables{{}}; // of the scene, and inwards
+  /// Of instances below nodes: the node, and where they are in it.
+  std::map<std::uint32_t, std::pair<std::uint32_t, rtsl::runtime::MovingTransform>> inNodes;
+
+  /// From the space of a node to world space.
+  rtsl::runtime::MovingTransform toWorld(std::uint32_t node) const;
+  rtsl::runtime::MovingTransform inNode(const rtsl::runtime::MovingTransform &transform) const;
+  rtsl::runtime::Placement inNode(rtsl::runtime::Placement placement) const;
+  /// An instance that has been added; `placement`: in the node that is entered.
+  void noteInstance(std::uint32_t instance, const rtsl::runtime::Placement &placement);
+  /// Adds the nearest variables that members of the class take.
+  void addVariables(const char *className, rtsl::runtime::ObjectValues &values) const;
+
+  //===--------------------------------------------------------------------===//
+  // Rendering (Launch.cpp)
+  //===--------------------------------------------------------------------===//
+
+  std::vector<std::shared_ptr<rtsl::runtime::Value::Words>> buffers; // the first is number 1
+  std::map<std::uint32_t, std::vector<float>> mappedVertices;        // by mesh
+  /// Of the last rendering, whose trees the next one uses.
+  mutable std::unique_ptr<rtsl::runtime::Renderer> renderer;
+  mutable RtslRenderSettings settings{};
+  mutable bool hadPicture = false;
+};
+
+namespace rtsl::c {
+
+std::string &lastError();
+
+/// Runs `work`; what it throws becomes the error, and `failed` the result.
+template <typename Result, typename Work>
+Result guarded(Result failed, Work work) {
+  lastError().clear();
+  try {
+    return work();
+  } catch (const std::exception &error) {
+    lastError() = error.what();
+  } catch (...) {
+    lastError() = "unknown error";
+  }
+  return failed;
+}
+
+/// One number, or a list of them.
+runtime::Value valueOf(const double *numbers, std::size_t count);
+/// Of 12 numbers, four columns of three.
+runtime::Transform transformOf(const double *numbers);
+/// The same; null: none. Throws NotSettable.
+runtime::Transform finiteTransform(const double *transform);
+
+} // namespace rtsl::c

@@ -1,0 +1,215 @@
+/* Launches through the C interface: buffers that are mapped, slices, nodes, variables, roots, and
+ * what moves between launches. What is launched after a change must be what a scene gives that was
+ * made so. The last lines of its output are messages of mistakes. */
+#include <rtsl/rtsl.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const RtslShaders *launches_shaders(void);
+
+enum { width = 12, height = 9, slices = 2, rays = width * height * slices };
+
+static void need(int good, const char *what) {
+  if (good)
+    return;
+  fprintf(stderr, "%s: %s\n", what, rtslError());
+  exit(1);
+}
+
+static void number(RtslScene *scene, const char *name, double value) {
+  need(rtslMember(scene, name, &value, 1), name);
+}
+
+static void place(RtslScene *scene, double scale, double x, double y, double z) {
+  const double columns[12] = {scale, 0, 0, 0, scale, 0, 0, 0, scale, x, y, z};
+  need(rtslPlace(scene, columns, ~0u), "a place");
+}
+
+/* A scene of two nodes, one in the other, with a ball and a mesh in each, and buffers. */
+typedef struct World {
+  RtslScene *scene;
+  RtslObject measure, marked;
+  RtslNode outer, inner;
+  RtslBufferNumber steps, found, hits;
+  int32_t mesh;
+} World;
+
+/* Where things are. */
+typedef struct Places {
+  double outer, inner, ball; /* along x, y and x */
+  float corner;              /* of the mesh */
+} Places;
+
+static World make(const Places *places) {
+  const uint32_t two[] = {2}, one[] = {1}, all[] = {slices, height, width};
+  const float positions[] = {-1, -1, 0, 1, -1, 0, 1, places->corner, 0, -1, 1, 0};
+  const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+  const double from[] = {-3.1, -4.1, 20}, three = 3;
+  World world;
+  RtslScene *scene = world.scene = rtslSceneCreate(launches_shaders());
+  RtslObject ball, own;
+  need(scene != NULL, "a scene");
+  world.steps = rtslSceneAddBuffer(scene, 2);
+  world.found = rtslSceneAddBuffer(scene, 2 * rays);
+  world.hits = rtslSceneAddBuffer(scene, 1);
+  need(rtslMember(scene, "from", from, 3) &&
+           rtslMemberBuffer(scene, "steps", world.steps, two, 1) &&
+           rtslMemberBuffer(scene, "found", world.found, all, 3) &&
+           rtslMemberBuffer(scene, "hits", world.hits, one, 1) &&
+           (world.measure = rtslSceneAddObject(scene, "Measure")) &&
+           rtslSceneSetRayGeneration(scene, world.measure),
+       "a ray generation");
+  need(rtslVariable(scene, "weight", &three, 1), "a variable");
+  world.marked = rtslSceneAddObject(scene, "Marked"); /* weight 3 */
+  ball = rtslSceneAddObject(scene, "Ball");
+  place(scene, 1, places->outer, 0, 0);
+  need((world.outer = rtslEnter(scene)) != 0, "a node");
+  need(rtslSceneAddTriangles(scene, positions, 4, indices, 2, world.marked), "triangles");
+  world.mesh = 0;
+  place(scene, 0.5, 0, places->inner, 2);
+  need((world.inner = rtslEnter(scene)) != 0, "a node in a node");
+  {
+    const double nine = 9;
+    need(rtslVariable(scene, "weight", &nine, 1), "a variable of a node");
+  }
+  number(scene, "mark", 2);
+  own = rtslSceneAddObject(scene, "Marked"); /* weight 9 */
+  place(scene, 1, places->ball, 0, 0);
+  need(rtslSceneAddPrimitive(scene, ball, own), "a ball");
+  place(scene, 2, 4, 1, 0);
+  need(rtslSceneAddMeshInstance(scene, world.mesh, own), "a mesh again");
+  need(rtslLeave(scene) && rtslLeave(scene), "leaving");
+  need(rtslSetRoots(scene, 2), "roots"); /* rays do not see it that enter at root 0 */
+  place(scene, 10, 0, 0, 10);
+  need(rtslSceneAddPrimitive(scene, ball, world.marked), "below another root");
+  return world;
+}
+
+static const float *launch(const World *world) {
+  RtslRenderSettings settings = rtslRenderDefaults();
+  float *steps = (float *)rtslMapBuffer(world->scene, world->steps);
+  int *hits = (int *)rtslMapBuffer(world->scene, world->hits);
+  const float *found = (const float *)rtslMapBuffer(world->scene, world->found);
+  int i, count = 0;
+  need(steps && hits && found, "mapping");
+  steps[0] = 0.5f, steps[1] = 0.75f;
+  hits[0] = 0;
+  need(rtslUnmapBuffer(world->scene, world->steps) && rtslUnmapBuffer(world->scene, world->hits),
+       "unmapping");
+  settings.width = width, settings.height = height, settings.slices = slices;
+  settings.samplesPerPixel = 1;
+  need(rtslLaunch(world->scene, &settings), "a launch");
+  need(rtslLastRendering().samples == rays, "as many samples as rays");
+  for (i = 0; i < rays; ++i)
+    count += found[2 * i] >= 0;
+  need(count == hits[0] && count > 0, "the hits that the launch counted");
+  return found;
+}
+
+/* Is what the launch finds what it finds in a scene that was made with these places? */
+static void compare(const World *world, const Places *places, const char *what) {
+  const World fresh = make(places);
+  const float *found = launch(world), *expected = launch(&fresh);
+  need(memcmp(found, expected, 2 * rays * sizeof *found) == 0, what);
+  rtslSceneDestroy(fresh.scene);
+}
+
+static void changes(void) {
+  Places places = {0.25, 1, -1, 1.5f};
+  World world = make(&places);
+  float before[2 * rays], *positions;
+  const float *found = launch(&world);
+  int i, step, weighted = 0, own = 0;
+  memcpy(before, found, sizeof before);
+  for (i = 0; i < rays; ++i) {
+    weighted += found[2 * i + 1] == 1.5f; /* 0.5 times the scene's variable */
+    own += found[2 * i + 1] == 18;        /* 2 times the node's */
+    need(found[2 * i] < 0 || fabsf(found[2 * i] - 18.75f) < 1.3f, "a distance");
+  }
+  need(weighted > 0 && own > 0, "marks");
+  compare(&world, &places, "the same again");
+  for (step = 0; step < 5; ++step) {
+    places.outer = -0.5 + 0.3 * step;
+    place(world.scene, 1, places.outer, 0, 0);
+    need(rtslMoveNode(world.scene, world.outer), "moving a node");
+    compare(&world, &places, "after a node has moved");
+    places.inner = 2 - 0.7 * step;
+    place(world.scene, 0.5, 0, places.inner, 2);
+    need(rtslMoveNode(world.scene, world.inner), "moving a node in a node");
+    places.ball = 0.4 * step;
+    place(world.scene, 1, places.ball, 0, 0);
+    need(rtslMoveInstance(world.scene, 1), "moving an instance");
+    compare(&world, &places, "after an inner node and an instance have moved");
+    places.corner = 1 + 0.5f * (float)step;
+    need((positions = rtslMapVertices(world.scene, world.mesh)) != NULL, "mapping vertices");
+    positions[7] = places.corner;
+    need(rtslUnmapVertices(world.scene, world.mesh), "unmapping vertices");
+    compare(&world, &places, "after vertices have moved");
+  }
+  need(memcmp(before, launch(&world), sizeof before) != 0, "something has moved");
+  { /* Members: another root, and the weight of marks. */
+    const double root = 1, seven = 7;
+    int all = 1;
+    need(rtslSetMember(world.scene, world.measure, "root", &root, 1) &&
+             rtslSetMember(world.scene, world.marked, "weight", &seven, 1),
+         "members");
+    found = launch(&world);
+    for (i = 0; i < rays; ++i)
+      all = all && (found[2 * i] < 0 || found[2 * i + 1] == 3.5f);
+    need(all, "marks of the other root");
+  }
+  rtslSceneDestroy(world.scene);
+}
+
+static void mistakes(void) {
+  const Places places = {0, 0, 0, 1};
+  const uint32_t sizes[] = {3, 1, 1};
+  const double infinite[12] = {HUGE_VAL}, one = 1;
+  const double flat[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
+  RtslRenderSettings settings = rtslRenderDefaults();
+  World world = make(&places);
+  RtslScene *scene = world.scene;
+  float *positions;
+#define EXPECT_FAILURE(call)                                                                       \
+  if (call) {                                                                                      \
+    fprintf(stderr, "%s succeeds\n", #call);                                                       \
+    exit(1);                                                                                       \
+  }                                                                                                \
+  printf("%s\n", rtslError())
+  EXPECT_FAILURE(rtslLeave(scene));
+  EXPECT_FAILURE(rtslMapBuffer(scene, 9));
+  EXPECT_FAILURE(rtslUnmapBuffer(scene, 0));
+  EXPECT_FAILURE(rtslSceneAddBuffer(scene, (size_t)-1 / 8));
+  EXPECT_FAILURE(rtslMemberBuffer(scene, "steps", world.steps, sizes, 4));
+  EXPECT_FAILURE(rtslMemberBuffer(scene, "steps", world.steps, sizes, 1) &&
+                 rtslSceneAddObject(scene, "Measure"));
+  EXPECT_FAILURE(rtslMoveNode(scene, 7));
+  EXPECT_FAILURE(rtslMoveInstance(scene, 99));
+  EXPECT_FAILURE(rtslPlace(scene, infinite, ~0u));
+  need(rtslPlace(scene, flat, ~0u), "a flat place");
+  EXPECT_FAILURE(rtslMoveNode(scene, world.inner));
+  EXPECT_FAILURE(rtslMapVertices(scene, 5));
+  EXPECT_FAILURE(rtslUnmapVertices(scene, world.mesh));
+  need((positions = rtslMapVertices(scene, world.mesh)) != NULL, "vertices");
+  EXPECT_FAILURE(rtslLaunch(scene, &settings));
+  positions[3] = HUGE_VALF;
+  EXPECT_FAILURE(rtslUnmapVertices(scene, world.mesh));
+  EXPECT_FAILURE(rtslSetMember(scene, world.marked, "wait", &one, 1));
+  EXPECT_FAILURE(rtslSetMember(scene, 4711, "weight", &one, 1));
+  settings.width = 0;
+  EXPECT_FAILURE(rtslLaunch(scene, &settings));
+  settings.width = 4, settings.slices = 0x7fffffff;
+  EXPECT_FAILURE(rtslLaunch(scene, &settings));
+  launch(&world); /* after all of this it is whole */
+  compare(&world, &places, "nothing of that has changed the scene");
+  rtslSceneDestroy(scene);
+}
+
+int main(void) {
+  changes();
+  mistakes();
+  return 0;
+}
