@@ -13,18 +13,34 @@ using Payload = MethodModel::Payload;
 // The table
 //===----------------------------------------------------------------------===//
 
-// What every method that runs for a ray can read, in any class.
-static constexpr StateSet everyRay = {S::LaunchIndex, S::LaunchSize, S::Time, S::Depth,
-                                      S::TimeSeed};
-// The transforms and ids of the object that is hit.
-static constexpr StateSet placement = {S::ObjectToWorld, S::WorldToObject, S::PrimitiveIndex,
-                                       S::InstanceIndex, S::InstanceId};
-static constexpr StateSet ray = {S::RayOrigin, S::RayDirection, S::InverseRayDirection, S::Epsilon,
-                                 S::HitDistance};
-static constexpr StateSet textureDerivatives = {S::dsdu, S::dsdv, S::dtdu, S::dtdv};
-static constexpr StateSet surfaceDerivatives = {S::dPdu, S::dPdv};
-static constexpr StateSet textureCoordinates = {S::TextureUV, S::TextureUVW};
-static constexpr StateSet normals = {S::GeometricNormal, S::ShadingNormal};
+/// The groups of StateVariables.def.
+enum class Group : std::uint8_t {
+  EveryRay,  // what every method that runs for a ray can read, in any class
+  Placement, // the transforms and ids of the object that is hit
+  Ray,
+  Normals,
+  TextureCoordinates,
+  TextureDerivatives,
+  SurfaceDerivatives,
+  Single, // no group
+};
+
+static constexpr StateSet variablesOf(Group wanted) {
+  StateSet set;
+#define RTSL_STATE_VARIABLE(name, type, writer, need, group)                                       \
+  if (Group::group == wanted)                                                                      \
+    set = set | StateSet{S::name};
+#include "language/StateVariables.def"
+  return set;
+}
+
+static constexpr StateSet everyRay = variablesOf(Group::EveryRay);
+static constexpr StateSet placement = variablesOf(Group::Placement);
+static constexpr StateSet ray = variablesOf(Group::Ray);
+static constexpr StateSet normals = variablesOf(Group::Normals);
+static constexpr StateSet textureCoordinates = variablesOf(Group::TextureCoordinates);
+static constexpr StateSet textureDerivatives = variablesOf(Group::TextureDerivatives);
+static constexpr StateSet surfaceDerivatives = variablesOf(Group::SurfaceDerivatives);
 
 static RootModel cameraModel() {
   const StateSet known =

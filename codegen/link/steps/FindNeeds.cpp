@@ -21,7 +21,7 @@ namespace {
 std::uint32_t needsOf(llvm::StringRef state) {
   constexpr std::uint32_t RTSL_NEEDS_NOTHING = 0;
   return llvm::StringSwitch<std::uint32_t>(state)
-#define RTSL_STATE_VARIABLE(name, type, writer, need) .Case(#name, RTSL_NEEDS_##need)
+#define RTSL_STATE_VARIABLE(name, type, writer, need, ...) .Case(#name, RTSL_NEEDS_##need)
 #include "language/StateVariables.def"
       .Default(0);
 }

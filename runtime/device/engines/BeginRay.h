@@ -4,11 +4,66 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Color.h"
+#include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Spawn.h"
+#include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
+
+/// Begins a state of the launch, with all other fields undefined.
+inline void beginState(RtslState &state, const RtslLaunch *launch) {
+  state.launch = launch;
+  makeUndefined(state, &state, &state + 1);
+  state.launch = launch;
+}
+
+/// Copies what is the same for all rays of a sample from one of them.
+inline void takeFromSample(RtslState &state, const RtslState &other) {
+  state.events = other.events;
+  state.TimeSeed = other.TimeSeed;
+  for (int i = 0; i < 2; ++i) {
+    state.ScreenCoord[i] = other.ScreenCoord[i];
+    state.LensCoord[i] = other.LensCoord[i];
+  }
+  for (int i = 0; i < 3; ++i) {
+    state.LaunchIndex[i] = other.LaunchIndex[i];
+    state.LaunchSize[i] = other.LaunchSize[i];
+  }
+}
+
+/// What a ray inherits from the ray that sent it.
+inline void inherit(RtslState &state, const RtslState &parent) {
+  state.launch = parent.launch;
+  const uint32_t needs = rtsl_needs(parent.launch);
+  if (needs & RTSL_NEEDS_TIME)
+    state.TimeSeed = parent.TimeSeed;
+  state.Time = parent.Time; // rays with a payload pass it on, whether it is read or not
+  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
+    state.LaunchIndex[i] = parent.LaunchIndex[i];
+    state.LaunchSize[i] = parent.LaunchSize[i];
+  }
+  state.rayMask = parent.rayMask;
+  state.rayRoot = parent.rayRoot;
+  if (hasEvents(parent))
+    state.events = parent.events;
+}
+
+/// Makes `child` a new state and calls make(parent), where `parent` has its old value even if the
+/// two are the same.
+template <typename Make>
+inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
+  if (undefinedWord(parent) == 0) {
+    make(parent);
+    return;
+  }
+  const RtslState before = parent;
+  beginState(child, before.launch);
+  if (&child == &parent) // the only state of the machine, which is still read as the parent
+    takeFromSample(child, before);
+  make(before);
+}
 
 /// Initialises state's ray: nothing hit yet, visible up to `distance` in units of the direction.
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,

@@ -17,28 +17,10 @@
 #include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
-#include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
-
-/// What a ray inherits from the ray that sent it.
-inline void inherit(RtslState &state, const RtslState &parent) {
-  state.launch = parent.launch;
-  uint32_t needs = rtsl_needs(parent.launch);
-  if (needs & RTSL_NEEDS_TIME)
-    state.TimeSeed = parent.TimeSeed;
-  state.Time = parent.Time; // rays with a payload pass it on, whether it is read or not
-  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
-    state.LaunchIndex[i] = parent.LaunchIndex[i];
-    state.LaunchSize[i] = parent.LaunchSize[i];
-  }
-  state.rayMask = parent.rayMask;
-  state.rayRoot = parent.rayRoot;
-  if (hasEvents(parent))
-    state.events = parent.events;
-}
 
 /// What a ray met, and the object whose method computes the color.
 struct Arrival {

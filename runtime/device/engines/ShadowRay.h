@@ -6,7 +6,6 @@
 #include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
-#include "runtime/device/ray/Undefined.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {

@@ -27,40 +27,4 @@ inline void makeUndefined(const RtslState &state, void *begin, void *end) {
       __builtin_memcpy(at, &word, sizeof word);
 }
 
-/// Begins a state of the launch, with all other fields undefined.
-inline void beginState(RtslState &state, const RtslLaunch *launch) {
-  state.launch = launch;
-  makeUndefined(state, &state, &state + 1);
-  state.launch = launch;
-}
-
-/// Copies what is the same for all rays of a sample from one of them.
-inline void takeFromSample(RtslState &state, const RtslState &other) {
-  state.events = other.events;
-  state.TimeSeed = other.TimeSeed;
-  for (int i = 0; i < 2; ++i) {
-    state.ScreenCoord[i] = other.ScreenCoord[i];
-    state.LensCoord[i] = other.LensCoord[i];
-  }
-  for (int i = 0; i < 3; ++i) {
-    state.LaunchIndex[i] = other.LaunchIndex[i];
-    state.LaunchSize[i] = other.LaunchSize[i];
-  }
-}
-
-/// Makes `child` a new state and calls make(parent), where `parent` has its old value even if the
-/// two are the same.
-template <typename Make>
-inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
-  if (undefinedWord(parent) == 0) {
-    make(parent);
-    return;
-  }
-  const RtslState before = parent;
-  beginState(child, before.launch);
-  if (&child == &parent) // the only state of the machine, which is still read as the parent
-    takeFromSample(child, before);
-  make(before);
-}
-
 } // namespace rtsl::device

@@ -26,7 +26,7 @@ inline void visitChild(RtslState &state, int32_t child) {
     state.isChildVisited = 1;
 }
 
-/// Does the selector let the ray take the way? visit(state, object) is the slot of rt_Selector.
+/// Does the selector admit the ray on this path? visit(state, object) is the slot of rt_Selector.
 template <typename Slots>
 bool isTaken(RtslState &state, const RtslSelection &selection, const Slots &slots) {
   const uint32_t dimension = state.dimension;

@@ -18,7 +18,8 @@ enum class Writer : std::uint8_t { Shader, Sample, Ray };
 /// State that only the runtime writes, before a shader runs: calls do not change it.
 static bool isFixed(llvm::StringRef variable) {
   return llvm::StringSwitch<bool>(variable)
-#define RTSL_STATE_VARIABLE(name, type, writer, need) .Case(#name, Writer::writer != Writer::Shader)
+#define RTSL_STATE_VARIABLE(name, type, writer, need, ...)                                         \
+  .Case(#name, Writer::writer != Writer::Shader)
 #include "language/StateVariables.def"
       .Default(false);
 }

@@ -55,11 +55,11 @@ KeptField fieldOf(llvm::StringRef variable) {
 }
 
 /// Fields that are the same for all rays of a sample: they stay in the state (takeFromSample in
-/// runtime/device/ray/Undefined.h).
+/// runtime/device/engines/BeginRay.h).
 Fields sharedByRays() {
   enum Writer : std::uint8_t { Shader, Sample, Ray };
   Fields shared;
-#define RTSL_STATE_VARIABLE(name, type, writer, need)                                              \
+#define RTSL_STATE_VARIABLE(name, type, writer, need, ...)                                         \
   if (writer == Sample)                                                                            \
     shared.add(Fields::of({device::kept##name}));
 #include "language/StateVariables.def"
