@@ -72,9 +72,9 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
   std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
-  const std::string damage = isPly ? findPlyDamage(bytes) : "";
-  if (!damage.empty())
-    throw Error(message::meshHasDamage(path, damage), Place{path});
+  if (isPly)
+    if (const std::optional<Message> damage = findPlyDamage(bytes, path))
+      throw Error(*damage, Place{path});
   if (isRead)
     throw Error(message::meshUnreadableFromPipe(path), Place{path});
   return std::nullopt;

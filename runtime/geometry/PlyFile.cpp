@@ -3,8 +3,7 @@
 #include "runtime/geometry/Normals.h"
 #include "runtime/geometry/PlyFormat.h"
 #include "runtime/geometry/PolygonSplit.h"
-
-#include <fmt/format.h>
+#include "support/ErrorMessages.h"
 
 #include <algorithm>
 #include <array>
@@ -330,13 +329,13 @@ std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &requ
   return std::move(reader.mesh);
 }
 
-std::string findPlyDamage(std::string_view bytes) {
+std::optional<Message> findPlyDamage(std::string_view bytes, const std::string &path) {
   if (!isPly(bytes))
-    return "is damaged: it does not begin with `ply`";
+    return message::meshIsNoPly(path);
   std::size_t line = 0;
   const std::optional<Header> header = readHeader(bytes, &line);
   if (!header)
-    return fmt::format("is damaged or cut short in line {} of its header", line);
+    return message::meshHeaderDamaged(path, line);
   Body body(bytes, *header);
   for (const Element &element : header->elements) {
     if (element.properties.empty())
@@ -344,10 +343,9 @@ std::string findPlyDamage(std::string_view bytes) {
     for (std::uint64_t i = 0; i < element.count; ++i)
       for (const Property &property : element.properties)
         if (!body.skip(property))
-          return fmt::format("is truncated: it ends in element {} of {} of `{}`", i + 1,
-                             element.count, element.name);
+          return message::meshTruncated(path, i + 1, element.count, element.name);
   }
-  return "";
+  return std::nullopt;
 }
 
 } // namespace rtsl::runtime

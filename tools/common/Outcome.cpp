@@ -29,8 +29,7 @@ std::string tooDeepText(const runtime::RenderStatistics &statistics,
 std::string badRaysText(const runtime::RenderStatistics &statistics) {
   if (!statistics.badRays || statistics.exceptions[RTSL_EXCEPTION_BAD_RAY])
     return {};
-  return fmt::format("{} rays had no direction or were not finite, and returned black",
-                     statistics.badRays);
+  return message::badRays(statistics.badRays);
 }
 
 std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
@@ -38,16 +37,12 @@ std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statist
   const std::uint64_t *counts = statistics.exceptions;
   std::vector<std::string> texts;
   if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
-    texts.push_back(fmt::format("{} samples sent rays deeper than {}: give a larger `--depth`, or "
-                                "end the recursion in the shader",
-                                counts[RTSL_EXCEPTION_STACK_OVERFLOW], options.maxDepth));
-  if (counts[RTSL_EXCEPTION_BAD_RAY])
     texts.push_back(
-        fmt::format("{} samples sent a ray without a direction, or one that was not finite",
-                    counts[RTSL_EXCEPTION_BAD_RAY]));
+        message::samplesTooDeep(counts[RTSL_EXCEPTION_STACK_OVERFLOW], options.maxDepth));
+  if (counts[RTSL_EXCEPTION_BAD_RAY])
+    texts.push_back(message::samplesOfBadRays(counts[RTSL_EXCEPTION_BAD_RAY]));
   if (counts[RTSL_EXCEPTION_INDEX])
-    texts.push_back(fmt::format("{} samples used an index that was out of range",
-                                counts[RTSL_EXCEPTION_INDEX]));
+    texts.push_back(message::samplesOutOfRange(counts[RTSL_EXCEPTION_INDEX]));
   return texts;
 }
 

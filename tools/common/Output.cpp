@@ -2,6 +2,7 @@
 #include "Output.h"
 
 #include "support/AtomicFile.h"
+#include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
@@ -21,8 +22,8 @@ bool finishOutput(const char *program) {
   std::cout.flush();
   const bool isWritten = std::fflush(stdout) == 0 && !std::ferror(stdout) && std::cout.good();
   if (!isWritten)
-    fmt::print(stderr, "{}: cannot write to standard output: {}\n", program,
-               std::strerror(errno ? errno : EIO));
+    fmt::print(stderr, "{}: {}\n", program,
+               message::cannotWriteStandardOutput(std::strerror(errno ? errno : EIO)).text);
   return isWritten;
 }
 

@@ -113,7 +113,7 @@ void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics 
     fmt::print(stderr, "{}\n", tool::notFiniteText(statistics));
     for (const runtime::SampleId &one : statistics.notFinite)
       fmt::print(stderr, "  {}\n", tool::sampleText(one));
-    fmt::print(stderr, "`rtslc render` of the scene reports the source lines that cause them\n");
+    fmt::print(stderr, "{}\n", message::notFiniteNeedsScene());
   }
   if (statistics.raysTooDeep)
     fmt::print(stderr, "{}\n", tool::tooDeepText(statistics, render));
@@ -141,8 +141,7 @@ void report(const Options &options, const runtime::Package &package,
     fmt::print(stderr, "{}\n", text);
 }
 
-/// The picture to compare with, before time is spent on another one; nothing if not requested
-/// for.
+/// The picture of --compare, read before time is spent on rendering; nothing without it.
 std::optional<runtime::Image> readReference(const Options &options, const runtime::Package &package,
                                             const runtime::RenderOptions &render) {
   if (options.reference.empty())
@@ -309,7 +308,7 @@ int main(int argc, char **argv) {
   } catch (const Error &error) {
     fmt::print(stderr, "rtsl-run: {}\n", error.what());
     if (error.code == ErrorCode::NoDevice)
-      fmt::print(stderr, "`--target=host` renders on the CPU\n");
+      fmt::print(stderr, "{}\n", message::hostNeedsNoDevice());
     return tool::statusAfterInterruption(error.code == ErrorCode::Internal ? InternalError
                                                                            : Refused);
   } catch (const std::exception &error) {

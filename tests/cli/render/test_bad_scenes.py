@@ -121,7 +121,11 @@ class BadScenes(Case):
         )
         self.write("half.ply", header + b"\0" * 300)
         self.glass_scene()
-        self.assert_message(self.render("--set", "objects.3.mesh=half.ply"), "E0904", "half.ply")
+        self.assert_message(
+            self.render("--set", "objects.3.mesh=half.ply"),
+            "E0904",
+            "mesh `half.ply` is truncated: it ends in element 26 of 100 of `vertex`",
+        )
 
     def test_damaged_headers_of_ply_meshes(self):
         header = (
@@ -132,11 +136,11 @@ class BadScenes(Case):
         body = b"0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
         self.glass_scene()
         for damaged, line in (
-            (header[:42], "line 4"),
+            (header[:42], "mesh `damaged.ply` is damaged or truncated in line 4 of its header"),
             (header[:-11], "line 8"),
             (header.replace(b"float y", b"flo\nt y") + body, "line 5"),
             (header.replace(b"element vertex 3", b"element vertex") + body, "line 3"),
-            (b"plx" + header[3:] + body, "`ply`"),
+            (b"plx" + header[3:] + body, "is damaged: it does not begin with `ply`"),
         ):
             with self.subTest(damaged=damaged):
                 self.write("damaged.ply", damaged)
