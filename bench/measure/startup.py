@@ -74,35 +74,19 @@ def commands(build, folder):
     rtslc = str(build / "bin" / "rtslc")
     long_file = folder / "Coats.rtsl"
     long_file.write_text(long_material(), encoding="utf-8")
+
+    def emit(stage, file, limit=None):
+        return [rtslc, "compile", str(file), f"--emit={stage}", "-o", "-"], limit
+
     return [
         ("true", ["/bin/true"], None),  # what any process costs here
         ("rtslc --help", [rtslc, "--help"], 0.010),
         ("rtslc check", [rtslc, "check", str(MATERIAL)], 0.015),
-        (
-            "rtslc compile --emit=cpp",
-            [rtslc, "compile", str(MATERIAL), "--emit=cpp", "-o", "-"],
-            0.025,
-        ),
-        (
-            "rtslc compile --emit=llvm",
-            [rtslc, "compile", str(MATERIAL), "--emit=llvm", "-o", "-"],
-            None,
-        ),
-        (
-            "rtslc compile --emit=ptx",
-            [rtslc, "compile", str(MATERIAL), "--emit=ptx", "-o", "-"],
-            0.040,
-        ),
-        (
-            "--emit=ssa, 500 lines",
-            [rtslc, "compile", str(long_file), "--emit=ssa", "-o", "-"],
-            None,
-        ),
-        (
-            "--emit=split, 500 lines",
-            [rtslc, "compile", str(long_file), "--emit=split", "-o", "-"],
-            None,
-        ),
+        ("rtslc compile --emit=cpp", *emit("cpp", MATERIAL, 0.025)),
+        ("rtslc compile --emit=llvm", *emit("llvm", MATERIAL)),
+        ("rtslc compile --emit=ptx", *emit("ptx", MATERIAL, 0.040)),
+        ("--emit=ssa, 500 lines", *emit("ssa", long_file)),
+        ("--emit=split, 500 lines", *emit("split", long_file)),
     ] + other_compilers(folder)
 
 

@@ -5,6 +5,7 @@
 #include "grammar/RtslParser.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace rtsl {
 
@@ -260,10 +261,10 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
 // Recovery
 //===----------------------------------------------------------------------===//
 
-/// Index of the token at which the next statement or declaration begins, after an error at `from`
-/// in the one that begins at `start`. Never leaves the brackets around it, and is after `start` if
-/// possible.
-std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) const {
+/// The first index from `from` on for which `endAt(index)` gives an index; that index. Tokens in
+/// brackets that open after `start` are skipped, and the brackets around `start` are not left.
+template <typename EndAt>
+std::size_t SyntaxErrors::findEnd(std::size_t start, std::size_t from, EndAt &&endAt) const {
   const unsigned depth = word(start).depth;
   for (std::size_t index = from;; ++index) {
     const Token &token = word(index);
@@ -273,6 +274,17 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
       continue;
     if (isClosing(token.type) && (token.depth < depth || index == start))
       return index;
+    if (const std::optional<std::size_t> end = endAt(index))
+      return *end;
+  }
+}
+
+/// Index of the token at which the next statement or declaration begins, after an error at `from`
+/// in the one that begins at `start`. Never leaves the brackets around it, and is after `start` if
+/// possible.
+std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) const {
+  return findEnd(start, from, [&](std::size_t index) -> std::optional<std::size_t> {
+    const Token &token = word(index);
     if (token.type == RtslLexer::SEMICOLON && word(index + 1).type != RtslLexer::ELSE)
       return index + 1;
     if (token.type == RtslLexer::RIGHT_BRACE && index > start) { // a block of the broken statement
@@ -283,33 +295,28 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
         return index + 1;
     }
     if (index == start || !token.startsLine)
-      continue;
+      return std::nullopt;
     const unsigned next = word(index + 1).type;
     if (isStatementKeyword(token.type) ||
         (token.type == RtslLexer::IDENTIFIER &&
          (next == RtslLexer::IDENTIFIER || next == RtslLexer::ASSIGN)))
       return index;
-  }
+    return std::nullopt;
+  });
 }
 
 /// Index of the token after an expression: a semicolon, a separating comma, or the closing bracket
 /// around it.
 std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
                                           bool endsAtComma) const {
-  const unsigned depth = word(start).depth;
-  for (std::size_t index = from;; ++index) {
+  return findEnd(start, from, [&](std::size_t index) -> std::optional<std::size_t> {
     const Token &token = word(index);
-    if (token.type == Token::endOfFile)
-      return index;
-    if (token.depth > depth)
-      continue;
-    if (isClosing(token.type) && (token.depth < depth || index == start))
-      return index;
     if (token.type == RtslLexer::SEMICOLON || (endsAtComma && token.type == RtslLexer::COMMA))
       return index;
     if (index > start && token.startsLine && isStatementKeyword(token.type))
       return index;
-  }
+    return std::nullopt;
+  });
 }
 
 /// Index of the closing parenthesis of the arguments that begin at `start`.

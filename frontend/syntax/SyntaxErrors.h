@@ -46,6 +46,8 @@ private:
   std::string closingAround(std::size_t index) const;
   std::string expectedToken(antlr4::Parser *parser, std::size_t index) const;
 
+  template <typename EndAt>
+  std::size_t findEnd(std::size_t start, std::size_t from, EndAt &&endAt) const;
   std::size_t endOfStatement(std::size_t start, std::size_t from) const;
   std::size_t endOfExpression(std::size_t start, std::size_t from, bool endsAtComma) const;
   std::size_t endOfArguments(std::size_t start, std::size_t from) const;

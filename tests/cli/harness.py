@@ -13,10 +13,25 @@ import tempfile
 import unittest
 
 RTSLC = os.environ["RTSLC"]
+RTSL_RUN = os.environ["RTSL_RUN"]
 EXAMPLES = pathlib.Path(os.environ["EXAMPLES"])
 
-FINE, DIAGNOSED, USAGE = 0, 1, 2
+FINE, DIAGNOSED, USAGE, INTERNAL = 0, 1, 2, 3
 SECONDS = 300  # far beyond what any of these takes: only a hang ends there
+
+# How the stand-in of the CUDA driver (FakeCuda.cpp) can fail, and the messages: of devices that
+# cannot be used, and of faults while a program runs.
+UNUSABLE_DEVICES = {
+    "no-device": "there is a CUDA driver, but no device",
+    "old-driver": "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
+    "old-ptx": "the CUDA driver is too old for the program's PTX",
+    "other-gpu": "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
+}
+LITTLE_MEMORY = ("little-memory", "not enough GPU memory for")
+FAULTS_OF_DEVICES = {
+    "fault": "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered",
+    "overflow": "rays of depth 8 overflow the stack that was made for them",
+}
 
 
 # What a program that is only wrong may take, however large or deep it is; of processor time, for
@@ -103,6 +118,26 @@ class Case(unittest.TestCase):
                 done.returncode, status, f"exit status of {arguments}:\n{error[:4000]}"
             )
         return (done.stdout or b"").decode("utf-8", "replace"), error
+
+    def run_with_fake_driver(self, command, status=FINE, fake="", folder=None):
+        """Gives (standard output, standard error) of a command that finds the stand-in of the CUDA
+        driver, or what is in `folder`; `fake` names a way in which the stand-in fails."""
+        folder = folder or os.environ["FAKE_CUDA_FOLDER"]
+        done = subprocess.run(
+            command,
+            cwd=self.folder,
+            timeout=SECONDS,
+            env={**os.environ, "LD_LIBRARY_PATH": str(folder), "FAKE_CUDA": fake},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertEqual(done.returncode, status, done.stderr[:4000])
+        return done.stdout, done.stderr
+
+    def run_package(self, *arguments, status=FINE, fake=""):
+        """The same of rtsl-run."""
+        return self.run_with_fake_driver([RTSL_RUN, *arguments], status, fake)
 
     def render_scene(self, scene, *options):
         """Renders a scene that is given as a document. Returns the file of the picture, a new one

@@ -16,6 +16,15 @@ using mlir::Value;
 
 namespace {
 
+/// Replaces an operation without results by a call of its function of the runtime.
+template <typename Op>
+LogicalResult replaceByCall(ConversionPatternRewriter &rewriter, Op op,
+                            llvm::ArrayRef<Value> arguments) {
+  callRuntime(rewriter, op.getLoc(), runtimeFunction(op), arguments);
+  rewriter.eraseOp(op);
+  return mlir::success();
+}
+
 struct ConvertTrace : ConvertOpToLLVMPattern<ir::TraceOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::TraceOp op, OpAdaptor adaptor,
@@ -135,9 +144,7 @@ struct ConvertPayloadRay : ConvertOpToLLVMPattern<Op> {
     arguments.push_back(orOwn(adaptor.getTime(), f32, offsetof(RtslState, Time)));
     arguments.push_back(constantLike(rewriter, location, i32, *op.getRayType()));
     arguments.push_back(constantLike(rewriter, location, i32, *op.getHow()));
-    callRuntime(rewriter, location, runtimeFunction(op), arguments);
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op, arguments);
   }
 };
 
@@ -191,10 +198,7 @@ struct ConvertVisitChild : ConvertOpToLLVMPattern<ir::VisitChildOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::VisitChildOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    callRuntime(rewriter, op.getLoc(), runtimeFunction(op),
-                {rayState(rewriter), adaptor.getChild()});
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op, {rayState(rewriter), adaptor.getChild()});
   }
 };
 
@@ -207,9 +211,7 @@ struct ConvertRaise : ConvertOpToLLVMPattern<ir::RaiseOp> {
   LogicalResult matchAndRewrite(ir::RaiseOp op, OpAdaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     Value exception = constantLike(rewriter, op.getLoc(), rewriter.getI32Type(), op.getException());
-    callRuntime(rewriter, op.getLoc(), runtimeFunction(op), {rayState(rewriter), exception});
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op, {rayState(rewriter), exception});
   }
 };
 
@@ -228,12 +230,10 @@ struct ConvertPrint : ConvertOpToLLVMPattern<ir::PrintOp> {
       Value place = offsetAddress(rewriter, location, words, 4 * static_cast<uint32_t>(index));
       LLVM::StoreOp::create(rewriter, location, value, place, 4);
     }
-    callRuntime(rewriter, location, runtimeFunction(op),
-                {rayState(rewriter),
-                 constantLike(rewriter, location, i32, op.getFormat().value_or(0)), words,
-                 constantLike(rewriter, location, i32, count)});
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op,
+                         {rayState(rewriter),
+                          constantLike(rewriter, location, i32, op.getFormat().value_or(0)), words,
+                          constantLike(rewriter, location, i32, count)});
   }
 };
 
@@ -249,9 +249,7 @@ struct ConvertSpawn : ConvertOpToLLVMPattern<ir::SpawnOp> {
     llvm::SmallVector<Value> arguments = {rayState(rewriter)};
     llvm::append_range(arguments, componentsOf(rewriter, op.getLoc(), adaptor.getOrigin()));
     llvm::append_range(arguments, componentsOf(rewriter, op.getLoc(), adaptor.getDirection()));
-    callRuntime(rewriter, op.getLoc(), runtimeFunction(op), arguments);
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op, arguments);
   }
 };
 
@@ -259,10 +257,8 @@ struct ConvertMoveFrame : ConvertOpToLLVMPattern<ir::MoveFrameOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::MoveFrameOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    callRuntime(rewriter, op.getLoc(), runtimeFunction(op),
-                {rayState(rewriter), adaptor.getBytes(), adaptor.getObject()});
-    rewriter.eraseOp(op);
-    return mlir::success();
+    return replaceByCall(rewriter, op,
+                         {rayState(rewriter), adaptor.getBytes(), adaptor.getObject()});
   }
 };
 

@@ -50,21 +50,22 @@ inline T atomicCompSwap(T &place, T expected, T value) {
   __atomic_compare_exchange_n(&place, &expected, value, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED);
   return expected;
 }
-template <typename T>
-inline T atomicMin(T &place, T value) {
+// Stores `value` if `replaces(value, old)`.
+template <typename T, typename Replaces>
+inline T atomicReplaceIf(T &place, T value, Replaces replaces) {
   T old = __atomic_load_n(&place, __ATOMIC_RELAXED);
-  while (value < old && !__atomic_compare_exchange_n(&place, &old, value, true, __ATOMIC_RELAXED,
-                                                     __ATOMIC_RELAXED)) {
+  while (replaces(value, old) && !__atomic_compare_exchange_n(&place, &old, value, true,
+                                                              __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
   return old;
 }
 template <typename T>
+inline T atomicMin(T &place, T value) {
+  return atomicReplaceIf(place, value, [](T a, T b) { return a < b; });
+}
+template <typename T>
 inline T atomicMax(T &place, T value) {
-  T old = __atomic_load_n(&place, __ATOMIC_RELAXED);
-  while (old < value && !__atomic_compare_exchange_n(&place, &old, value, true, __ATOMIC_RELAXED,
-                                                     __ATOMIC_RELAXED)) {
-  }
-  return old;
+  return atomicReplaceIf(place, value, [](T a, T b) { return a > b; });
 }
 
 } // namespace RTSL_VARIANT

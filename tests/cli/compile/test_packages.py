@@ -6,11 +6,20 @@ import os
 import subprocess
 import unittest
 
-from harness import DIAGNOSED, EXAMPLES, FINE, SECONDS, USAGE, Case
+from harness import (
+    DIAGNOSED,
+    EXAMPLES,
+    FAULTS_OF_DEVICES,
+    FINE,
+    INTERNAL,
+    LITTLE_MEMORY,
+    RTSL_RUN,
+    UNUSABLE_DEVICES,
+    USAGE,
+    Case,
+)
 from numpy_files import npy
 
-RTSL_RUN = os.environ["RTSL_RUN"]
-INTERNAL = 3
 SMALL = ("--size", "32x18", "--spp", "2")
 
 
@@ -27,35 +36,22 @@ class Packages(Case):
             Packages.packed = (self.folder / "glass.rtslpkg").read_bytes()
         return Packages.packed
 
-    def run_package(self, *arguments, status=FINE, fake=None, content=None):
-        """rtsl-run on the package, or on other bytes; `fake` names a way in which the stand-in of
-        the driver fails."""
+    def render(self, *arguments, status=FINE, fake="", content=None):
+        """rtsl-run on the package, or on other bytes."""
         self.write("x.rtslpkg", self.package() if content is None else content)
-        environment = {
-            **os.environ,
-            "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"],
-            "FAKE_CUDA": fake or "",
-        }
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *arguments],
-            cwd=self.folder,
-            timeout=SECONDS,
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
+        out, error = self.run_package(
+            "x.rtslpkg", "-o", "out.exr", *arguments, status=status, fake=fake
         )
-        self.assertEqual(done.returncode, status, done.stderr[:4000])
         if status != FINE:
-            self.assertNotEqual(done.stderr, "")
-        return done.stdout, done.stderr
+            self.assertNotEqual(error, "")
+        return out, error
 
     def test_the_host_renders_the_bits_of_rtslc(self):
         self.glass_scene()
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "--target=host-megakernel", *SMALL)
-        self.run_package("--target=host", *SMALL, "--compare", "a.exr")
-        self.run_package("--target=host", *SMALL, "--threads", "1", "--compare", "a.exr")
-        _, error = self.run_package(
+        self.render("--target=host", *SMALL, "--compare", "a.exr")
+        self.render("--target=host", *SMALL, "--threads", "1", "--compare", "a.exr")
+        _, error = self.render(
             "--target=host", *SMALL, "--seed", "5", "--compare", "a.exr", status=DIAGNOSED
         )
         self.assertIn("pixels differ from `a.exr`", error)
@@ -69,7 +65,7 @@ class Packages(Case):
             )
             self.run_rtslc("pack", str(scene), "-o", "example.rtslpkg", "-O0", "--quiet")
             content = (self.folder / "example.rtslpkg").read_bytes()
-            self.run_package("--target=host", *SMALL, "--compare", "a.exr", content=content)
+            self.render("--target=host", *SMALL, "--compare", "a.exr", content=content)
 
     def test_packing_gives_the_same_bytes_on_every_run(self):
         self.glass_scene()
@@ -77,7 +73,7 @@ class Packages(Case):
         self.assertEqual((self.folder / "again.rtslpkg").read_bytes(), self.package())
 
     def test_it_reports_as_json(self):
-        out, error = self.run_package("--target=host", *SMALL, "--json")
+        out, error = self.render("--target=host", *SMALL, "--json")
         figures = json.loads(out)
         self.assertEqual(
             (figures["size"], figures["spp"], figures["frameBytes"]), ([32, 18], 2, 28)
@@ -223,79 +219,56 @@ class Steps : rt_RayGeneration {
         ):
             damaged = bytearray(whole)
             damaged[place] ^= 0x20
-            _, error = self.run_package(
+            _, error = self.render(
                 "--target=host", *SMALL, content=bytes(damaged), status=DIAGNOSED
             )
             self.assertIn("`x.rtslpkg` is", error)
         for length in (0, 7, 63, 64, 1000, len(whole) - 1):
-            self.run_package("--target=host", *SMALL, content=whole[:length], status=DIAGNOSED)
+            self.render("--target=host", *SMALL, content=whole[:length], status=DIAGNOSED)
         self.assertNotIn("out.exr", self.files())
 
     def test_foreign_and_newer_packages_are_refused(self):
-        _, error = self.run_package(
-            "--target=host", content=b"\x7fELF" + bytes(1000), status=DIAGNOSED
-        )
+        _, error = self.render("--target=host", content=b"\x7fELF" + bytes(1000), status=DIAGNOSED)
         self.assertIn("is not a package of rtslc", error)
         newer = bytearray(self.package())
         newer[8] = 200
-        _, error = self.run_package("--target=host", content=bytes(newer), status=DIAGNOSED)
+        _, error = self.render("--target=host", content=bytes(newer), status=DIAGNOSED)
         self.assertIn("use a newer rtsl-run", error)
 
     def test_bad_arguments(self):
-        self.run_package("--target=toaster", status=USAGE)
-        self.run_package("--target=host", "--size", "0x9", status=USAGE)
-        self.run_package("--target=host", "--depth", "100000", status=USAGE)
+        self.render("--target=toaster", status=USAGE)
+        self.render("--target=host", "--size", "0x9", status=USAGE)
+        self.render("--target=host", "--depth", "100000", status=USAGE)
 
     def test_the_gpu_is_handed_the_whole_scene(self):
-        out, _ = self.run_package("--target=gpu", *SMALL, "--seed", "3", "--json")
+        out, _ = self.render("--target=gpu", *SMALL, "--seed", "3", "--json")
         self.assertEqual(json.loads(out)["blocks"], 5)  # of 128 threads, for 576 pixels
         # What the stand-in paints: x, y and the seed.
         (self.folder / "out.exr").rename(self.folder / "first.exr")
-        self.run_package("--target=gpu", *SMALL, "--seed", "3", "--compare", "first.exr")
+        self.render("--target=gpu", *SMALL, "--seed", "3", "--compare", "first.exr")
 
     def test_what_is_wrong_with_a_gpu_is_said(self):
-        for fake, text in (
-            ("no-device", "there is a CUDA driver, but no device"),
-            (
-                "old-driver",
-                "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
-            ),
-            ("old-ptx", "the CUDA driver is too old for the program's PTX"),
-            (
-                "other-gpu",
-                "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
-            ),
-            ("little-memory", "not enough GPU memory for"),
-        ):
+        for fake, text in [*UNUSABLE_DEVICES.items(), LITTLE_MEMORY]:
             with self.subTest(fake=fake):
-                _, error = self.run_package("--target=gpu", *SMALL, fake=fake, status=DIAGNOSED)
+                _, error = self.render("--target=gpu", *SMALL, fake=fake, status=DIAGNOSED)
                 self.assertIn(text, error)
                 self.assertEqual(len(error.splitlines()), 1 if "memory" in text else 2, error)
-        for fake, text in (
-            (
-                "fault",
-                "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered",
-            ),
-            ("overflow", "rays of depth 8 overflow the stack that was made for them"),
-        ):
+        for fake, text in FAULTS_OF_DEVICES.items():
             with self.subTest(fake=fake):
-                _, error = self.run_package("--target=gpu", *SMALL, fake=fake, status=INTERNAL)
+                _, error = self.render("--target=gpu", *SMALL, fake=fake, status=INTERNAL)
                 self.assertIn(text, error)
         self.assertNotIn("out.exr", self.files())
 
     def test_a_missing_driver_is_said(self):
         (self.folder / "libcuda.so.1").write_text("no driver")
         self.write("x.rtslpkg", self.package())
-        done = subprocess.run(
+        _, error = self.run_with_fake_driver(
             [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", "--target=gpu"],
-            cwd=self.folder,
-            env={**os.environ, "LD_LIBRARY_PATH": str(self.folder)},
-            stderr=subprocess.PIPE,
-            text=True,
+            status=DIAGNOSED,
+            folder=self.folder,
         )
-        self.assertEqual(done.returncode, DIAGNOSED)
-        self.assertIn("there is no CUDA driver", done.stderr)
-        self.assertIn("--target=host", done.stderr)
+        self.assertIn("there is no CUDA driver", error)
+        self.assertIn("--target=host", error)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,9 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import unittest
 
-from harness import EXAMPLES, SECONDS, USAGE, Case
+from harness import EXAMPLES, USAGE, Case
 
 SMALL = ("--size", "32x18", "--spp", "2", "-q")
 
@@ -277,13 +276,7 @@ class Explain(Case):
         pictures = []
         for kept in ([], ["--keep=all"]):
             self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", *kept)
-            subprocess.run(
-                [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "x.exr", "--target=host"],
-                cwd=self.folder,
-                check=True,
-                timeout=SECONDS,
-                capture_output=True,
-            )
+            self.run_package("x.rtslpkg", "-o", "x.exr", "--target=host")
             pictures.append((self.folder / "x.exr").read_bytes())
         self.assertEqual(*pictures)
 

@@ -4,15 +4,13 @@ import json
 
 from harness import Case
 
-SHADERS = """
-// An author's material, with the sampling methods alone: a diffuse surface that may shine.
-class Own : rt_Material {
+# A diffuse surface, without emission and evaluatePDF.
+DIFFUSE = """\
   public float albedo = 0.5;
   public color glow = color(0.0);
 
   vec3 normal() { return faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal); }
 
-  void emission() { rt_EmissionColor = glow; }
   void BSDF() {
     rt_BSDFValue = color(dot(rt_LightDirection, normal()) > 0.0 ? albedo * 0.31830989 : 0.0);
   }
@@ -24,26 +22,18 @@ class Own : rt_Material {
     rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
     rt_BSDFValue = color(albedo * 0.31830989);
   }
+"""
+
+SHADERS = """
+// An author's material, with the sampling methods alone: a diffuse surface that may shine.
+class Own : rt_Material {
+// DIFFUSE
+  void emission() { rt_EmissionColor = glow; }
   void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
 };
 // The same in two classes, of which the first has no evaluatePDF.
 class Half : rt_Material {
-  public float albedo = 0.5;
-  public color glow = color(0.0);
-
-  vec3 normal() { return faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal); }
-
-  void BSDF() {
-    rt_BSDFValue = color(dot(rt_LightDirection, normal()) > 0.0 ? albedo * 0.31830989 : 0.0);
-  }
-  void sampleBSDF() {
-    vec3 n = normal();
-    vec3 u = perpendicularTo(n);
-    float r = sqrt(rt_BSDFSeed.x), a = 2.0 * rt_BSDFSeed.y;
-    rt_LightDirection = r * cospi(a) * u + r * sinpi(a) * cross(n, u) + sqrt(1.0 - rt_BSDFSeed.x) * n;
-    rt_PDF = dot(rt_LightDirection, n) * 0.31830989;
-    rt_BSDFValue = color(albedo * 0.31830989);
-  }
+// DIFFUSE
 };
 class Whole : Half {
   void emission() { rt_EmissionColor = glow; }
@@ -92,7 +82,9 @@ class Down : rt_Camera {
     rt_RayDirection = vec3(0.02 * rt_ScreenCoord.x - 0.01, -1.0, 0.02 * rt_ScreenCoord.y - 0.01);
   }
 };
-"""
+""".replace(
+    "// DIFFUSE\n", DIFFUSE
+)
 
 BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 2}
 FLOOR = {"class": "Parallelogram", "constructor": [[-1000, 0, -1000], [0, 0, 2000], [2000, 0, 0]]}

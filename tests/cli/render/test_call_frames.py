@@ -2,8 +2,6 @@
 own on the machine."""
 
 import json
-import os
-import subprocess
 import unittest
 
 from harness import EXAMPLES, Case
@@ -118,11 +116,7 @@ class CallFrames(Case):
         self.scene(3, 2)
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
-        subprocess.run(
-            [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"],
-            cwd=self.folder,
-            check=True,
-        )
+        self.run_package("x.rtslpkg", "-o", "1.exr", "--target=host")
         self.assert_same_bits("0.exr", "1.exr")
 
     def test_the_bound_of_the_stack_counts_them(self):

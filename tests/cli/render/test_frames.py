@@ -1,7 +1,6 @@
 """Which part of a scene is rendered: `--crop`, `--camera`, `--frame` and `--frames`."""
 
 import json
-import os
 import signal
 import struct
 import subprocess
@@ -85,21 +84,8 @@ class Crop(Parts):
     def test_of_a_package(self):
         self.run_rtslc("pack", "scene.json", "-o", "a.rtslpkg")
         self.render("a.exr", "--crop=10,10,20,15", "--target=host-megakernel")
-        subprocess.run(
-            [
-                os.environ["RTSL_RUN"],
-                "a.rtslpkg",
-                "-o",
-                "b.exr",
-                "--target=host",
-                "--crop=10,10,20,15",
-                "--spp=3",
-                *SMALL,
-            ],
-            cwd=self.folder,
-            check=True,
-            capture_output=True,
-        )
+        crop = "--crop=10,10,20,15"
+        self.run_package("a.rtslpkg", "-o", "b.exr", "--target=host", crop, "--spp=3", *SMALL)
         self.assert_same_bits("a.exr", "b.exr")
 
     def test_samples_that_are_not_finite_are_named_by_their_place_in_the_whole(self):

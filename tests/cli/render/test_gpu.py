@@ -3,14 +3,22 @@ said, and where the machine has a GPU the picture has the bits of the host megak
 
 import ctypes
 import json
-import os
-import subprocess
 import unittest
 
-from harness import DIAGNOSED, EXAMPLES, FINE, RTSLC, SECONDS, USAGE, Case
+from harness import (
+    DIAGNOSED,
+    EXAMPLES,
+    FAULTS_OF_DEVICES,
+    FINE,
+    INTERNAL,
+    LITTLE_MEMORY,
+    RTSL_RUN,
+    RTSLC,
+    UNUSABLE_DEVICES,
+    USAGE,
+    Case,
+)
 
-RTSL_RUN = os.environ["RTSL_RUN"]
-INTERNAL = 3
 SMALL = ("--size", "32x18", "--spp", "2", "-Wno-depth-limit")
 
 
@@ -33,26 +41,10 @@ class Gpu(Case):
         self.glass_scene()
 
     def render(
-        self,
-        *arguments,
-        status=FINE,
-        fake="",
-        folder=os.environ["FAKE_CUDA_FOLDER"],
-        program=(RTSLC, "render", "scene.json"),
+        self, *arguments, status=FINE, fake="", folder=None, program=(RTSLC, "render", "scene.json")
     ):
-        """With the stand-in of the driver; `fake` names a way in which it fails."""
-        environment = {**os.environ, "LD_LIBRARY_PATH": str(folder), "FAKE_CUDA": fake}
-        done = subprocess.run(
-            [*program, "-o", "a.exr", "--target=gpu", *arguments],
-            cwd=self.folder,
-            timeout=SECONDS,
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        self.assertEqual(done.returncode, status, done.stderr[:4000])
-        return done.stdout, done.stderr
+        command = [*program, "-o", "a.exr", "--target=gpu", *arguments]
+        return self.run_with_fake_driver(command, status, fake, folder)
 
     def test_the_gpu_gets_what_a_package_gives_it(self):
         """The stand-in paints x, y and the seed, if all of the launch has arrived."""
@@ -121,31 +113,15 @@ class Gpu(Case):
 
     def test_what_is_wrong_with_a_gpu_is_said(self):
         host = "`--target=host-megakernel` renders the same picture on the CPU"
-        for fake, text in (
-            ("no-device", "there is a CUDA driver, but no device"),
-            (
-                "old-driver",
-                "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
-            ),
-            ("old-ptx", "the CUDA driver is too old for the program's PTX"),
-            (
-                "other-gpu",
-                "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
-            ),
-        ):
+        for fake, text in UNUSABLE_DEVICES.items():
             with self.subTest(fake=fake):
                 _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
                 self.assertIn("error[E1002]: " + text, error)
                 self.assertIn(host, error)
-        _, error = self.render(*SMALL, "-O0", fake="little-memory", status=DIAGNOSED)
-        self.assertIn("error[E1001]: not enough GPU memory for", error)
-        for fake, text in (
-            (
-                "fault",
-                "the GPU failed in cuCtxSynchronize: an illegal memory access was encountered",
-            ),
-            ("overflow", "rays of depth 8 overflow the stack that was made for them"),
-        ):
+        fake, text = LITTLE_MEMORY
+        _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
+        self.assertIn("error[E1001]: " + text, error)
+        for fake, text in FAULTS_OF_DEVICES.items():
             with self.subTest(fake=fake):
                 _, error = self.render(*SMALL, "-O0", fake=fake, status=INTERNAL)
                 self.assertIn(text, error)

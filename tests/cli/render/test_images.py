@@ -3,18 +3,13 @@ files that are wrong."""
 
 import json
 import math
-import os
 import random
 import struct
-import subprocess
 import unittest
 
-from harness import SECONDS
 from image_case import ImageCase, numbers_of
 from image_files import png, hdr, tiff
 from image_oracle import Oracle, decode_srgb, encode_srgb
-
-RTSL_RUN = os.environ["RTSL_RUN"]
 
 
 class Images(ImageCase):
@@ -407,13 +402,7 @@ class Images(ImageCase):
                 self.run_rtslc("render", "scene.json", "-q", "-o", "x.exr", *options)
                 pictures.add((self.folder / "x.exr").read_bytes())
             self.run_rtslc("pack", "scene.json", "-q", "-o", "x.rtslpkg")
-            done = subprocess.run(
-                [RTSL_RUN, "x.rtslpkg", "--target=host", "-q", "-o", "x.exr"],
-                cwd=self.folder,
-                timeout=SECONDS,
-                stderr=subprocess.PIPE,
-            )
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.run_package("x.rtslpkg", "--target=host", "-q", "-o", "x.exr")
             pictures.add((self.folder / "x.exr").read_bytes())
             self.assertEqual(len(pictures), 1, filter)
 

@@ -2,14 +2,11 @@
 counted and said, the same on every path."""
 
 import json
-import os
 import re
-import subprocess
 import unittest
 
-from harness import EXAMPLES, SECONDS, Case
+from harness import EXAMPLES, Case
 
-RTSL_RUN = os.environ["RTSL_RUN"]
 
 SHADERS = """
 struct P { color light; };
@@ -116,27 +113,21 @@ class NotFinite(ShaderCase):
         self.scene()
         first, _ = self.render("--target=host-megakernel")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "--compare", "a.exr"],
-            cwd=self.folder,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=SECONDS,
+        out, error = self.run_package(
+            "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "--compare", "a.exr"
         )
-        self.assertEqual(done.returncode, 0, done.stderr)
-        figures = json.loads(done.stdout)
+        figures = json.loads(out)
         self.assertEqual(figures["samplesNotFinite"], first["samplesNotFinite"])
         self.assertEqual(
             figures["notFinite"],
             [{"pixel": one["pixel"], "sample": one["sample"]} for one in first["notFinite"]],
         )
-        self.assertIn("samples were infinite or not a number, and are left out", done.stderr)
+        self.assertIn("samples were infinite or not a number, and are left out", error)
         self.assertIn(
             "pixel {},{} sample {}".format(
                 *first["notFinite"][0]["pixel"], first["notFinite"][0]["sample"]
             ),
-            done.stderr,
+            error,
         )
 
     def test_the_first_are_named_with_the_line(self):
@@ -264,16 +255,9 @@ class TooDeep(ShaderCase):
                     error,
                 )
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "-q"],
-            cwd=self.folder,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=SECONDS,
-        )
-        self.assertEqual(json.loads(done.stdout)["raysTooDeep"], 64)
-        self.assertIn("64 rays in 64 samples exceeded the depth limit 3", done.stderr)
+        out, error = self.run_package("x.rtslpkg", "--target=host", "-o", "b.exr", "--json", "-q")
+        self.assertEqual(json.loads(out)["raysTooDeep"], 64)
+        self.assertIn("64 rays in 64 samples exceeded the depth limit 3", error)
 
     def test_glass_at_its_default_depth(self):
         self.glass_scene()

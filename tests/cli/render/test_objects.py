@@ -76,11 +76,7 @@ class Objects(Case):
         self.scene()
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
         self.run_rtslc("render", "scene.json", "-o", "0.exr", "--target=host-megakernel")
-        subprocess.run(
-            [os.environ["RTSL_RUN"], "x.rtslpkg", "-o", "1.exr", "--target=host"],
-            cwd=self.folder,
-            check=True,
-        )
+        self.run_package("x.rtslpkg", "-o", "1.exr", "--target=host")
         self.assert_same_bits("0.exr", "1.exr")
 
     def test_what_is_always_empty_is_left_out(self):

@@ -3,15 +3,28 @@ authors."""
 
 import json
 import math
-import os
 import pathlib
-import subprocess
 import unittest
 
-from harness import RTSLC, SECONDS
+from harness import RTSLC
 from path_case import BALL, FLOOR, SHADERS, WAYS, PathCase
 
-RTSL_RUN = os.environ["RTSL_RUN"]
+
+CLAY = {"class": "Lambert", "reflectance": 0.5}
+LEANING = (  # normals that are not those of the surface
+    {
+        "class": "NormalMap",
+        "material": CLAY,
+        "slopeU": {"class": "Solid", "value": 0.6},
+        "slopeV": {"class": "Solid", "value": -0.3},
+    },
+    {
+        "class": "BumpMap",
+        "material": CLAY,
+        "height": {"class": "Noise", "scale": 0.7},
+        "scale": 0.3,
+    },
+)
 
 
 class ClosedForms(PathCase):
@@ -241,69 +254,36 @@ class ClosedForms(PathCase):
         )
         self.assert_gray(10.0, 0.01)
 
-    def test_other_normals_as_in_the_classic_engine(self):
-        """What lights send from a surface whose normal a texture leans, and through a cutout."""
+    def means_of_floor(self, material):
+        """The mean colors of a lit floor by the engines `path` and `classic`."""
         lights = [
             {"class": "PointLight", "position": [2, 3, 1], "intensity": 9},
             {"class": "DistantLight", "direction": [-1, 1, 0.5]},
         ]
-        clay = {"class": "Lambert", "reflectance": 0.5}
+        self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("std.textures")
+        self.write("scene.json", json.dumps(scene))
+        return [self.mean(), self.mean("--set", "render.engine=classic")]
+
+    def test_other_normals_as_in_the_classic_engine(self):
+        """What lights send from a surface whose normal a texture leans, and through a cutout."""
         for material in (
-            {
-                "class": "NormalMap",
-                "material": clay,
-                "slopeU": {"class": "Solid", "value": 0.6},
-                "slopeV": {"class": "Solid", "value": -0.3},
-            },
-            {
-                "class": "BumpMap",
-                "material": clay,
-                "height": {"class": "Noise", "scale": 0.7},
-                "scale": 0.3,
-            },
+            *LEANING,
             {"class": "OrenNayar", "reflectance": 0.5, "sigma": 0.5},
             {"class": "Ward"},
         ):
             with self.subTest(material=material):
-                self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
-                scene = json.loads((self.folder / "scene.json").read_text())
-                scene["import"].append("std.textures")
-                self.write("scene.json", json.dumps(scene))
-                path, classic = self.mean(), self.mean("--set", "render.engine=classic")
+                path, classic = self.means_of_floor(material)
                 for one, other in zip(path, classic):
                     self.assertAlmostEqual(one, other, delta=2e-4 * other)
 
     def test_a_normal_of_its_own_stays_in_other_materials(self):
         """Materials made of one with a leaning normal look as it does, alone or as a part; half of
         it is half of the way."""
-        lights = [
-            {"class": "PointLight", "position": [2, 3, 1], "intensity": 9},
-            {"class": "DistantLight", "direction": [-1, 1, 0.5]},
-        ]
-        clay = {"class": "Lambert", "reflectance": 0.5}
-
-        def means(material):
-            self.scene([(FLOOR, material)], camera="Under", depth=1, lights=lights, spp=64)
-            scene = json.loads((self.folder / "scene.json").read_text())
-            scene["import"].append("std.textures")
-            self.write("scene.json", json.dumps(scene))
-            return [self.mean(), self.mean("--set", "render.engine=classic")]
-
-        flat = means(clay)
-        for leaning in (
-            {
-                "class": "NormalMap",
-                "material": clay,
-                "slopeU": {"class": "Solid", "value": 0.6},
-                "slopeV": {"class": "Solid", "value": -0.3},
-            },
-            {
-                "class": "BumpMap",
-                "material": clay,
-                "height": {"class": "Noise", "scale": 0.7},
-                "scale": 0.3,
-            },
-        ):
+        means = self.means_of_floor
+        flat = means(CLAY)
+        for leaning in LEANING:
             alone = means(leaning)
             if leaning["class"] == "NormalMap":  # all of it to one side
                 self.assertGreater(abs(alone[0][0] - flat[0][0]), 0.01 * flat[0][0])
@@ -312,7 +292,7 @@ class ClosedForms(PathCase):
                 ({"class": "TwoSided", "front": leaning, "back": leaning}, alone),
                 ({"class": "Cutout", "material": leaning}, alone),
                 ({"class": "NormalMap", "material": leaning}, alone),
-                ({"class": "MixMaterial", "amount": 0, "first": leaning, "second": clay}, alone),
+                ({"class": "MixMaterial", "amount": 0, "first": leaning, "second": CLAY}, alone),
                 (
                     {"class": "MixMaterial", "amount": 0.3, "first": leaning, "second": leaning},
                     alone,
@@ -320,7 +300,7 @@ class ClosedForms(PathCase):
                 (
                     {
                         "class": "MixMaterial",
-                        "first": clay,
+                        "first": CLAY,
                         "second": {"class": "Cutout", "material": leaning},
                     },
                     half,
@@ -375,15 +355,7 @@ class Paths(PathCase):
         )
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"],
-            cwd=self.folder,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            timeout=SECONDS,
-        )
-        self.assertEqual(done.returncode, 0, done.stdout)
+        self.run_package("x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr")
 
     def test_members_of_the_engine(self):
         self.scene(

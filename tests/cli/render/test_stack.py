@@ -2,14 +2,11 @@
 there, or refused with its size."""
 
 import json
-import os
 import resource
-import subprocess
 import unittest
 
-from harness import DIAGNOSED, EXAMPLES, SECONDS, Case
+from harness import DIAGNOSED, Case
 
-RTSL_RUN = os.environ["RTSL_RUN"]
 MIB = 1 << 20
 
 SHADERS = """
@@ -127,14 +124,7 @@ class Stack(Case):
         self.scene(8, shade=FLOATS, eye=12 * FLOATS, intersect=12 * FLOATS)
         self.render("a.exr", "--target=host-megakernel")
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", "-Wno-all")
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr"],
-            cwd=self.folder,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=SECONDS,
-        )
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.run_package("x.rtslpkg", "--target=host", "-o", "b.exr", "--compare", "a.exr")
 
     def test_a_small_limit_of_the_shell_does_not_matter(self):
         def little_stack():

@@ -2,35 +2,21 @@
 is said."""
 
 import json
-import os
-import subprocess
 import unittest
 
-from harness import EXAMPLES, FINE, SECONDS, Case
+from harness import EXAMPLES, Case
 
-RTSL_RUN = os.environ["RTSL_RUN"]
 SMALL = ("--size", "32x18", "--spp", "2")
 
 
 class Trees(Case):
     level = "-O0"
 
-    def run_package(self, *arguments):
-        environment = {**os.environ, "LD_LIBRARY_PATH": os.environ["FAKE_CUDA_FOLDER"]}
-        done = subprocess.run(
-            [RTSL_RUN, "x.rtslpkg", "-o", "out.exr", *SMALL, *arguments],
-            cwd=self.folder,
-            timeout=SECONDS,
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        self.assertEqual(done.returncode, FINE, done.stderr[:4000])
-        return done.stdout, done.stderr
+    def render(self, *arguments):
+        return self.run_package("x.rtslpkg", "-o", "out.exr", *SMALL, *arguments)
 
     def tree_of(self, *arguments):
-        out = self.run_package("--json", *arguments)[0]
+        out = self.render("--json", *arguments)[0]
         return json.loads(out).get("tree")
 
     def bumpy_scene(self):
@@ -57,9 +43,9 @@ class Trees(Case):
         for scene in sorted(EXAMPLES.glob("*/scene.json")):
             with self.subTest(scene=scene):
                 self.run_rtslc("pack", str(scene), "-o", "x.rtslpkg", "-q", "-O0")
-                self.run_package("--target=host", "--tree=good")
+                self.render("--target=host", "--tree=good")
                 (self.folder / "out.exr").rename(self.folder / "good.exr")
-                self.run_package("--target=host", "--tree=fast", "--compare", "good.exr")
+                self.render("--target=host", "--tree=fast", "--compare", "good.exr")
 
     def test_packages_without_trees_get_them(self):
         self.bumpy_scene()
