@@ -179,6 +179,7 @@ LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &
   LlvmCode code = translate(functions, machine);
   const std::vector<std::string> own = codegen::visibleFunctions(*code.module);
   defineFacts(code, program);
+  codegen::defineConstant(*code.module, "rtsl_features", program.slots.features);
   linkDeviceCode(code, bitcodes, own);
   missing = codegen::shareLargeFunctions(*code.module);
   return code;

@@ -93,6 +93,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   }
   program.meshAttributes = linking::describeMeshAttributes(context);
   program.engine = request.engine;
+  program.slots.features = request.features;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
   program.needs =

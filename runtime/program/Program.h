@@ -156,7 +156,7 @@ struct Program {
                    generateFirst = 0;
     } states;
 
-    std::uint32_t features = 0; // for shaders in C++: the result of rtsl_features, RTSL_FEATURE_*
+    std::uint32_t features = 0; // the result of rtsl_features, RTSL_FEATURE_*
   } slots;
 
   /// The program's rtsl_emitted_power; null if it does not choose points on surfaces that shine.

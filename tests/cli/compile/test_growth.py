@@ -42,14 +42,14 @@ def classes(count):
     )
 
 
-def large_classes(count):
-    """So many that their code is compiled in parts."""
+def large_classes(count, line=""):
+    """So many that their code is compiled in parts. Each runs `line`, which may change `x`."""
     lines = "".join(
         f"    x = x * 0.{k % 9 + 1}5 + rt_HitPoint.{'xyz'[k % 3]};\n" for k in range(80)
     )
     return "".join(
         f"class M{i} : rt_Material {{\n  public float gloss = {i}.5;\n  void shade() {{\n"
-        f"    float x = gloss;\n{lines}"
+        f"    float x = gloss;\n{lines}{line}"
         f"    rt_SampleColor = color(abs(x) * 0.1);\n    if (rt_HitPoint.x > 0.0{i % 9})\n"
         "      rt_SampleColor += 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, "
         f"rt_ShadingNormal));\n  }}\n}};\n"
@@ -165,6 +165,24 @@ class Growth(Case):
                 (self.folder / f"again{number}.exr").read_bytes(),
                 (self.folder / "0.exr").read_bytes(),
             )
+
+    def test_features_reach_all_parts(self):
+        """Random numbers that depend on the sampler, and exceptions."""
+        line = (
+            "    float two[2];\n    two[1] = rand();\n"
+            "    x += two[int(3.0 * abs(rt_HitPoint.x))];\n"
+        )
+        self.write("large.rtsl", large_classes(160, line))
+        self.write_scene([f"M{i}" for i in range(160)])
+        pictures, counts = [], []
+        for way in WAYS:
+            render = ("render", "scene.json", "-o", "a.exr", "-q", *SMALL, *way)
+            out, _ = self.run_rtslc(*render, "--sampler=sobol", "--exceptions", "--json")
+            counts.append(json.loads(out)["exceptions"]["index"])
+            pictures.append((self.folder / "a.exr").read_bytes())
+        self.assertGreater(counts[0], 0)
+        self.assertEqual(counts, 3 * counts[:1])
+        self.assertEqual(pictures, 3 * pictures[:1])
 
 
 if __name__ == "__main__":
