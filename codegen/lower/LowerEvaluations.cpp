@@ -249,15 +249,19 @@ void FunctionLowering::addIndexedPlaces(const typed::Expr &expr, Evaluation &eva
   if (auto *assign = dynCast<typed::AssignExpr>(&expr))
     forEachExpr(*assign->value,
                 [&](const typed::Expr &inner) { comeFirst |= typed::raysOf(inner).any(); });
-  for (const typed::Expr *at : places)
-    for (; at; at = outerPlace(*at)) {
+  for (const typed::Expr *place : places) {
+    std::vector<const typed::IndexExpr *> elements; // the last index first
+    for (const typed::Expr *at = place; at; at = outerPlace(*at)) {
       evaluation.path.insert(at);
-      if (!comeFirst || isInOutputBuffer(*at) || !mayRaise(*at))
-        continue;
-      const auto &element = cast<typed::IndexExpr>(*at);
-      evaluation.leaves.push_back(element.index.get());
-      evaluation.operands.push_back(checkedIndex(element));
+      auto *index = dynCast<typed::IndexExpr>(at);
+      if (comeFirst && index && (mayRaise(*index) || index->type->is(TypeKind::Buffer)))
+        elements.push_back(index);
     }
+    for (auto element = elements.rbegin(); element != elements.rend(); ++element) {
+      evaluation.leaves.push_back((*element)->index.get());
+      evaluation.operands.push_back(checkedIndex(**element));
+    }
+  }
 }
 
 Value FunctionLowering::checkedIndex(const typed::IndexExpr &expr) {

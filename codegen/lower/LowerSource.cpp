@@ -24,7 +24,7 @@ static bool hasNoOutputs(const typed::Function &function) {
 /// Does the operation itself end the sample where an index is out of range?
 bool FunctionLowering::mayRaise(const typed::Expr &expr) const {
   auto *index = dynCast<typed::IndexExpr>(&expr);
-  return index && module.options.raisesExceptions && index->index->kind != ExprKind::Literal;
+  return index && module.options.raisesExceptions && typed::mayBeOutOfRange(*index);
 }
 
 /// May the operation itself, regardless of its operands, be kept in a whole expression?

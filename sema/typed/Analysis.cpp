@@ -127,6 +127,12 @@ BufferAccess bufferAccess(const IndexExpr &expr) {
   return access;
 }
 
+bool mayBeOutOfRange(const IndexExpr &expr) {
+  if (expr.base->type->is(TypeKind::Buffer))
+    return !expr.type->is(TypeKind::Buffer);
+  return expr.index->kind != ExprKind::Literal;
+}
+
 bool isPlace(const Expr &expr) {
   switch (expr.kind) {
   case ExprKind::Variable:

@@ -40,6 +40,10 @@ struct BufferAccess {
 };
 BufferAccess bufferAccess(const IndexExpr &expr);
 
+/// May the index be out of range? A constant one of an array, vector or matrix is not: the checker
+/// has reported it. A row of a buffer alone is no access.
+bool mayBeOutOfRange(const IndexExpr &expr);
+
 /// The rays that evaluating this expression may send, not counting its operands: it is a built-in
 /// function that sends rays, or a call. For a call that is dispatched: by any class of the module.
 SentRays raysOf(const Expr &expr);

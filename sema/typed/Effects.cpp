@@ -259,7 +259,7 @@ void EffectsOf::collect(const Expr &expr, Effects &effects) {
     break;
   case ExprKind::Index:
     effects.usesRay |= isInOutputBuffer(expr);
-    if (raises && cast<IndexExpr>(expr).index->kind != ExprKind::Literal)
+    if (raises && mayBeOutOfRange(cast<IndexExpr>(expr)))
       effects.usesRay = effects.raises = true;
     break;
   case ExprKind::IncDec:

@@ -63,7 +63,8 @@ bool Generator::mayCall(const Function &function) const {
   return function.traces * context.weight <= context.traces &&
          work + function.work * context.weight <= workLimit &&
          isIn(function.reads, context.reads) && (context.rand || !function.draws) &&
-         (context.lookup || !function.looksUp) && (context.answers || !function.answers);
+         (context.lookup || !function.looksUp) && (context.answers || !function.answers) &&
+         (context.raises || !function.raises);
 }
 
 void Generator::account(const Function &function) {

@@ -75,6 +75,7 @@ Context Generator::contextOf(const Function &function, const ClassPlan &plan) co
   rules.rand = function.draws;
   rules.lookup = function.looksUp;
   rules.answers = function.answers;
+  rules.raises = function.raises;
   return rules;
 }
 
@@ -185,6 +186,7 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
   made.answers = answers;
   made.draws = plan.root != "rt_Primitive" || chance(50);
   made.looksUp = plan.root != "rt_Primitive" && plan.root != "rt_Camera";
+  made.raises = program.raises && plan.root != "rt_Primitive" && chance(60);
   made.signature.result = chance(12) ? types.voidType : anyType();
   if (traces != 0 && chance(70))
     made.signature.result = types.color;
@@ -259,6 +261,9 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   context.lookup = model.abilities.has(Ability::Lookup);
   context.rand = model.abilities.has(Ability::Random);
   context.answers = model.abilities.has(Ability::AnyHit);
+  // Which primitives and selectors a ray tests is not defined, nor how often.
+  context.raises = program.raises && plan.root != "rt_Primitive" && plan.root != "rt_Selector" &&
+                   (plan.root != "rt_Camera" || chance(30));
   references = plan.references;
   work = 0;
   workLimit = large ? 400 : 60;
@@ -266,6 +271,7 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   std::vector<Variable> state = stateOf(model.reads, model.writes);
   append(state, more);
   append(scope, state);
+  append(scope, plan.outputs);
   scope.push_back({"h", types.uintType, false});
   const std::size_t first = scope.size();
 

@@ -201,6 +201,53 @@ void Generator::makeSelector(const Targets &targets) {
   program.selector = plan->name;
 }
 
+/// What a sample is that an exception has ended.
+void Generator::makeException(const Targets &targets) {
+  Node *members = nullptr;
+  ClassPlan *plan = startClass("Exception", "rt_Exception", nullptr, members);
+  addMembers(*plan, *members, some(below(3)));
+  addReferences(*plan, *members, someOf(targets));
+  addMethod(*plan, *members, "exception", {},
+            "h = hash_int(h, rt_ExceptionCode); " + std::string(toColor), 1 + below(2), Context());
+  program.exception = plan->name;
+}
+
+/// What sends the first rays, and writes elements of output buffers between them.
+void Generator::makeRayGeneration(const Targets &targets) {
+  Node *members = nullptr;
+  ClassPlan *plan = startClass("RayGeneration", "rt_RayGeneration", nullptr, members);
+  addMembers(*plan, *members, some(below(3)));
+  addReferences(*plan, *members, someOf(targets));
+  for (unsigned n = 1 + below(3); n-- > 0;) {
+    const std::string name = fresh("b");
+    const unsigned rank = 1 + below(3);
+    const Type *element = plan->outputs.empty() || chance(30) ? types.color : smallType();
+    std::string text = "public inout " + toString(element) + " " + name;
+    for (unsigned i = 0; i != rank; ++i)
+      text += "[]";
+    members->children.push_back(makeNode(Role::Fixed, text + ";"));
+    plan->outputs.push_back({name, types.buffer(element, rank), true});
+  }
+  Context rules;
+  rules.print = true;
+  rules.traces = program.traces ? 4 : 0;
+  addMethod(*plan, *members, "generate", {}, toColor, 4 + below(6), rules);
+  // First the camera's ray, which nearly always meets something, for an element that some pixels
+  // have and others have not.
+  const Variable &first = plan->outputs.front();
+  if (program.traces && first.type->element == types.color) {
+    std::string element = first.name;
+    for (unsigned i = 0; i != first.type->count; ++i)
+      element += program.inRange ? "[rt_LaunchIndex.x % uint(" + element + ".length())]"
+                                 : "[int(rt_LaunchIndex.x) - " + std::to_string(below(3)) + "]";
+    Node &body = *members->children.back()->children[0];
+    body.children.insert(
+        body.children.begin() + 1,
+        makeNode(Role::Statement, element + " = trace(rt_RayOrigin, rt_RayDirection);"));
+  }
+  program.rayGeneration = plan->name;
+}
+
 const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &targets) {
   Node *members = nullptr;
   ClassPlan *plan = startClass("Material", "rt_Material", base, members);
@@ -320,6 +367,10 @@ void Generator::makeClasses() {
     makeMiss(all);
   if (likely(50))
     makeSelector(helpers);
+  if (program.raises && chance(70))
+    makeException(helpers);
+  if (generates(program.seed))
+    makeRayGeneration(textures);
 }
 
 } // namespace rtsl::random

@@ -85,6 +85,7 @@ void Generator::makeFreeFunction() {
   context = Context();
   context.reads = made.reads = someReads("");
   context.rand = made.draws = chance(30);
+  context.raises = made.raises = program.raises && chance(60);
   references.clear();
   std::vector<Variable> around = constants;
   for (const Variable &variable : stateOf(made.reads, {}))

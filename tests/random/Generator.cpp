@@ -8,6 +8,7 @@ Generator::Generator(std::uint32_t seed)
   program.seed = seed;
   program.prefix = "p" + std::to_string(seed) + "_";
   program.tree = makeList();
+  program.raises = raises(seed);
   program.inRange = isInRange(seed);
   program.traces = hasTraces(seed);
   program.colorComponents = colorComponents(seed);
@@ -26,11 +27,17 @@ Program Generator::run() {
   return std::move(program);
 }
 
+bool raises(std::uint32_t seed) {
+  return seed / 50 % 3 == 1;
+}
 bool isInRange(std::uint32_t seed) {
-  return seed % 5 != 4;
+  return raises(seed) ? seed % 4 == 0 : seed % 5 != 4;
 }
 bool hasTraces(std::uint32_t seed) {
-  return seed % 5 < 3 || seed % 10 == 4;
+  return raises(seed) ? seed % 5 != 3 || generates(seed) : seed % 5 < 3 || seed % 10 == 4;
+}
+bool generates(std::uint32_t seed) {
+  return raises(seed) && seed % 4 > 1;
 }
 unsigned colorComponents(std::uint32_t seed) {
   static const unsigned counts[] = {3, 1, 4, 16};

@@ -40,6 +40,7 @@ struct Function {
   StateSet reads;                      // at most this state
   bool draws = false, looksUp = false; // perhaps: random numbers, textures
   bool answers = false;                // may end `anyHit`
+  bool raises = false;                 // may have an index out of range, which is an exception
 };
 
 /// A value of class type: `refs[$]` where an index belongs.
@@ -55,6 +56,7 @@ struct ClassPlan {
   const ClassPlan *base = nullptr;
   std::vector<Variable> members; // inherited ones first
   std::vector<Variable> scratch;
+  std::vector<Variable> outputs; // output buffers
   std::vector<Reference> references;
   std::vector<Function> functions; // that methods of it may call
   // that it has, inherited ones too: the name, and the payload's type after it
@@ -67,6 +69,7 @@ struct Context {
   StateSet reads; // what has a value
   bool rand = false, lookup = false, illuminance = false, print = false;
   bool answers = false;             // ignoreIntersection() and terminateRay() may stand here
+  bool raises = false;              // an index out of range may stand here, as an exception
   unsigned traces = 0;              // rays that may still be sent
   const ClassPlan *self = nullptr;  // null: a free function
   const Type *result = nullptr;     // of `return`; null: void
@@ -209,6 +212,8 @@ private:
   const ClassPlan *makeLight(const Targets &targets);
   void makeMiss(const Targets &targets);
   void makeSelector(const Targets &targets);
+  void makeException(const Targets &targets);
+  void makeRayGeneration(const Targets &targets);
   Targets someOf(const Targets &targets);
   const ClassPlan *makeMaterial(const ClassPlan *base, const Targets &targets);
   void addBsdf(ClassPlan &plan, Node &members);

@@ -104,10 +104,10 @@ const std::vector<Path> &allPaths() {
 }
 
 /// The paths on which programs of this kind are run, the first one first.
-std::vector<const Path *> choosePaths(const PathOptions &options, bool inRange, bool traces) {
+std::vector<const Path *> choosePaths(const PathOptions &options, bool needsChecks, bool traces) {
   std::vector<const Path *> possible;
   for (const Path &path : allPaths())
-    if ((inRange || path.checked) && (traces || !path.forTracing))
+    if ((!needsChecks || path.checked) && (traces || !path.forTracing))
       possible.push_back(&path);
   const Path *farthest = *std::find_if(possible.rbegin(), possible.rend(),
                                        [](const Path *path) { return !path->isAsked; });
@@ -138,6 +138,8 @@ struct Checked {
         if ((primitive.empty() || module->findClass(primitive)) && module->findClass(material))
           request.surfaces.emplace_back(primitive, material);
     request.isSampled = true;
+    if (module->findClass(programs.front()->rayGeneration))
+      request.engine = runtime::Engine::Programs;
   }
   /// The errors, without the warnings, of which there may be many.
   std::string errors() const {
@@ -240,7 +242,8 @@ Comparison::Code Comparison::compile(const Path &path, Checked &checked,
                                      const PathOptions &how) const {
   if (checked.diagnostics.hasErrors())
     return nullptr;
-  checked.request.features = RTSL_FEATURE_PRINT | undefinedOn(path);
+  checked.request.features = RTSL_FEATURE_PRINT | undefinedOn(path) |
+                             (programs.front()->raises ? RTSL_FEATURE_EXCEPTIONS : 0u);
   return path.compile(*checked.module, checked.request, programs.front()->colorComponents, how,
                       checked.diagnostics);
 }
@@ -314,12 +317,12 @@ void Comparison::runReference(const std::vector<const Path *> &paths, const Numb
 std::vector<Finding> Comparison::run() {
   Numbers all(programs.size());
   std::iota(all.begin(), all.end(), std::size_t(0));
-  const std::vector<const Path *> paths =
-      choosePaths(options,
-                  std::all_of(programs.begin(), programs.end(),
-                              [](const Program *program) { return program->inRange; }),
-                  std::any_of(programs.begin(), programs.end(),
-                              [](const Program *program) { return program->traces; }));
+  const std::vector<const Path *> paths = choosePaths(
+      options,
+      std::any_of(programs.begin(), programs.end(),
+                  [](const Program *program) { return program->raises || !program->inRange; }),
+      std::any_of(programs.begin(), programs.end(),
+                  [](const Program *program) { return program->traces; }));
   try {
     runReference(paths, all);
     for (std::size_t i = 1; i != paths.size() && samples.size() == all.size(); ++i)
@@ -341,7 +344,7 @@ std::vector<std::string> pathNames() {
 
 std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options) {
   std::vector<std::string> names;
-  for (const Path *path : choosePaths(options, isInRange(seed), hasTraces(seed)))
+  for (const Path *path : choosePaths(options, raises(seed) || !isInRange(seed), hasTraces(seed)))
     names.emplace_back(path->name);
   return names;
 }

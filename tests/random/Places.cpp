@@ -32,8 +32,9 @@ bool Generator::canReach(const Type *from, const Type *wanted, unsigned steps, b
   }
 }
 
-/// An index below `count` (an expression: "4", or "b.length()"); where the program is not in range,
-/// any. Indices inside of indices are plain: they would grow without end.
+/// An index below `count` (an expression: "4", or "b.length()"), or any index if the program is not
+/// in range and an exception would show nothing that is undefined, such as which primitives a ray
+/// tests. Indices inside of indices are plain: they would grow without end.
 NodePtr Generator::index(const std::string &count) {
   const bool isNumber = count.find('(') == std::string::npos;
   if (!isNumber && (indexDepth != 0 || context.constantOnly)) // no buffer is without an element
@@ -48,7 +49,7 @@ NodePtr Generator::index(const std::string &count) {
   const Deeper deeper(indexDepth);
   if (isNumber && (context.constantOnly || chance(40)))
     return makeNode(Role::Fixed, std::to_string(below(static_cast<unsigned>(std::stoul(count)))));
-  if (!program.inRange && chance(50)) {
+  if (!program.inRange && (context.raises || !program.raises) && chance(50)) {
     // Not constant, or it would be an error.
     std::vector<const Variable *> variables;
     for (const Variable &variable : scope)

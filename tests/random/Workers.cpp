@@ -8,6 +8,7 @@
 #include <deque>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include <csignal>
@@ -115,14 +116,16 @@ std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
   return compare(pointers, options);
 }
 
-/// Programs of a kind share a compilation: those that run on the same paths, with the same colors.
+/// Programs of a kind share a compilation: those that run on the same paths, with the same colors
+/// and features.
 std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
                                                    const RunOptions &options) {
   std::deque<std::vector<std::uint32_t>> batches;
-  std::map<std::pair<std::vector<std::string>, unsigned>, std::vector<std::uint32_t>> kinds;
+  using Kind = std::tuple<std::vector<std::string>, unsigned, bool, bool>;
+  std::map<Kind, std::vector<std::uint32_t>> kinds;
   for (std::uint32_t seed = first; seed != first + count; ++seed) {
     std::vector<std::uint32_t> &batch =
-        kinds[{pathsOf(seed, options.paths), colorComponents(seed)}];
+        kinds[{pathsOf(seed, options.paths), colorComponents(seed), raises(seed), generates(seed)}];
     batch.push_back(seed);
     if (batch.size() == options.batch)
       batches.push_back(std::exchange(batch, {}));

@@ -159,10 +159,12 @@ void World::fill(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
     RtslBuffer buffer{};
     std::size_t count = 1;
     for (unsigned i = 0; i != type.bufferRank; ++i) {
-      buffer.size[i] = (key >> 4 * i) % 3 + (program.inRange ? 1 : 0);
+      buffer.size[i] = (key >> 4 * i) % 3 + (program.inRange || !mayBeEmpty ? 1 : 0);
       count *= buffer.size[i];
     }
     buffers.emplace_back(count * type.elementSize / 4 + 1);
+    if (type.isOutput)
+      outputs.push_back(&buffers.back());
     auto *elements = reinterpret_cast<std::uint8_t *>(buffers.back().data());
     for (std::size_t i = 0; i != count; ++i)
       fillElement(type, elements + i * type.elementSize, mix(key, static_cast<std::uint32_t>(i)));
@@ -209,6 +211,8 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
     used += (info->recordSize + 15) / 16 * 4;
     auto *record = reinterpret_cast<std::uint8_t *>(records.data()) + reference;
     std::memcpy(record, &info->id, 4);
+    // An index of an empty buffer is always out of range, which primitives are not to show.
+    mayBeEmpty = !program.raises || info->root == "rt_RayGeneration";
     RtslState state{};
     state.launch = &launch;
     if (info->initialize)
@@ -252,7 +256,8 @@ World::World(const runtime::Program &code, const Program &program)
     : code(code), program(program), host{code.slots}, transforms(someTransforms()), treeItems(1),
       mesh(someMesh()) {
   std::size_t words = used;
-  std::vector<std::string> all = {program.camera, program.miss, program.selector};
+  std::vector<std::string> all = {program.camera, program.miss, program.selector, program.exception,
+                                  program.rayGeneration};
   for (const auto *names : {&program.helpers, &program.textures, &program.lights,
                             &program.primitives, &program.materials})
     all.insert(all.end(), names->begin(), names->end());
@@ -262,7 +267,7 @@ World::World(const runtime::Program &code, const Program &program)
   records.resize(words);
   launch.records = reinterpret_cast<std::uint8_t *>(records.data());
 
-  std::vector<RtslRef> cameras, misses, selectors;
+  std::vector<RtslRef> cameras, misses, selectors, exceptions, rayGenerations;
   addObjects(program.helpers, &others);
   addObjects(program.textures, &others);
   addObjects(program.lights, &lights);
@@ -271,6 +276,9 @@ World::World(const runtime::Program &code, const Program &program)
   addObjects({program.camera}, &cameras);
   addObjects({program.miss}, &misses);
   addObjects({program.selector}, &selectors);
+  addObjects({program.exception}, &exceptions);
+  addObjects({program.rayGeneration}, &rayGenerations);
+  filledBuffers = buffers;
   if (!selectors.empty())
     addSelections(selectors[0]);
 
@@ -300,6 +308,8 @@ World::World(const runtime::Program &code, const Program &program)
   launch.lightCount = static_cast<std::uint32_t>(lights.size());
   launch.camera = cameras.empty() ? 0 : cameras[0];
   launch.background = misses.empty() ? 0 : misses[0];
+  launch.exception = exceptions.empty() ? 0 : exceptions[0];
+  launch.rayGeneration = rayGenerations.empty() ? 0 : rayGenerations[0];
   for (unsigned i = 0; i != RTSL_MAX_COLOR; ++i) {
     launch.backgroundColor[i] = 0.25f * static_cast<float>(i + 1);
     launch.ambient[i] = 0.125f * static_cast<float>(i + 3);
@@ -369,9 +379,11 @@ bool World::hitSomething() const {
 // Running
 //===----------------------------------------------------------------------===//
 
-/// Nothing was printed yet, no ray has hit anything.
-static void begin(const runtime::Program &code) {
+/// Nothing was printed yet, no ray has hit anything, and nothing is written.
+void World::begin() {
   printed = raysThatHit = 0;
+  for (std::size_t i = 0; i != buffers.size(); ++i) // the addresses of their elements stay
+    std::copy(filledBuffers[i].begin(), filledBuffers[i].end(), buffers[i].begin());
   formats.clear();
   for (const runtime::PrintFormat &format : code.prints)
     formats.push_back(hashOf(format));
@@ -400,6 +412,13 @@ static RtslState someState(const RtslLaunch &launch, RtslEvents &events, std::ui
   return state;
 }
 
+/// What has been counted since `status` was cleared.
+void World::noteExceptions(std::vector<std::uint32_t> &words) {
+  if (program.raises)
+    for (const auto count : status.exceptions)
+      words.push_back(static_cast<std::uint32_t>(count));
+}
+
 void World::sampleObjects(std::vector<std::uint32_t> &words) {
   using Method = void (*)(RtslState *, RtslRef);
   const auto &slots = code.slots;
@@ -420,6 +439,7 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
       note(vector, 3);
     note(&state.PDF, 1);
     words.push_back(printed);
+    words.push_back(events.exception);
   };
   for (std::uint32_t number = 0; number != 2; ++number) {
     for (RtslRef material : materials)
@@ -434,13 +454,18 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
       for (Method method : {slots.rt_Miss_sampleDirection, slots.rt_Miss_directionPDF})
         call(method, launch.background, number);
   }
+  for (const std::vector<std::uint32_t> *buffer : outputs)
+    for (std::uint32_t word : *buffer) // not known to be a float: what would be a NaN is one
+      words.push_back((word & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : word);
 }
 
 std::vector<std::uint32_t> World::run() {
-  begin(code);
+  begin();
   std::vector<std::uint32_t> words;
+  launch.status = &status;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
+    status = {};
     for (std::uint32_t pixel = 0; pixel != 6; ++pixel) {
       float color[RTSL_MAX_COLOR] = {};
       code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
@@ -449,14 +474,14 @@ std::vector<std::uint32_t> World::run() {
         words.push_back(wordOf(color[i]));
       words.push_back(printed);
     }
+    noteExceptions(words);
   }
+  launch.status = nullptr;
   sampleObjects(words);
   return words;
 }
 
 void World::renderByLane(std::vector<float> &pixels) {
-  RtslStatus status{};
-  launch.status = &status;
   RtslJob job{};
   job.launch = &launch;
   job.status = &status;
@@ -472,7 +497,6 @@ void World::renderByLane(std::vector<float> &pixels) {
   code.megakernel.runLane(&job, 0);
   device::addSamples(job, 0, 1);
   checkGuard();
-  launch.status = nullptr;
 }
 
 void World::renderBySample(std::vector<float> &pixels) {
@@ -493,10 +517,12 @@ void World::renderBySample(std::vector<float> &pixels) {
 }
 
 std::vector<std::uint32_t> World::render() {
-  begin(code);
+  begin();
   std::vector<std::uint32_t> words;
+  launch.status = &status;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
+    status = {};
     std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height *
                               code.colorComponents);
     if (code.megakernel.runLane)
@@ -506,7 +532,9 @@ std::vector<std::uint32_t> World::render() {
     for (float component : pixels)
       words.push_back(wordOf(component));
     words.push_back(printed);
+    noteExceptions(words);
   }
+  launch.status = nullptr;
   sampleObjects(words);
   return words;
 }

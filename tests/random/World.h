@@ -37,8 +37,8 @@ public:
   runtime::SceneFacts facts() const;
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
-  /// are one), and what was printed until then. After them what methods leave that only the host
-  /// calls.
+  /// are one), and what was printed until then; the exceptions, by their codes. After them what
+  /// methods leave that only the host calls, and the elements of output buffers.
   std::vector<std::uint32_t> run();
   /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is
   /// not finite is black. With it, what was printed until its end. The program may be a megakernel.
@@ -66,6 +66,8 @@ private:
   RtslRef choose(const std::string &className, std::uint32_t key) const;
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
+  void begin();
+  void noteExceptions(std::vector<std::uint32_t> &words);
   void sampleObjects(std::vector<std::uint32_t> &words);
   void renderBySample(std::vector<float> &pixels);
   void renderByLane(std::vector<float> &pixels);
@@ -81,6 +83,10 @@ private:
   std::vector<std::uint32_t> records;
   std::size_t used = 4; // words
   std::deque<std::vector<std::uint32_t>> buffers;
+  std::deque<std::vector<std::uint32_t>> filledBuffers;    // as they were before a run
+  std::vector<const std::vector<std::uint32_t> *> outputs; // buffers that the program writes
+  bool mayBeEmpty = true;                                  // buffers of the object in the making
+  RtslStatus status{};
   std::vector<RtslRef> lights, primitives, materials, others;
   std::vector<RtslInstance> instances;
   std::vector<RtslTransform> transforms;

@@ -70,6 +70,7 @@ typed::Effects Lvalues::indexEffects(const typed::Expr &place) {
       at = swizzle->base.get();
     } else if (auto *index = dynCast<typed::IndexExpr>(at)) {
       effects.add(context.effects.expression(*index->index));
+      effects.raises |= raises() && typed::mayBeOutOfRange(*index);
       at = index->base.get();
     } else {
       return effects;
@@ -110,7 +111,7 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
   case ExprKind::Index: {
     const auto &index = cast<typed::IndexExpr>(expr);
     if (index.base->type->is(TypeKind::Buffer))
-      return bufferElement(index);
+      return bufferElement(index, storeIndices);
     const typed::Expr *vector = nullptr;
     if (const std::vector<std::uint8_t> parts = components(*index.base, vector); !parts.empty()) {
       // `v.zx[i]`: the component that the swizzle names.
@@ -124,7 +125,7 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
           subscript(array(type, std::move(numbers)), this->index(index, storeIndices));
       return cpp::call("rtsl::at", {of(*vector, storeIndices), number});
     }
-    // An outer index comes first.
+    // The outer index is evaluated first.
     const bool changes = printer.isNested && conflicts(context.effects.expression(*index.base),
                                                        context.effects.expression(*index.index));
     const Code base = typed::isPlace(*index.base) ? of(*index.base, storeIndices || changes)
@@ -140,18 +141,28 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
 }
 
 Code Lvalues::index(const typed::IndexExpr &expr, bool storeIndices) {
-  Code code = printer.expressions.argument(*expr.index);
-  if (storeIndices && expr.index->kind != ExprKind::Literal)
-    code = printer.hoist(expr.index->type, "index", code);
-  return checked(code, integer(expr.base->type->count));
+  const Code code = checked(printer.expressions.argument(*expr.index), countOf(expr));
+  return storeIndices && expr.index->kind != ExprKind::Literal
+             ? printer.hoist(expr.index->type, "index", code)
+             : code;
 }
 
-// Outside of functions there is no sample that could end.
+Code Lvalues::countOf(const typed::IndexExpr &expr) {
+  if (!expr.base->type->is(TypeKind::Buffer))
+    return integer(expr.base->type->count);
+  const auto [base, indices] = typed::bufferAccess(expr);
+  const bool hasOneDimension = base->type->count == 1;
+  return lengthOf(of(*base), hasOneDimension ? std::nullopt : std::optional(indices.size() - 1));
+}
+
+// Outside of functions, for example in initialisers of members, there is no sample to end.
+bool Lvalues::raises() const {
+  return printer.function && context.options.exceptions && context.options.checkIndices;
+}
+
 Code Lvalues::checked(Code index, Code count) const {
-  const bool raises =
-      printer.function && context.options.exceptions && context.options.checkIndices;
-  return raises ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)})
-                : index;
+  return raises() ? cpp::call("rtsl::checked", {name("rt"), std::move(index), std::move(count)})
+                  : index;
 }
 
 Code Lvalues::element(const typed::IndexExpr &expr, const Code &base, bool storeIndices) {
@@ -165,14 +176,17 @@ Code Lvalues::element(const typed::IndexExpr &expr, const Code &base, bool store
 }
 
 // All indices of `buffer[i][j]`.
-Code Lvalues::bufferElement(const typed::IndexExpr &expr) {
+Code Lvalues::bufferElement(const typed::IndexExpr &expr, bool storeIndices) {
   const auto [base, indices] = typed::bufferAccess(expr);
   assert(indices.size() == base->type->count && "a part of a buffer is no value");
   std::vector<Code> codes = printer.expressions.operands(indices, Binding::Assignment);
   const Code buffer = of(*base);
-  for (std::size_t i = 0; i < codes.size(); ++i)
+  for (std::size_t i = 0; i < codes.size(); ++i) {
     codes[i] =
         checked(codes[i], lengthOf(buffer, codes.size() == 1 ? std::nullopt : std::optional(i)));
+    if (storeIndices && (raises() || indices[i]->kind != ExprKind::Literal))
+      codes[i] = printer.hoist(indices[i]->type, "index", codes[i]);
+  }
   if (typed::isInOutputBuffer(expr))
     codes.insert(codes.begin(), name("rt"));
   else if (codes.size() == 1)
@@ -188,8 +202,8 @@ Code Lvalues::lengthOf(const Code &buffer, std::optional<std::size_t> dimension)
   return callMember(buffer, "length", std::move(arguments));
 }
 
-// `buffer[i].length()` is that of the second dimension; which i does not matter, but what it does
-// is done.
+// `buffer[i].length()` is the size of the second dimension. It does not depend on i, but the
+// effects of i are kept.
 Code Lvalues::length(const typed::LengthExpr &expr) {
   std::size_t dimension = 0;
   const typed::Expr *base = expr.base.get();

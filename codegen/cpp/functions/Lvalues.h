@@ -25,12 +25,17 @@ public:
   /// to a bool that lies in memory as 32 bits.
   bool canBind(const typed::Expr &lvalue) const;
 
+  /// The index of an element, with a check if exceptions are on. The last one of `buffer[i][j]`.
   Code index(const typed::IndexExpr &expr, bool storeIndices = false);
 
 private:
+  /// Does an index out of range end the sample here?
+  bool raises() const;
   /// With --exceptions: the index, which is reported to the state if it is out of range.
   Code checked(Code index, Code count) const;
-  Code bufferElement(const typed::IndexExpr &expr);
+  /// The number of elements that the index chooses from.
+  Code countOf(const typed::IndexExpr &expr);
+  Code bufferElement(const typed::IndexExpr &expr, bool storeIndices);
   Code lengthOf(const Code &buffer, std::optional<std::size_t> dimension);
 };
 

@@ -90,6 +90,18 @@ def late():
     }
 
 
+def beyond():
+    """Rays whose results go to elements out of range."""
+    return {
+        "rtsl": 1,
+        "import": [str(here / "Events.rtsl"), str(glass / "Sphere.rtsl")],
+        "rayGeneration": {"class": "Beyond", "row": {"size": [30]}, "grid": {"size": [3, 7]}},
+        "objects": [sphere([0, 0, 0], 2, {"class": "Late", "curve": [0.25, 0.75, 0.5, 1]})],
+        "exception": {"class": "Code"},
+        "render": {"engine": "programs", "size": [8, 5], "spp": 2, "depth": 3},
+    }
+
+
 def chains(length, depth, branches=True):
     """Objects that call each other, in a chain of this length (Chains.rtsl)."""
     textures = {"t0": {"class": "Filter"}, "s0": {"class": "Scale"}}
@@ -289,7 +301,11 @@ def outputs():
     return {
         "rtsl": 1,
         "import": [str(here / "Outputs.rtsl")],
-        "rayGeneration": {"class": "Probe", "histogram": {"size": [6]}, "most": {"size": [7]}},
+        "rayGeneration": {
+            "class": "Probe",
+            "histogram": {"size": [6]},
+            "most": {"size": [7]},
+        },
         "materials": {"mirror": {"class": "Mirror"}},
         "objects": [
             {"primitive": {"class": "Ball"}, "material": "mirror"},
@@ -410,8 +426,8 @@ CASES = [
     ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
-    ("g++", ["-O1"], ["--exceptions"], [events(False), events(True), late()]),
-    ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [late()]),
+    ("g++", ["-O1"], ["--exceptions"], [events(False), events(True), late(), beyond()]),
+    ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [late(), beyond()]),
     ("g++", ["-O1"], ["--unchecked"], [answers("programs")]),
     (
         "g++",
