@@ -48,7 +48,7 @@ Declarations freeFunctions(Context &context) {
 // Classes
 //===----------------------------------------------------------------------===//
 
-/// Members but for the scratch members, in the author's groups.
+/// All members except scratch members, grouped as in the source.
 Declarations Classes::members(const typed::Class &definition) {
   Declarations members;
   SourceRange previous;
@@ -63,8 +63,8 @@ Declarations Classes::members(const typed::Class &definition) {
   return members;
 }
 
-/// `using Base::method;` for methods of bases that overloads in the class would hide. States may
-/// have other context.names.
+/// `using Base::method;` for methods of bases that overloads in the class would hide. Methods that
+/// are split may have other names.
 Declarations Classes::methodsOfBases(const typed::Class &definition) const {
   Declarations named;
   std::set<std::string> shown;

@@ -64,7 +64,7 @@ struct Parts {
       hitErrors, entryPoints;
 };
 
-/// From the inside out: what functions require of the rest is complete when all are made.
+/// Functions first: only then is it known what they require of the other parts.
 static Parts makeParts(Context &context) {
   Parts parts;
   Variables variables(context);
@@ -106,7 +106,7 @@ static Declaration namespaceOf(const Context &context, Parts parts) {
   appendApart(inside, std::move(parts.constants));
   appendApart(inside, std::move(parts.functions));
   if (!context.module.classes.empty()) {
-    // Unnamed: a function that is called once is inlined then, however long it is.
+    // An unnamed namespace, so that compilers inline functions that are called only once.
     Namespace own;
     appendApart(own.members, classNumbers(context));
     if (!isNumberedFirst)

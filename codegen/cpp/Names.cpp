@@ -55,7 +55,7 @@ static const std::set<std::string> &besideTypes() {
   return words;
 }
 
-/// Without what is reserved to the implementation.
+/// The name without the spellings that C++ reserves for implementations.
 static std::string cleaned(std::string word) {
   for (std::size_t at; (at = word.find("__")) != std::string::npos;)
     word.erase(at, 1);
@@ -66,7 +66,7 @@ static std::string cleaned(std::string word) {
 
 std::string unique(std::string name, std::set<std::string> &taken,
                    const std::set<std::string> &around) {
-  for (std::size_t at; (at = name.find("__")) != std::string::npos;) // C++ keeps these for itself
+  for (std::size_t at; (at = name.find("__")) != std::string::npos;) // C++ reserves these names
     name.erase(at, 1);
   const std::string base = name;
   for (unsigned i = 2; isReserved(name) || around.count(name) || !taken.insert(name).second; ++i)
@@ -74,7 +74,7 @@ std::string unique(std::string name, std::set<std::string> &taken,
   return name;
 }
 
-/// What is avoided must not be its name; `all` are names that others have.
+/// Gives the entity a name that differs from `avoided` and from `all`, the names of others.
 void Names::give(const void *entity, const std::string &name, const std::string &shown,
                  const Avoided &avoided, const std::set<std::string> &all) {
   const auto avoids = [&avoided](const std::string &one) {
@@ -84,7 +84,7 @@ void Names::give(const void *entity, const std::string &name, const std::string 
   std::string result = cleaned(name);
   if (isReserved(result) || avoids(result) || (result != name && all.count(result))) {
     std::string base = result.back() == '_' ? result : result + "_";
-    for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // no name begins so, whatever follows
+    for (const char *prefix : {"GLM_", "RTSL_", "rtsl_"}) // reserved prefixes
       if (const std::size_t length = std::string(prefix).size();
           base.compare(0, length, prefix) == 0)
         base.erase(length - 1, 1);

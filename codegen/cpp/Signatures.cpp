@@ -37,7 +37,7 @@ bool Signatures::isByReference(const typed::Variable &parameter, const typed::Fu
   };
   if (!function.owner || function.isConstructor || isCalledByEngineAlone(function))
     return !assigns(function);
-  // What overrides a method takes what that takes.
+  // Overriding methods have the parameters of the method that they override.
   const typed::Function &top = overridden(function);
   return std::none_of(module.classes.begin(), module.classes.end(), [&](const auto &definition) {
     return definition->derivesFrom(top.owner) &&
@@ -83,7 +83,7 @@ std::string Signatures::parameterName(const typed::Function &function, std::size
   return name.empty() ? fmt::format("unnamed{}", number + 1) : name;
 }
 
-/// What the body of a function does with what it is given.
+/// Which parameters and which state the body of a function uses.
 struct Signatures::Mentions {
   std::set<const typed::Variable *> variables, read;
   bool ray = false, scratch = false;

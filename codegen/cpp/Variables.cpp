@@ -64,9 +64,9 @@ Declaration Variables::structure(const typed::Struct &structure) const {
   return declare(std::move(made), structure.comment);
 }
 
-/// Whether C++ takes the initialiser for a constant expression: numbers, constants that it takes
-/// for such, and what is not division. The header's functions are none, and no infinity may come
-/// out.
+/// Whether the initialiser is a constant expression in C++: it consists of numbers, other constant
+/// expressions and operators except division. Functions of the header are not constexpr, and the
+/// result must not be infinite.
 bool Variables::isConstexpr(const Type *type, const typed::Constant *value, const std::string &name,
                             const Code &initialiser) {
   if (!type->isScalar() || !value ||

@@ -50,7 +50,7 @@ Image Backend::render(RenderStatistics *statistics) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     said = finish();
     said.renderSeconds = seconds;
-  } catch (...) { // part of a picture is none
+  } catch (...) { // a partial picture is not returned
     picture = Image();
     throw;
   }

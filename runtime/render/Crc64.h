@@ -6,7 +6,7 @@
 
 namespace rtsl::runtime {
 
-/// CRC-64/XZ of `bytes`; `before` is that of what stands before them.
+/// CRC-64/XZ of `bytes`, which follow bytes with the CRC `before`.
 std::uint64_t crc64(std::string_view bytes, std::uint64_t before = 0);
 
 } // namespace rtsl::runtime

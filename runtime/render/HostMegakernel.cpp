@@ -29,8 +29,7 @@ HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
 }
 
 std::uint64_t HostMegakernel::laneBytes(const RtslLaunch &launch) {
-  return inLines(
-      code.laneBytes(launch.maxDepth, launch.referenceChain)); // which threads do not share
+  return inLines(code.laneBytes(launch.maxDepth, launch.referenceChain)); // each thread has its own
 }
 
 Megakernel::Address HostMegakernel::allocate(std::uint64_t bytes, const char *what) {

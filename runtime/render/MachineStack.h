@@ -1,7 +1,7 @@
 //===- MachineStack.h - memory for rays in flight -------------------------===//
 //
-// What the machine of split shaders (runtime/device/engines/Machine.h) keeps its rays in: a block a
-// thread, as large as the depth limit and the largest frame require, so it cannot overflow.
+// Memory for the rays of the machine of split shaders (runtime/device/engines/Machine.h): one block
+// per thread, as large as the depth limit and the largest frame require, so it cannot overflow.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -151,8 +151,8 @@ void Megakernel::run(Watch &watch) {
   isUneven = isUneven && leastTaken < samplesOfPixel;
 }
 
-/// Renders the slice of the job in launches that end soon, so that no driver takes them for endless
-/// and a GPU that shows a screen can do so.
+/// Renders the slice of the job in short launches: a driver may abort long ones, and a GPU that
+/// also drives a screen must be able to refresh it.
 void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share) {
   upload(jobAddress, &job, sizeof job);
   const std::uint64_t none = 0, all = openPixels * job.sampleCount;

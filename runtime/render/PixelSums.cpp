@@ -43,8 +43,8 @@ RtslPixelSums PixelSums::pointers() {
   return sums;
 }
 
-/// Of a pixel's samples. One of the two counts of a half has all that were taken: both halves take
-/// samples until both are complete.
+/// The number of samples of a pixel. Both halves take samples until both are complete, so the
+/// larger count of a half includes all that were taken.
 static std::uint32_t finiteSamples(const PixelSums &sums, std::size_t pixel) {
   if (!sums.isAdaptive())
     return sums.counted[pixel];

@@ -176,9 +176,9 @@ bool isFinite(const float *color, Count components) {
   return finite;
 }
 
-/// Sums of a pixel are taken in the order of its samples, whoever takes them. A sample that is not
-/// finite is left out of the mean, for it would take the whole pixel with it. A number of
-/// components that is a constant makes no loops of them.
+/// The sums of a pixel are taken in the order of its samples, on whichever thread. A sample that is
+/// not finite is left out, because one such sample would make the mean of the pixel not finite. The
+/// number of components is a template argument so that compilers unroll the loops over them.
 template <typename Count>
 void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker,
                                            Count components) {

@@ -49,7 +49,7 @@ void HitErrorWriter::castTo(mlir::Operation &op, const std::string &type, Statem
 // Comparisons
 //===----------------------------------------------------------------------===//
 
-/// Is one less and the other not, whichever it is?
+/// `a < b || a > b`: false if the values are equal or one is a NaN.
 static Code differ(const Code &a, const Code &b) {
   return parentheses(
       binary(Operator::Or, binary(Operator::Less, a, b), binary(Operator::Greater, a, b)));

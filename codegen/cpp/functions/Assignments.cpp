@@ -53,8 +53,8 @@ Code Assignments::assign(const typed::AssignExpr &expr, bool resultIsUsed) {
   const typed::Effects indices = printer.lvalues.indexEffects(*expr.target);
   const bool storeIndices = conflicts(indices, value) || (parts.size() > 1 && !indices.isPure());
 
-  // Indices that do something are evaluated once; the old value is kept if evaluating the new one
-  // changes it.
+  // Indices with side effects are evaluated once. The old value is saved if evaluating the new one
+  // may change it.
   Code stored, old;
   const bool changesOld =
       expr.compound && conflicts(context.effects.expression(*expr.target), value);

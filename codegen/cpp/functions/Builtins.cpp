@@ -21,7 +21,7 @@ static std::string calleeOf(Builtin builtin) {
   }
 }
 
-// The place comes first; its indices are evaluated with the values.
+// The lvalue is the first argument; its indices are evaluated together with the values.
 Code Builtins::atomic(const typed::BuiltinExpr &expr) {
   std::vector<const typed::Expr *> values;
   for (std::size_t i = 1; i < expr.args.size(); ++i)
@@ -43,7 +43,8 @@ Code Builtins::withOutputs(const typed::BuiltinExpr &expr) {
   Statements after;
   for (std::size_t i = firstOutput; i < expr.args.size(); ++i) {
     const bool isBindable = printer.lvalues.canBind(*expr.args[i]);
-    if (isBindable && after.empty()) { // later ones are written last
+    // Outputs are written in order: after one through a temporary variable, none is bound.
+    if (isBindable && after.empty()) {
       codes.push_back(
           printer.lvalues.of(*expr.args[i], !printer.lvalues.indexEffects(*expr.args[i]).isPure()));
       continue;
@@ -76,8 +77,8 @@ Code Builtins::print(const typed::BuiltinExpr &expr) {
 }
 
 // The payload is an `inout` argument in the middle of others: `trace(origin, direction, tmin, tmax,
-// payload, root...)`. The ray may write it in its place, for nothing else reads it meanwhile,
-// unless what follows it changes it first.
+// payload, root...)`. The ray may write the original, because nothing else reads it during the
+// trace, unless a later argument changes it first.
 Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
   constexpr std::size_t at = 4;
   const typed::Expr &payload = *expr.args[at];
@@ -101,7 +102,7 @@ Code Builtins::tracePayload(const typed::BuiltinExpr &expr) {
     codes.insert(codes.begin() + at, printer.lvalues.of(payload, !indices.isPure()));
     return trace(std::move(codes));
   }
-  // One after the other, each in a variable.
+  // The arguments are evaluated in order, each into a variable.
   std::vector<Code> codes;
   Code where;
   for (std::size_t i = 0; i < expr.args.size(); ++i) {

@@ -11,7 +11,7 @@ namespace rtsl::cpp {
 
 using typed::ExprKind;
 
-/// What an assignment to the lvalue would write: all that it is part of.
+/// What an assignment to the lvalue would write: the whole variable that it is part of.
 static std::set<const void *> writesOf(typed::EffectsOf &effects, const typed::Expr &place) {
   return effects.expression(typed::wholeOf(place)).reads;
 }
@@ -41,14 +41,14 @@ Code Calls::callWith(const Code &callee, std::vector<Code> first, const typed::F
   Statements after;
   for (std::size_t i = 0; i < args.size(); ++i) {
     const typed::Variable &parameter = *target.parameters[i];
-    bool shows = false; // to a later argument, or the other way round
+    bool shows = false; // whether it and a later argument affect each other
     for (std::size_t j = i + 1; j < args.size(); ++j)
       shows |= conflicts(facts[i], facts[j]);
     if (!isOutput(i)) {
       Code code = printer.expressions.argument(*args[i]);
       if (shows)
         code = printer.hoist(args[i]->type, "argument", code);
-      // By reference, to something that the call changes.
+      // Passed by reference although the call may change the original.
       bool changes = meet(facts[i].reads, inside.writes);
       for (std::size_t j = 0; j < args.size(); ++j)
         changes |= isOutput(j) && meet(facts[i].reads, roots[j]);
@@ -68,7 +68,7 @@ Code Calls::callWith(const Code &callee, std::vector<Code> first, const typed::F
       codes.push_back(printer.lvalues.of(*args[i], shows));
       continue;
     }
-    // Through a variable of its own.
+    // The argument is passed through a temporary variable.
     const std::string variable =
         printer.temporaryName(parameter.name.empty() ? "result" : parameter.name);
     const bool readsOld = parameter.direction == ast::Direction::InOut;
@@ -98,7 +98,8 @@ Code Calls::callWith(const Code &callee, std::vector<Code> first, const typed::F
   return value;
 }
 
-/// A call, what follows it, and the variable that holds its result; nothing if it has none.
+/// Emits a call and the statements `after` it. Returns the variable with its result; null if it has
+/// none.
 Code Calls::valueThen(const Type *type, const std::string &hint, const Code &call,
                       const Statements &after) {
   Code value;

@@ -87,7 +87,7 @@ Statement StatementPrinter::forStatement(const typed::ForStmt &stmt) {
   Statements outside;
   if (auto *declared = dynCast<typed::DeclarationStmt>(stmt.init)) {
     outside = declaration(*declared, true);
-    if (!outside.empty()) { // the others, of other types, stand in front
+    if (!outside.empty()) { // declarations of other types are moved before the loop
       if (outside.back().is(StatementKind::Declaration))
         made.init = {outside.back()};
       outside.pop_back();
@@ -141,8 +141,9 @@ static bool mayComplete(const std::vector<typed::StmtPtr> &statements) {
                      [](const typed::StmtPtr &stmt) { return mayComplete(stmt.get()); });
 }
 
-// A variable that is declared in one arm is in scope in those below, to which C++ allows no jump:
-// such variables are declared before the switch. If no arm below mentions it, the arm gets braces.
+// A variable that is declared in one arm is in scope in later arms, and C++ allows no jump past its
+// declaration: such a variable is declared before the switch. If no later arm mentions it, the arm
+// gets braces instead.
 Statement StatementPrinter::switchStatement(const typed::SwitchStmt &stmt) {
   Statement made = simple(StatementKind::Switch);
   Statements declared;

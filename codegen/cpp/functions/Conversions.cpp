@@ -24,7 +24,7 @@ Code Conversions::convert(const typed::ConvertExpr &expr) {
   if (!fromScalar || !toScalar || fromScalar == toScalar)
     return printer.expressions.expr(operand);
 
-  // A whole number where a float or uint was meant.
+  // An integer literal that is converted implicitly to float or uint.
   const bool isWritten = !expr.isImplicit && !(expr.range == operand.range);
   if (auto *value = dynCast<typed::LiteralExpr>(&operand);
       value && !isWritten && from->isScalar() && !printer.literals.namedConstant(*value)) {
@@ -56,7 +56,7 @@ Code Conversions::construct(const typed::ConstructExpr &expr) {
   const std::string typeName = type->is(TypeKind::Class) ? "" : context.types.of(type);
   const typed::Expr &first = *expr.args.front();
 
-  // Braces promise the order.
+  // An initialiser list in braces is evaluated in order.
   if (type->is(TypeKind::Struct) || type->is(TypeKind::Array)) {
     std::vector<Code> parts;
     for (std::size_t i = 0; i < expr.args.size(); ++i) {
@@ -70,7 +70,7 @@ Code Conversions::construct(const typed::ConstructExpr &expr) {
   }
   if (type->is(TypeKind::Class) || first.type == type)
     return printer.expressions.expr(first);
-  if (type->isScalar()) { // of the first component
+  if (type->isScalar()) { // the first component is converted
     if (first.type->isMatrix())
       return subscript(subscript(printer.expressions.operand(first, Binding::Primary), integer(0)),
                        integer(0));
@@ -98,7 +98,7 @@ Code Conversions::construct(const typed::ConstructExpr &expr) {
     return cpp::call(withParameters("rtsl::matrixOf", {typeName}), std::move(args));
   }
   const bool isExact = scalars == type->count && !hasMatrix;
-  // to every component, or the first of a longer one
+  // One argument sets all components, or is a longer vector whose first components are taken.
   const bool isOne = expr.args.size() == 1 && !hasMatrix;
   if (isExact || isOne)
     return cpp::construct(typeName, std::move(args));

@@ -19,7 +19,7 @@ Code Expressions::initialiser(const typed::Expr &expr) {
 // Order
 //===----------------------------------------------------------------------===//
 
-/// What a variable that holds the expression's value is called: after the first call in it.
+/// The name of a variable for the expression's value, derived from the first call in it.
 static std::string hintFor(const typed::Expr &expr) {
   std::string hint;
   forEachExpr(expr, [&](const typed::Expr &inner) {
@@ -78,7 +78,7 @@ Code Expressions::apart(const typed::Expr &expr, Binding atLeast) {
 
 Code Expressions::operand(const typed::Expr &expr, Binding atLeast) {
   Code code = this->expr(expr);
-  // The author's own parentheses stay, where there is something to hold together.
+  // The author's parentheses are kept around expressions with operators.
   const bool keeps = code && atLeast > Binding::Or && bindingOf(code) < Binding::Unary &&
                      context.notes.inParentheses(expr.range);
   return keeps ? parentheses(code) : code;
@@ -99,7 +99,7 @@ Code Expressions::expr(const typed::Expr &expr) {
   printer.isInLambda = outer;
   if (statements.empty())
     return code;
-  if (code) // otherwise it is of type void
+  if (code) // null: an expression of type void
     statements.push_back(returning(code));
   return lambda(std::move(statements));
 }
@@ -123,9 +123,9 @@ Code Expressions::lowered(const typed::Expr &expr) {
         conflicts(context.effects.expression(*part.base), context.effects.expression(*part.index));
     if (!part.base->type->isVector() || !changes)
       return printer.lvalues.of(expr);
-    return printer.lvalues.element(part,
-                                   printer.hoist(part.base->type, "value", argument(*part.base)),
-                                   false); // of the vector as it was
+    return printer.lvalues.element(
+        part, printer.hoist(part.base->type, "value", argument(*part.base)),
+        false); // the component of the vector before the index is evaluated
   }
   case ExprKind::Swizzle:
     return printer.conversions.swizzle(cast<typed::SwizzleExpr>(expr));
@@ -180,7 +180,8 @@ bool isInMemory(const typed::Expr &expr) {
     return isInMemory(*assignment->target);
   if (auto *comma = dynCast<typed::CommaExpr>(&expr))
     return isInMemory(*comma->right);
-  if (auto *construct = dynCast<typed::ConstructExpr>(&expr)) // of its own type: nothing happens
+  if (auto *construct = dynCast<typed::ConstructExpr>(
+          &expr)) // a construction from a value of the same type is that value
     return construct->args.front()->type == expr.type && isInMemory(*construct->args.front());
   if (auto *convert = dynCast<typed::ConvertExpr>(&expr))
     return convert->operand->type == expr.type && isInMemory(*convert->operand);

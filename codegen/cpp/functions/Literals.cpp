@@ -11,7 +11,7 @@
 
 namespace rtsl::cpp {
 
-/// The sign of a number is an operator in C++, and what is not finite has a name.
+/// In C++ the sign of a number is an operator, and infinities and NaNs have names.
 template <typename Number>
 static Code numberLiteral(Number value, const char *type, const char *infinity,
                           const char *suffix) {
@@ -64,8 +64,8 @@ static bool sameValue(const typed::Constant &a, const typed::Constant &b) {
                     });
 }
 
-// The checker puts values for the names of constants. What the author wrote still stands in the
-// text, and names there what it names in C++: the nearest constant of that name.
+// The checker replaces names of constants by their values. The name is still in the source text,
+// and means the same in C++: the nearest constant of that name.
 const void *Literals::namedConstant(const typed::LiteralExpr &expr) const {
   if (!expr.spelling.empty())
     return nullptr;
@@ -90,7 +90,8 @@ const void *Literals::namedConstant(const typed::LiteralExpr &expr) const {
   return nullptr;
 }
 
-/// Named ones need not be known to C++ while it compiles.
+/// Whether the expression consists of numbers alone. A constant with a name need not be a constant
+/// expression in C++.
 bool Literals::isTable(const typed::Expr &expr) const {
   auto isNumber = [&](const typed::Expr &element) {
     auto *literal = dynCast<typed::LiteralExpr>(&element);
@@ -123,7 +124,7 @@ Code Literals::scalarLiteral(const Type *type, typed::Constant::Scalar value,
   default:
     if (spelling.empty() || value.i == std::numeric_limits<std::int32_t>::min())
       return integer(value.i);
-    if (value.i < 0 && spelling.front() == '0') // names 32 bits
+    if (value.i < 0 && spelling.front() == '0') // the literal gives the 32 bits
       return cpp::construct("int", {cpp::literal(spelling + "u")});
     return withSign(spelling,
                     [&](const std::string &text) { return cpp::literal(text, value.i == 0); });

@@ -35,7 +35,7 @@ static bool isZero(const typed::Expr &expr) {
   return literal && literal->type->isScalar() && literal->value.scalars.front().u == 0;
 }
 
-/// A literal divisor that no dividend goes wrong with.
+/// A literal divisor for which no dividend overflows or is undefined.
 static bool isSafeDivisor(const typed::Expr &expr) {
   if (auto *convert = dynCast<typed::ConvertExpr>(&expr))
     return convert->operand->type->is(TypeKind::Int) && isSafeDivisor(*convert->operand);
@@ -78,7 +78,7 @@ std::optional<Operator> Operators::plainOperator(BinaryOp op, const typed::Expr 
                                                       : std::nullopt;
   }
   case BinaryOp::Less:
-  case BinaryOp::GreaterEqual: // of a uint and zero: compilers find that too plain
+  case BinaryOp::GreaterEqual: // compilers warn that `u < 0u` is never true
     return isUint && isZero(right) ? std::nullopt : std::optional(operatorFor(op));
   case BinaryOp::Greater:
   case BinaryOp::LessEqual:
@@ -151,7 +151,7 @@ Code Operators::binary(BinaryOp op, const typed::Expr &left, const typed::Expr &
   if (op == BinaryOp::LogicalAnd || op == BinaryOp::LogicalOr) {
     const Code first = printer.expressions.operand(left, Binding::BitOr),
                second = printer.expressions.apart(right, Binding::BitOr);
-    if (same(first, negated(second)) || same(second, negated(first))) // compilers find it odd
+    if (same(first, negated(second)) || same(second, negated(first))) // compilers warn of `a && !a`
       return cpp::call(op == BinaryOp::LogicalAnd ? "rtsl::all" : "rtsl::any",
                        {cpp::construct("glm::bvec2", {first, second})});
     return cpp::binary(own, first, second);
@@ -173,7 +173,7 @@ Code Operators::binary(BinaryOp op, const typed::Expr &left, const typed::Expr &
   else
     both = {printer.expressions.operand(left, bindingOf(own)),
             printer.expressions.operand(right, bindingOf(own))};
-  // Bools that lie in memory compare with those that do not as values do.
+  // Bools have another type in memory: one in memory is converted if the other is not.
   if (op == BinaryOp::Equal || op == BinaryOp::NotEqual || op == BinaryOp::LogicalXor) {
     Code &stored = both[isInMemory(left) ? 0 : 1];
     if (left.type->isVector() && left.type->element->is(TypeKind::Bool) &&
@@ -181,7 +181,7 @@ Code Operators::binary(BinaryOp op, const typed::Expr &left, const typed::Expr &
       stored = cpp::construct(context.types.of(left.type), {stored});
   }
   const bool compares = bindingOf(own) == Binding::Equality || bindingOf(own) == Binding::Relation;
-  if (compares && left.type->scalar() && same(both[0], both[1])) { // compilers find `x == x` odd
+  if (compares && left.type->scalar() && same(both[0], both[1])) { // compilers warn of `x == x`
     const Code compared = cpp::call(functionFor(op, left, right), both);
     if (left.type->isScalar())
       return compared;
@@ -208,7 +208,8 @@ Code Operators::unary(const typed::UnaryExpr &expr) {
     if (!printer.ranges.range(expr))
       return cpp::call("rtsl::negate", {printer.expressions.argument(*expr.operand)});
   }
-  // GLM subtracts four components from 0, and a zero keeps its sign then.
+  // GLM negates four components by subtracting them from 0, which does not change the sign of a
+  // zero.
   if ((type->isVector() && type->count == 4) || (type->isMatrix() && type->rows() == 4))
     return cpp::call("rtsl::negate", {printer.expressions.argument(*expr.operand)});
   return cpp::unary(UnaryOperator::Minus,

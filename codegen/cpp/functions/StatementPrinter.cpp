@@ -14,7 +14,7 @@ using typed::ExprKind;
 
 Statements StatementPrinter::body() {
   const auto &statements = cast<typed::CompoundStmt>(*printer.function->body).body;
-  // Which variables are read? Compilers warn of the others.
+  // The variables that are read: compilers warn of others.
   std::set<const typed::Expr *> onlyWritten;
   context.effects.forEachEvaluated(*printer.function->body, [&](const typed::Expr &expr) {
     auto skip = [&](const typed::Expr *place) {
@@ -118,7 +118,7 @@ static bool endsWithLine(StmtKind kind) {
 }
 
 void StatementPrinter::print(const typed::Stmt &stmt, Statements &out) {
-  Statements all; // what goes before it, then the statement
+  Statements all; // hoisted statements, then the statement itself
   Statements *outer = printer.before;
   printer.before = &all;
   const Statements own = construct(stmt);
@@ -168,7 +168,7 @@ Statements StatementPrinter::declaration(const typed::DeclarationStmt &stmt, boo
     const Code value = variable->init ? printer.expressions.argument(*variable->init)
                                       : context.types.zero(variable->type);
     printer.before = outer;
-    // What goes before must not overtake the others.
+    // Hoisted statements must stay after the earlier declarations.
     Statements &above = all.empty() ? *outer : all;
     above.insert(above.end(), hoisted.begin(), hoisted.end());
     if (!hoisted.empty())

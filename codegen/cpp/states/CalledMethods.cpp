@@ -41,7 +41,8 @@ Declarations callStructures(Context &context, const std::string &className) {
   return all;
 }
 
-/// The method of an object's class begins, or runs at once if that does not trace.
+/// Starts the first state of the method of the object's class, or calls the method if it does not
+/// trace.
 Statements runCalledMethod(Context &context, const StateEntries &entries,
                            const CalledMethod &called) {
   const Code callFrame = cpp::name("call");
@@ -52,7 +53,7 @@ Statements runCalledMethod(Context &context, const StateEntries &entries,
         if (!method)
           return {};
         for (const typed::Class *at = &definition; at != method->owner->base;
-             at = at->base) // a base of that has others
+             at = at->base) // states of bases of `owner` belong to other definitions
           if (auto first = entries.firstCalls.find({at, called.slot});
               first != entries.firstCalls.end())
             return {returning(first->second.on(objectOf(context.names, definition)))};

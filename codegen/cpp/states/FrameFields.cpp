@@ -29,7 +29,7 @@ static unsigned lineOfUse(ir::FrameLoadOp load, llvm::StringRef file) {
   return line;
 }
 
-/// Is the value one of the author's expressions without a name?
+/// Is the value an expression of the author's that has no name?
 static bool hasNoName(mlir::Value value) {
   return llvm::isa_and_nonnull<ir::ExpressionOp, ir::EvaluateOp, ir::CallReturnedOp>(
              value.getDefiningOp()) &&
@@ -104,7 +104,7 @@ void collectFrame(Machine &machine, MethodPrinter &method, const std::set<std::s
     state.walk([&](ir::FrameLoadOp load) { name(load.getName(), load.getType()); });
   }
   for (FrameField &saved : machine.frame)
-    if (saved.neededBy == 0) // by what is called
+    if (saved.neededBy == 0) // needed only by the called method
       saved.neededBy = saved.madeIn;
   std::stable_partition(machine.frame.begin(), machine.frame.end(), [](const FrameField &saved) {
     return !saved.type || !saved.type->is(TypeKind::Bool);

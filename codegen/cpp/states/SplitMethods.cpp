@@ -56,7 +56,7 @@ std::string SplitMethods::nameOfMachine(const typed::Class &definition,
                            std::count_if(definition.functions.begin(), definition.functions.end(),
                                          [&](const auto &other) {
                                            return other->name == method.name;
-                                         }) > 1; // there is one for each
+                                         }) > 1; // one method for each payload
   return names.of(&method) +
          (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
 }
@@ -89,10 +89,10 @@ void SplitMethods::findCalledMethods() {
     called.step = stepName(*called.definition, name);
     called.structure = name;
     called.structure[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
-    structures.try_emplace(called.definition, typeNames()); // which it would hide
+    structures.try_emplace(called.definition, typeNames()); // names that the structure would hide
     called.structure = unique(called.structure, structures[called.definition]);
 
-    // As the IR has them: where a result goes that stays whole, and the parameters.
+    // In the order of the IR: the address of an aggregate result, then the parameters.
     const mlir::FunctionType type = declaration.getFunctionType();
     const continuation::CallLayout layout =
         continuation::layoutCall(type.getInputs().drop_front(), type.getResults());

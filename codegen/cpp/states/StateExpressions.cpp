@@ -97,8 +97,8 @@ Code StateExpressions::of(const SourceTable::Entry &entry, mlir::ValueRange oper
   return integer(0);
 }
 
-/// The comparison that holds where this one does not. Of an order of floats there is none: it fails
-/// for a NaN both ways.
+/// The comparison that is true where this one is false. Floats have none for `<` and the like: with
+/// a NaN both are false.
 static std::optional<Operator> oppositeOf(Operator op, bool isWhole) {
   switch (op) {
   case Operator::Equal:
@@ -124,7 +124,7 @@ Code StateExpressions::opposite(mlir::Value condition, const Code &code) {
   auto *compared = entry && entry->kind == SourceTable::Kind::Value
                        ? dynCast<typed::BinaryExpr>(entry->expr)
                        : nullptr;
-  // below their count
+  // The condition of a loop over lights is `i < count`.
   const bool isOfLights = condition.getDefiningOp<mlir::arith::CmpIOp>() != nullptr;
   const Code inner = bare(code);
   if ((!compared && !isOfLights) || !inner->is(ExpressionKind::Binary))
@@ -147,7 +147,7 @@ void StateExpressions::nameConstants(const typed::Expr &expr) {
   auto add = [&](const typed::Variable &constant) {
     if (std::find(constants.begin(), constants.end(), &constant) != constants.end())
       return;
-    nameConstants(*constant.init); // what it names stands in front of it
+    nameConstants(*constant.init); // constants that its initialiser mentions come first
     constants.push_back(&constant);
   };
   forEachExpr(expr, [&](const typed::Expr &inner) {
@@ -156,7 +156,7 @@ void StateExpressions::nameConstants(const typed::Expr &expr) {
     if (auto *named = dynCast<typed::VariableExpr>(&inner);
         named && named->variable->isConst && named->variable->kind != typed::Variable::Kind::Global)
       add(*named->variable);
-    if (auto *literal = dynCast<typed::LiteralExpr>(&inner)) // the value of one
+    if (auto *literal = dynCast<typed::LiteralExpr>(&inner)) // the value of a named constant
       if (const void *named = state.functions.literals.namedConstant(*literal))
         for (const auto &local : state.machine.method->locals)
           if (local.get() == named)

@@ -42,8 +42,8 @@ static std::set<std::string> joinsOf(const std::vector<mlir::func::FuncOp> &stat
   return joins;
 }
 
-/// What a field of the frame is, in the author's words: the comment at its declaration, or the line
-/// that makes it.
+/// The meaning of a frame field, quoted from the source: the comment at its declaration, or the
+/// line that computes it.
 std::string StateMachines::meaningOf(const typed::Function &method, const FrameField &field) {
   if (field.isTraced)
     return fmt::format("the color of the ray of line {}", field.madeIn);
@@ -109,7 +109,7 @@ static void nameParameters(const Context &context, Machine &machine) {
   }
 }
 
-/// The struct of what a method has in its frame; nothing: there are only its arguments.
+/// The struct with the frame fields of a method; nothing if the frame holds only its arguments.
 std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
                                                          std::set<std::string> &taken) {
   if (machine.frame.empty()) {
@@ -143,7 +143,7 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
                  fmt::format("// What `{}` keeps across its traces.", machine.name));
 }
 
-/// Does a state write what is in its frame?
+/// Does a state write fields of its frame?
 static bool writesFrame(mlir::func::FuncOp state) {
   bool writes = false;
   state.walk([&](mlir::Operation *op) {
@@ -155,7 +155,7 @@ static bool writesFrame(mlir::func::FuncOp state) {
   return writes;
 }
 
-/// Where a state begins, in the author's lines.
+/// The comment above a state: the source line where it begins.
 static std::string headingOf(const Machine &machine, mlir::func::FuncOp state) {
   unsigned line = 0;
   state.walk([&](mlir::Operation *op) {
@@ -262,8 +262,8 @@ Declarations StateMachines::of(const typed::Class &definition, const typed::Func
   return all;
 }
 
-/// Has something that the method calls on its own object, and that has become part of its states,
-/// another definition in the derived class?
+/// Does the derived class override a method that this method calls on its own object and that was
+/// inlined into its states?
 bool StateMachines::differsIn(const typed::Class &derived, const typed::Function &method) const {
   std::set<const typed::Function *> seen = {&method};
   std::vector<const typed::Function *> open = {&method};

@@ -18,9 +18,9 @@ static bool isBinary(const Code &code, Operator op) {
   return code->is(ExpressionKind::Binary) && code->op == op;
 }
 
-/// How tightly an operand of `op` binds at least, if it stands without parentheses. Some are there
-/// for readers and for compilers that warn: operators whose order is not common knowledge, and &&
-/// beside ||.
+/// The least binding with which an operand of `op` needs no parentheses. Some parentheses are only
+/// for readers and against warnings: around operators whose precedence is not well known, and
+/// around `&&` within `||`.
 static Binding needed(Operator op, const Code &operand, bool isRight) {
   const Binding own = bindingOf(op);
   const bool isSame = !isRight && isBinary(operand, op);
@@ -46,7 +46,7 @@ static bool beginsWithMinus(const Code &code) {
   case ExpressionKind::Member:
   case ExpressionKind::MemberOfPointer:
   case ExpressionKind::Subscript:
-    return false; // what they are of binds more tightly than a sign
+    return false; // their base binds more tightly than a sign
   default:
     return false;
   }

@@ -43,7 +43,7 @@ static bool isControl(const Statement &statement) {
   }
 }
 
-/// Need the statements braces where they stand under an `if` or a loop?
+/// Do the statements need braces as the body of an `if` or a loop?
 static bool needsBraces(const Statements &statements) {
   if (statements.size() != 1)
     return true;
@@ -53,7 +53,7 @@ static bool needsBraces(const Statements &statements) {
          !only.comment.empty() || only.place;
 }
 
-/// What stands under an `if` or a loop, from its brace or its line on.
+/// The body of an `if` or a loop, from its brace or the end of the line on.
 static std::string under(const Statements &statements, bool hasBraces,
                          const std::string &trailing = {}) {
   if (!hasBraces && trailing.empty() && !needsBraces(statements))
@@ -61,7 +61,7 @@ static std::string under(const Statements &statements, bool hasBraces,
   return " {" + (trailing.empty() ? "" : " " + trailing) + "\n" + print(statements) + "}\n";
 }
 
-/// `else` belongs to the nearest `if`; so one under an `if` with `else` gets braces.
+/// `else` belongs to the nearest `if`, so an `if` in the body of an `if` with `else` needs braces.
 static bool mayCatchElse(const Statements &statements) {
   return statements.size() == 1 && isControl(statements.front()) &&
          !statements.front().is(StatementKind::Switch) &&
@@ -114,7 +114,7 @@ static std::string printSwitch(const Statement &statement) {
   return text + "}\n";
 }
 
-/// The statement with the end of its last line, without what stands above and after it.
+/// The statement up to the end of its last line, without the comments above and after it.
 static std::string printBare(const Statement &statement) {
   switch (statement.kind) {
   case StatementKind::Expression:

@@ -89,8 +89,8 @@ void StateTransitions::write(ir::CallReturnedOp op, Statements &out) {
 // The end of a state
 //===----------------------------------------------------------------------===//
 
-/// A call with which the state ends: its arguments are evaluated there, for what is saved is saved
-/// before.
+/// The call that ends a state. Its arguments are evaluated at the end of the state, after the
+/// values that are saved.
 Code StateTransitions::call(ir::ReturnOp op) {
   mlir::Operation *at = op;
   while (at && !llvm::isa<ir::EnterOp>(at))

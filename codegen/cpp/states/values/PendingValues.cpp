@@ -27,13 +27,13 @@ Code PendingValues::use(mlir::Value value, const Type *type) {
   return code;
 }
 
-/// Is it the result of `&&` or `||`, whose name is the compiler's?
+/// Is it the result of `&&` or `||`? The compiler names these, not the author.
 static bool isOfShortCircuit(mlir::Value value) {
   return ir::nameIn(value.getLoc()).isOfShortCircuit;
 }
 
-/// Can the variable of a value become that of `value`, which the author calls the same? It can if
-/// nothing reads it any more.
+/// Can `value` be assigned to the variable of `before`, a value of the same name? It can if nothing
+/// reads that variable any more.
 bool PendingValues::isReplacedBy(mlir::Value before, mlir::Value value) {
   const auto variable = before ? declared.find(before) : declared.end();
   mlir::Operation *op = value.getDefiningOp();
@@ -51,8 +51,8 @@ bool PendingValues::isReplacedBy(mlir::Value before, mlir::Value value) {
          !state.lvalues.indicesMention(own);
 }
 
-/// Gives a pending value a variable now. `isNew`: it was just made, so no pending expression
-/// still reads the variable before it.
+/// Declares a variable for a pending value. `isNew`: the value was just made, so no pending
+/// expression reads the previous value of its variable.
 void PendingValues::materialise(mlir::Value value, Statements &out, bool isNew) {
   const Pending waiting = std::move(pending[value]);
   pending.erase(value);
@@ -65,7 +65,8 @@ void PendingValues::materialise(mlir::Value value, Statements &out, bool isNew) 
   bool isAgain = isNew && (whole || !continuation::authorsName(value).empty()) &&
                  !isOfShortCircuit(value) && isReplacedBy(last, value);
   const std::string before = isAgain ? declared[last] : "";
-  for (std::size_t i = 1; whole && i < whole->parts.size(); ++i) // the first has changed it then
+  for (std::size_t i = 1; whole && i < whole->parts.size();
+       ++i) // the first part has changed it by then
     isAgain = isAgain && !mentions(whole->parts[i].value, before) &&
               !mentions(whole->parts[i].index, before);
   const std::string own = isAgain ? before : state.names.fresh(wanted);
@@ -123,7 +124,7 @@ void PendingValues::define(mlir::Operation &op, Code code, ir::MemoryAccesses ac
   mlir::Value value = op.getResult(0);
   const auto uses = static_cast<unsigned>(std::distance(value.use_begin(), value.use_end()));
   if (uses == 0) {
-    if (!isPure && code) // a name: of what a call returned that stands before
+    if (!isPure && code) // a name: the result of a call that was already emitted
       state.emitter.emit(out, isName(code) ? discarded(code) : code);
     return;
   }

@@ -70,7 +70,7 @@ std::string nameFor(mlir::Value value) {
 
 const std::string &ValueNames::of(ir::VarOp variable) {
   std::string &name = variables[variable];
-  if (name.empty()) { // "sum.2" is another sum
+  if (name.empty()) { // "sum.2": a second variable `sum`
     const auto [base, number] = variable.getName().rsplit('.');
     const bool isNumbered = !number.empty() && llvm::all_of(number, llvm::isDigit);
     name = fresh((isNumbered ? base : variable.getName()).str());
@@ -97,14 +97,14 @@ std::string ValueNames::ofValue(mlir::Value value) {
     callee = method->function;
   if (!callee)
     return name;
-  unsigned number = 1; // `bounce1` is what the first call of `bounce` gives
+  unsigned number = 1; // `bounce1`: the result of the first call of `bounce`
   while (taken.count(context.names.of(callee) + std::to_string(number)))
     ++number;
   return context.names.of(callee) + std::to_string(number);
 }
 
 std::string ValueNames::ofLights() {
-  std::string name = "lights"; // within another loop over lights it is another
+  std::string name = "lights"; // nested loops over lights need different names
   for (unsigned i = 2; isReservedHere(name) || !taken.insert(name).second; ++i)
     name = "lights" + std::to_string(i);
   return name;

@@ -12,7 +12,7 @@ namespace rtsl::cpp {
 
 namespace arith = mlir::arith;
 
-/// To make types that the author has not named: nothing changes but what is known.
+/// For types that do not occur in the source. Only the cache of known types changes.
 static TypeContext &typesOf(const Context &context) {
   return const_cast<TypeContext &>(context.module.types);
 }
@@ -30,7 +30,7 @@ bool isStateVariable(llvm::StringRef name) {
   return stateVariables().count(name.str()) != 0;
 }
 
-/// The type of a state variable; null: the name is none's.
+/// The type of the state variable of this name; null if there is none.
 static const Type *stateType(TypeContext &types, llvm::StringRef name) {
   const auto found = stateVariables().find(name.str());
   if (found == stateVariables().end())
@@ -42,7 +42,8 @@ const Type *ValueTypes::vec3() {
   return typesOf(context).vector(typesOf(context).floatType, 3);
 }
 
-/// Of a number in the IR, which is not marked as unsigned; null: it is none.
+/// The type of a scalar in the IR, which does not distinguish signed and unsigned integers; null if
+/// it is not a scalar.
 static const Type *scalarType(TypeContext &types, mlir::Type type) {
   if (type.isF32())
     return types.floatType;
@@ -51,7 +52,7 @@ static const Type *scalarType(TypeContext &types, mlir::Type type) {
   return type.isInteger(32) ? types.intType : nullptr;
 }
 
-/// Of a vector's components; `known` is their type in the IR.
+/// The type of a vector's components; `known` is their type in the IR.
 static const Type *scalarOf(TypeContext &types, const Type *vector, mlir::Type known) {
   if (vector && vector->isVector())
     return vector->element;
@@ -80,7 +81,7 @@ const Type *ValueTypes::ofMemory(mlir::Value address) {
   return number ? source.types[static_cast<std::size_t>(number.getInt())] : nullptr;
 }
 
-/// Is it of the type of other values, whatever that is?
+/// Does the type of the value follow from other values?
 static bool isMadeOfParts(mlir::Value value) {
   namespace vector = mlir::vector;
   return llvm::isa_and_nonnull<ir::LoadOp, vector::InsertOp, vector::ExtractOp, vector::ShuffleOp,
@@ -94,7 +95,7 @@ const Type *ValueTypes::ofVariable(ir::VarOp variable) {
   if (const Type *declared = ofMemory(variable))
     return variables[variable] = declared;
   const Type *type = nullptr;
-  for (const bool ofParts : {false, true}) // which may be its own
+  for (const bool ofParts : {false, true}) // whose type may follow from this variable
     for (mlir::Operation *user : variable->getUsers())
       if (auto store = llvm::dyn_cast<ir::StoreOp>(user);
           store && !type && isMadeOfParts(store.getValue()) == ofParts)
@@ -109,7 +110,7 @@ const Type *ValueTypes::ofSaved(const std::string &key, mlir::Type type) {
   auto vector = llvm::dyn_cast<mlir::VectorType>(type);
   const mlir::Type scalar = vector ? vector.getElementType() : type;
   const auto width = vector ? static_cast<unsigned>(vector.getNumElements()) : 1u;
-  const std::string name = key.substr(0, key.find('.')); // "sum.2" is another sum
+  const std::string name = key.substr(0, key.find('.')); // "sum.2": a second variable `sum`
   const Type *found = nullptr;
   auto look = [&](const typed::Function &function) {
     for (const auto *list : {&function.parameters, &function.locals})
