@@ -1,8 +1,9 @@
 //===- Meshes.cpp - many meshes under two lights, by hand -----------------===//
 //
-// The twin of the scene that bench/measure/meshes.py writes: diffuse meshes with interpolated
-// normals, a camera ray and two shadow rays a sample. Written as one writes a small renderer on
-// Embree: each mesh is a geometry of Embree's, and hits are Embree's.
+// The twin of the scenes that bench/measure/meshes.py and instances.py write: diffuse meshes with
+// interpolated normals, a camera ray and two shadow rays a sample. Written as one writes a small
+// renderer on Embree: each mesh is a geometry of Embree's, or a scene with instances, and hits are
+// Embree's.
 //
 //===----------------------------------------------------------------------===//
 #include "Program.h"
@@ -13,6 +14,7 @@
 #include <embree3/rtcore.h>
 
 #include <array>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -26,11 +28,26 @@ namespace {
 constexpr float epsilon = 1e-4f;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-using Meshes = std::vector<runtime::Mesh>;
+/// An instance of a mesh: four columns of three. The linear part is a rotation and a scale.
+struct Place {
+  unsigned mesh;
+  std::array<float, 12> columns;
+
+  vec3 turned(vec3 v) const {
+    const float *m = columns.data();
+    return v.x * vec3(m[0], m[1], m[2]) + v.y * vec3(m[3], m[4], m[5]) +
+           v.z * vec3(m[6], m[7], m[8]);
+  }
+};
+
+struct Meshes {
+  std::vector<runtime::Mesh> meshes;
+  std::vector<Place> places; // none: each mesh is where it is
+};
 
 class Scene {
 public:
-  explicit Scene(Meshes given) : meshes(std::move(given)) {
+  explicit Scene(Meshes given) : meshes(std::move(given.meshes)), places(std::move(given.places)) {
     device = rtcNewDevice(nullptr);
     if (!device)
       throw std::runtime_error("Embree gives no device");
@@ -39,12 +56,16 @@ public:
     rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_MEDIUM);
     for (unsigned i = 0; i < meshes.size(); ++i)
       attach(i);
+    for (const Place &place : places)
+      attach(place);
     rtcCommitScene(embree);
     if (RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
       throw std::runtime_error("Embree fails with error " + std::to_string(error));
   }
   ~Scene() {
     rtcReleaseScene(embree);
+    for (RTCScene inner : shared)
+      rtcReleaseScene(inner);
     rtcReleaseDevice(device);
   }
   Scene(const Scene &) = delete;
@@ -52,13 +73,21 @@ public:
 
   /// The interpolated normal at a hit; not unit.
   vec3 normal(const RTCHit &hit) const {
-    const runtime::Mesh &mesh = meshes[hit.geomID];
+    const Place *place = places.empty() ? nullptr : &places[hit.instID[0]];
+    const runtime::Mesh &mesh = meshes[place ? place->mesh : hit.geomID];
     const unsigned *index = &mesh.indices[3 * std::size_t(hit.primID)];
     auto at = [&](unsigned vertex) {
       const float *n = &mesh.normals[3 * std::size_t(vertex)];
       return vec3(n[0], n[1], n[2]);
     };
-    return (1 - hit.u - hit.v) * at(index[0]) + hit.u * at(index[1]) + hit.v * at(index[2]);
+    const vec3 sum =
+        (1 - hit.u - hit.v) * at(index[0]) + hit.u * at(index[1]) + hit.v * at(index[2]);
+    return place ? place->turned(sum) : sum;
+  }
+  /// The normal of the triangle; not unit.
+  vec3 geometricNormal(const RTCHit &hit) const {
+    const vec3 normal(hit.Ng_x, hit.Ng_y, hit.Ng_z);
+    return places.empty() ? normal : places[hit.instID[0]].turned(normal);
   }
 
   RTCScene embree = nullptr;
@@ -77,11 +106,30 @@ private:
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                mesh.indices.data(), 0, 3 * sizeof(unsigned), mesh.triangleCount());
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(embree, geometry, number);
+    if (places.empty()) {
+      rtcAttachGeometryByID(embree, geometry, number);
+    } else {
+      RTCScene inner = rtcNewScene(device);
+      rtcSetSceneFlags(inner, RTC_SCENE_FLAG_ROBUST);
+      rtcAttachGeometry(inner, geometry);
+      rtcCommitScene(inner);
+      shared.push_back(inner);
+    }
     rtcReleaseGeometry(geometry);
   }
 
-  Meshes meshes;
+  void attach(const Place &place) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, shared[place.mesh]);
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, place.columns.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(embree, geometry); // numbered in this order
+    rtcReleaseGeometry(geometry);
+  }
+
+  std::vector<runtime::Mesh> meshes;
+  std::vector<Place> places;
+  std::vector<RTCScene> shared;
   RTCDevice device = nullptr;
 };
 
@@ -146,7 +194,7 @@ vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::ui
   if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID)
     return scene.background;
   const vec3 point = camera.eye + found.ray.tfar * direction;
-  const vec3 geometric(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
+  const vec3 geometric = scene.geometricNormal(found.hit);
   const vec3 normal = glm::normalize(scene.normal(found.hit));
   // The normals of the file say which side is outside, not its winding.
   const bool isFront = (glm::dot(geometric, direction) < 0) == (glm::dot(geometric, normal) > 0);
@@ -163,8 +211,18 @@ int main(int argc, char **argv) {
       description, argc, argv,
       [](const std::vector<std::string> &files) {
         Meshes meshes;
-        for (const std::string &file : files)
-          meshes.push_back(runtime::loadMesh(file));
+        for (const std::string &file : files) {
+          if (file.size() < 7 || file.substr(file.size() - 7) != ".places") {
+            meshes.meshes.push_back(runtime::loadMesh(file));
+            continue;
+          }
+          std::ifstream stream(file);
+          for (Place place; stream >> place.mesh;) {
+            for (float &number : place.columns)
+              stream >> number;
+            meshes.places.push_back(place);
+          }
+        }
         return meshes;
       },
       [](Meshes meshes) { return std::make_unique<Scene>(std::move(meshes)); }, sample);

@@ -53,7 +53,15 @@ def write_scene(folder):
         large = dice.uniform(0.25, 0.6)
         files.append(folder / f"torus{number}.obj")
         write_torus(files[-1], center, (x, y, z), large, large * dice.uniform(0.2, 0.5))
-    scene = {
+    scene = scene_of([{"mesh": file.name, "material": "clay"} for file in files])
+    path = folder / "scene.json"
+    path.write_text(json.dumps(scene))
+    return path, files
+
+
+def scene_of(objects):
+    """Under two lights, seen by the camera of the program by hand."""
+    return {
         "rtsl": 1,
         "import": [
             str(SHADERS / name)
@@ -72,7 +80,7 @@ def write_scene(folder):
         },
         "textures": {"terracotta": {"class": "Solid", "value": [0.8, 0.35, 0.2]}},
         "materials": {"clay": {"class": "Lambert", "albedo": "terracotta"}},
-        "objects": [{"mesh": file.name, "material": "clay"} for file in files],
+        "objects": objects,
         "lights": [
             {"class": "BallLight", "position": [4, 6, 4], "radius": 0.4, "intensity": [38, 36, 33]},
             {"class": "BallLight", "position": [-5, 4, 2], "radius": 0.4, "intensity": [6, 7, 9]},
@@ -81,9 +89,6 @@ def write_scene(folder):
         "background": [0.25, 0.45, 0.8],
         "render": {"engine": "classic", "size": [640, 360], "spp": 16, "depth": 8, "seed": 1},
     }
-    path = folder / "scene.json"
-    path.write_text(json.dumps(scene))
-    return path, files
 
 
 class Program:
@@ -107,7 +112,8 @@ class Program:
         self.scene.clear()
 
 
-def measure(build, pairs, spp, size):
+def measure(build, pairs, spp, size, write_scene=write_scene):
+    """`write_scene(folder)` gives the scene's file and those for the program by hand."""
     binaries = build / "bin"
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -156,9 +162,9 @@ def measure(build, pairs, spp, size):
         }
 
 
-def show(report):
+def show(report, what="382 meshes, 262,052 triangles"):
     print(
-        f"382 meshes, 262,052 triangles, {report['size']}, processor time of {report['spp'] - 1} "
+        f"{what}, {report['size']}, processor time of {report['spp'] - 1} "
         "samples a pixel on one thread"
     )
     for program in report["samples"]:
