@@ -10,9 +10,9 @@ from . import process
 ROOT = Path(__file__).resolve().parent.parent.parent
 # The file of each scene, the wanted error, and the samples per pixel of the converged picture.
 SCENES = {
-    "cornell": ("examples/cornell/room.json", 0.05, 40000),
-    "gltf": ("examples/gltf/scene.json", 0.03, 20000),
-    "glass": ("examples/glass/scene.json", 0.02, 6000),
+    "cornell": ("examples/cornell/room.json", 0.1, 3000),
+    "gltf": ("examples/gltf/scene.json", 0.05, 3000),
+    "glass": ("examples/glass/scene.json", 0.03, 2000),
 }
 
 
@@ -112,7 +112,7 @@ def add(subcommands, common):
     )
     parser.add_argument("--seeds", type=int, default=3, help="pictures of each scene (default: 3)")
     parser.add_argument(
-        "--size", metavar="WxH", default="96x72", help="of the pictures (default: 96x72)"
+        "--size", metavar="WxH", default="64x48", help="of the pictures (default: 64x48)"
     )
     parser.set_defaults(parts=[part])
 

@@ -267,6 +267,31 @@ class Far : rt_Camera {
         self.sampled_by("tree")
         self.assert_gray(9 * (0.1 / 3) ** 2, 0.03)
 
+    def test_lamps_without_an_area(self):
+        """Triangles that are lines or points, and a ball without a radius, are never chosen; the
+        light of the others is what it is without them."""
+        good = "v -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\nf 1 2 3\nf 1 3 4\n"
+        bad = good + "f 1 1 2\nf 3 3 3\nf 1 2 1\n" + "f 2 2 2\n" * 10
+        lamp = {"class": "Emitter", "radiance": 2, "isTwoSided": True}
+        point = ({"class": "Sphere", "center": [0, 2, 0], "radius": 0}, lamp)
+        for sampler in ("power", "tree"):
+            means = []
+            for text, more in ((good, []), (bad, [point])):
+                self.write("lamp.obj", text)
+                self.scene(
+                    [(FLOOR, CLAY), *more],
+                    camera="Under",
+                    depth=1,
+                    spp=256,
+                    nodes={"lamp": {"mesh": "lamp.obj", "material": lamp}},
+                    root="lamp",
+                )
+                self.sampled_by(sampler)
+                _, messages = self.run_rtslc("render", "scene.json", "-o", "z.exr", "-q")
+                self.assertNotIn("not a number", messages)
+                means.append(self.mean()[0])
+            self.assertAlmostEqual(means[0], means[1], delta=0.01 * means[0])
+
     def test_both_ways_find_the_same_light(self):
         """What materials find by chance is weighed against what the tree finds, at smooth and rough
         surfaces, for a whole path."""

@@ -149,6 +149,22 @@ class ClosedForms(MediaCase):
             )
             self.assert_color([s * phase * math.pi * 2 * (1 - math.exp(-rate)) / rate] * 3, 0.01)
 
+    def test_single_scattering_of_colors(self):
+        """The same where each color is scattered and absorbed at a rate of its own."""
+        scattering, absorption = [0.8, 0.3, 0.6], [0.4, 0.2, 0.9]
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": scattering, "absorption": absorption},
+            SLAB,
+            depth=2,
+            spp=4096,
+            lights=[{"class": "DistantLight", "direction": [0, 0, 1], "irradiance": 2}],
+        )
+        expected = []
+        for s, a in zip(scattering, absorption):
+            rate = 2 * (s + a)
+            expected.append(s / (4 * math.pi) * math.pi * 2 * (1 - math.exp(-rate)) / rate)
+        self.assert_color(expected, 0.05)
+
     def test_a_grid(self):
         """Density that rises along z, for all rays alike: what passes depends on its integral
         alone."""

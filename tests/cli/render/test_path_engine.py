@@ -312,6 +312,43 @@ class ClosedForms(PathCase):
                         for one, other in zip(found, wanted):
                             self.assertAlmostEqual(one, other, delta=2e-3 * other)
 
+    def test_densities_of_0_absorb(self):
+        """A material whose `sampleBSDF` writes a density of 0 sends out what shines, and no NaN."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Absorbs : Own {
+  void sampleBSDF() { rt_LightDirection = normal(); rt_BSDFValue = color(1.0); rt_PDF = 0.0; }
+};
+""",
+        )
+        self.scene([(BALL, {"class": "Absorbs", "albedo": 0, "glow": 0.25})], spp=4)
+        self.assert_gray(0.25, 1e-6)
+
+    def test_values_that_are_no_numbers_are_left_out(self):
+        """A BSDF that is NaN in half of its samples: the picture is that of the others, and the
+        message says which line it was."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Broken : Own {
+  void sampleBSDF() {
+    rt_LightDirection = normal();
+    rt_PDF = -1.0;
+    float zero = rt_RayDirection.x - rt_RayDirection.x;
+    rt_BSDFValue = color(rand() < 0.5 ? zero / zero : 0.0);
+  }
+};
+""",
+        )
+        self.scene([(BALL, {"class": "Broken", "albedo": 0, "glow": 0.25})], spp=16, depth=2)
+        self.assert_gray(0.25, 1e-6)
+        _, messages = self.run_rtslc("render", "scene.json", "-o", "a.exr")
+        self.assertIn("were infinite or not a number", messages)
+        self.assertIn("zero / zero", messages)
+
     def test_only_shade(self):
         """Its color counts, and its own rays are answered by `shade`."""
         self.scene([(BALL, {"class": "Shaded"})], depth=5, spp=1)
