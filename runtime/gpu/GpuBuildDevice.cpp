@@ -10,7 +10,7 @@ namespace rtsl::runtime {
 GpuBuildDevice::~GpuBuildDevice() {
   try {
     if (code)
-      device.unload(code);
+      device.unload(*code);
   } catch (const Error &) { // after a failure of the device
   }
 }
@@ -21,7 +21,7 @@ void GpuBuildDevice::load() {
 #define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
 #include "runtime/device/trees/Steps.def"
        })
-    kernels.push_back(device.kernel(name, code));
+    kernels.push_back(device.kernel(name, *code));
 }
 
 BuildDevice::Address GpuBuildDevice::allocate(std::size_t bytes, const char *what) {

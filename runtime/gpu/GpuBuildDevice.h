@@ -2,8 +2,9 @@
 #pragma once
 
 #include "runtime/accel/ClusterTree.h"
-#include "runtime/gpu/CudaDriver.h"
+#include "runtime/gpu/CudaDevice.h"
 
+#include <optional>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -29,7 +30,7 @@ private:
   void load();
 
   CudaDevice &device;
-  CudaDevice::Module code = nullptr;
+  std::optional<CudaDevice::Module> code;
   std::vector<CudaDevice::Kernel> kernels; // by step
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <type_traits>
 
 namespace rtsl::runtime {
 
@@ -45,13 +46,17 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
                          const RenderOptions &options)
     : Megakernel(std::move(scene), options), device(device) {
   const Clock::time_point start = Clock::now();
-  device.load(code.ptx, code.maxRegisters);
-  kernel = device.kernel("rtsl_render");
-  sumKernel = device.kernel("rtsl_sum");
+  program = device.compile(code.ptx.c_str(), code.maxRegisters);
+  kernel = device.kernel("rtsl_render", program);
+  sumKernel = device.kernel("rtsl_sum", program);
   figures.device = device.name();
   figures.loadSeconds = secondsSince(start);
   figures.registers = kernel.registers;
   figures.localBytes = kernel.localBytes;
+  figures.spillStores = kernel.spillStores;
+  figures.spillLoads = kernel.spillLoads;
+  figures.occupancy =
+      double(device.blocksAtOnce(kernel, threadsPerBlock)) * threadsPerBlock / device.mostThreads();
   figures.laneBytes = code.laneBytes;
   figures.threadsPerBlock = threadsPerBlock;
   try {
@@ -70,8 +75,10 @@ GpuRenderer::~GpuRenderer() {
 
 void GpuRenderer::release() {
   try {
+    device.use();
     for (const Address one : memory)
       device.release(one);
+    device.unload(program);
   } catch (const Error &) { // after a failure of the device nothing can be freed
   }
   memory.clear();
@@ -101,13 +108,13 @@ std::unique_ptr<BuildDevice> GpuRenderer::buildDevice() {
 
 Megakernel::Address GpuRenderer::clearedPixels() {
   if (!pixelAddress)
-    pixelAddress = allocate(pixelBytes(), "the picture");
+    pixelAddress = allocate(pixelBytes(), "the picture"); // of the most pixels
   device.clear(pixelAddress, pixelBytes());
   return pixelAddress;
 }
 
 void GpuRenderer::fetchPixels() {
-  device.download(picture.pixels.data(), pixelAddress, pixelBytes());
+  device.download(pixels, pixelAddress, pixelBytes());
 }
 
 std::uint64_t GpuRenderer::sliceBytes() {
@@ -133,11 +140,25 @@ RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
     if (bytes == 0)
       return;
     if (!address)
-      address =
-          reinterpret_cast<decltype(values.data())>(allocate(bytes, "the sums of the pixels"));
+      address = reinterpret_cast<decltype(values.data())>(
+          allocate(pixelCount() * (bytes / sums.pixels()), "the sums of the pixels"));
     device.upload(reinterpret_cast<Address>(address), values.data(), bytes);
   });
   return sumsOnDevice;
+}
+
+RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {
+  const auto clear = [&](auto *&address, std::uint64_t perPixel) {
+    const std::uint64_t bytes = perPixel * sizeof *address;
+    if (!address)
+      address = reinterpret_cast<std::remove_reference_t<decltype(address)>>(
+          allocate(pixelCount() * bytes, "the sums of the pixels"));
+    device.clear(reinterpret_cast<Address>(address), pixels * bytes);
+  };
+  clear(ownSums.colors, channels());
+  clear(ownSums.counted, 1);
+  clear(ownSums.taken, 1);
+  return ownSums;
 }
 
 void GpuRenderer::fetchSums() {

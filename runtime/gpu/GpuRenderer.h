@@ -1,7 +1,7 @@
 //===- GpuRenderer.h - a scene on a CUDA device ---------------------------===//
 #pragma once
 
-#include "runtime/gpu/CudaDriver.h"
+#include "runtime/gpu/CudaDevice.h"
 #include "runtime/render/Megakernel.h"
 
 #include <cstdint>
@@ -21,22 +21,27 @@ struct GpuCode {
 struct GpuStatistics {
   std::string device;
   int registers = 0, localBytes = 0; // per thread
+  // Bytes, in the code; not known of code that the driver had compiled before.
+  std::optional<int> spillStores, spillLoads;
   unsigned blocks = 0, threadsPerBlock = 0;
   std::uint64_t laneBytes = 0;
-  double loadSeconds = 0;   // the driver's compiler, on PTX that it has not seen
-  double uploadSeconds = 0; // the scene
+  double occupancy = 0;      // the share of the threads of a multiprocessor that run at once
+  double loadSeconds = 0;    // the driver's compiler, on PTX that it has not seen
+  double uploadSeconds = 0;  // the scene
+  std::uint64_t samples = 0; // rendered in the last run, if there are several devices
 };
 
 class GpuRenderer final : public Megakernel {
 public:
-  /// Loads the program and copies the scene, which is not relocated, to the device. The device must
-  /// outlive the renderer, and load nothing else during its lifetime. Throws NoDevice, OutOfMemory,
-  /// OutOfRange.
+  /// Loads the program and copies the scene, which is not relocated, to the device, which must
+  /// outlive the renderer. Throws NoDevice, OutOfMemory, OutOfRange.
   GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scene,
               const RenderOptions &options);
   ~GpuRenderer() override;
 
   const GpuStatistics &gpu() const { return figures; }
+
+  void enterThread() override { device.use(); }
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &) override { return figures.laneBytes; }
@@ -51,6 +56,7 @@ private:
   std::uint64_t sliceBytes() override;
   double launchSeconds() const override { return 0.25; }
   RtslPixelSums placeSums(PixelSums &sums) override;
+  RtslPixelSums clearedSums(std::uint64_t pixels) override;
   void fetchSums() override;
   double runLanes(Address job) override;
   double addSamples(Address job) override;
@@ -58,14 +64,15 @@ private:
   void set(Address number, std::uint32_t value) override;
 
   void release();
-  std::uint64_t pixelBytes() const { return picture.pixels.size() * sizeof(float); }
+  std::uint64_t pixelBytes() const { return pixelFloats() * sizeof(float); }
 
   CudaDevice &device;
+  CudaDevice::Module program;
   CudaDevice::Kernel kernel, sumKernel;
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;
-  RtslPixelSums sumsOnDevice{}; // all null until there are sums
+  RtslPixelSums sumsOnDevice{}, ownSums{}; // all null until there are such sums
 };
 
 } // namespace rtsl::runtime

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace rtsl::runtime {
@@ -55,8 +56,18 @@ void HostMegakernel::own(Address address) {
   memory.emplace_back(reinterpret_cast<std::uint8_t *>(address));
 }
 
-Megakernel::Address HostMegakernel::clearedPixels() { // of a new picture
-  return reinterpret_cast<Address>(picture.pixels.data());
+Megakernel::Address HostMegakernel::clearedPixels() {
+  if (pixels) // which are not yet known while it is prepared
+    std::fill_n(pixels, pixelFloats(), 0.0f);
+  return reinterpret_cast<Address>(pixels);
+}
+
+RtslPixelSums HostMegakernel::clearedSums(std::uint64_t pixels) {
+  ownSums = PixelSums::make(pixels, channels());
+  ownSums.squares.clear();
+  RtslPixelSums sums = ownSums.pointers();
+  sums.squares = nullptr;
+  return sums;
 }
 
 double HostMegakernel::runLanes(Address job) {

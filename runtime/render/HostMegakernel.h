@@ -32,10 +32,11 @@ private:
   std::unique_ptr<BuildDevice> buildDevice() override;
   void own(Address address) override;
   Address clearedPixels() override;
-  void fetchPixels() override {} // they are those of the picture
+  void fetchPixels() override {} // they are there
   std::uint64_t sliceBytes() override { return std::uint64_t(64) << 20; }
   double launchSeconds() const override { return std::numeric_limits<double>::infinity(); }
   RtslPixelSums placeSums(PixelSums &sums) override { return sums.pointers(); }
+  RtslPixelSums clearedSums(std::uint64_t pixels) override;
   double runLanes(Address job) override;
   double addSamples(Address job) override;
   std::uint64_t get(Address number) override;
@@ -48,6 +49,7 @@ private:
   const MegakernelCode code;
   const HostThreads threads;
   std::vector<std::unique_ptr<std::uint8_t, Free>> memory;
+  PixelSums ownSums; // of clearedSums
 };
 
 } // namespace rtsl::runtime

@@ -24,13 +24,13 @@ void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *stat
   scene.setLaunch(launch);
 }
 
-RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options) {
+RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options,
+                            const Window &window) {
   if (status.problem != RTSL_PROBLEM_NONE)
     throw Error(message::rayStackOverflow(options.maxDepth));
   RenderStatistics statistics;
   statistics.samplesNotFinite = status.samplesNotFinite;
   statistics.pixelsWithoutSample = status.pixelsWithoutSample;
-  const Window window = windowOf(options);
   for (const std::uint64_t rank : status.firstNotFinite)
     if (rank != 0 && statistics.notFinite.size() < options.mostNotFinite) {
       const std::uint64_t pixel = ~rank >> 32;
@@ -61,28 +61,48 @@ void Megakernel::prepare() {
   scene = {};
   buildSeconds += std::chrono::duration<double>(Clock::now() - start).count();
 
-  makePicture(colorComponents);
   job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
   job.status = reinterpret_cast<RtslStatus *>(statusAddress);
-  const Window window = windowOf(options);
-  job.left = window.x0;
-  job.top = window.y0;
-  job.width = window.width();
-  job.height = window.height();
+  setWindow(windowOf(options));
   clearedPixels(); // allocates them before the rays, whose number adapts to the free memory
   const std::uint64_t bytesAtOnce = pixelCount() * colorComponents * sizeof(float);
   if (pixelCount() > mostInSlice)
     throw Error(message::tooManyPixelsForTarget(pixelCount(), mostInSlice));
   const std::uint64_t mostByMemory =
       options.wantsPicture ? sliceBytes() / bytesAtOnce : mostInSlice;
-  mostSamples =
-      std::uint32_t(std::clamp<std::uint64_t>(mostByMemory, 1, mostInSlice / pixelCount()));
-  mostSamples = std::min(mostSamples, options.samplesPerPixel);
+  const std::uint64_t ofPixel = std::min<std::uint64_t>(
+      std::clamp<std::uint64_t>(mostByMemory, 1, mostInSlice / pixelCount()),
+      options.samplesPerPixel);
+  mostInMemory = pixelCount() * ofPixel;
   if (options.wantsPicture)
-    job.samples = reinterpret_cast<float *>(allocate(bytesAtOnce * mostSamples, "samples"));
+    job.samples = reinterpret_cast<float *>(allocate(bytesAtOnce * ofPixel, "samples"));
   job.lanes = reinterpret_cast<std::uint8_t *>(
       allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
   jobAddress = allocate(sizeof job, "the launch");
+}
+
+void Megakernel::setWindow(const Window &window) {
+  job.left = window.x0;
+  job.top = window.y0;
+  job.width = window.width();
+  job.height = window.height();
+  windowPixels = window.pixels();
+}
+
+RenderStatistics Megakernel::renderPart(const Window &part, std::uint32_t samples,
+                                        PixelSums *partSums, float *to, Watch &watch) {
+  setWindow(part);
+  samplesOfPixel = samples;
+  sums = partSums;
+  if (sums)
+    uploadSums();
+  beginAt(to);
+  run(watch);
+  RenderStatistics statistics = finish();
+  if (sums)
+    fetchSums();
+  sums = nullptr;
+  return statistics;
 }
 
 /// For a scene without trees that was copied there.
@@ -103,6 +123,11 @@ void Megakernel::buildTreesAt(Address sceneAddress) {
 }
 
 void Megakernel::begin() {
+  beginAt(picture.pixels.data());
+}
+
+void Megakernel::beginAt(float *to) {
+  pixels = to;
   const RtslStatus nothing{};
   upload(statusAddress, &nothing, sizeof nothing);
   job.samplesPerPixel = samplesOfPixel;
@@ -114,19 +139,12 @@ void Megakernel::begin() {
   job.pixels = reinterpret_cast<float *>(clearedPixels());
   leastTaken = 0;
   isUneven = false;
-  openPixels = pixelCount();
+  openPixels = windowPixels;
   job.places = nullptr;
-  if (mostSamples < samplesOfPixel && options.wantsPicture)
-    placeOwnSums();
+  if (samplesAtOnce(openPixels) < samplesOfPixel && options.wantsPicture)
+    job.sums = clearedSums(windowPixels); // of a rendering that ends with its picture
   else
     job.sums = {};
-}
-
-/// The sums of a rendering that ends with its picture.
-void Megakernel::placeOwnSums() {
-  ownSums = PixelSums::make(pixelCount(), colorComponents);
-  ownSums.squares.clear();
-  job.sums = placeSums(ownSums);
 }
 
 void Megakernel::run(Watch &watch) {
@@ -137,7 +155,7 @@ void Megakernel::run(Watch &watch) {
   const auto share = [&](std::uint64_t samples) { return double(before + samples) / double(all); };
   while (leastTaken < samplesOfPixel && !watch.isStopped()) {
     job.firstSample = leastTaken;
-    job.sampleCount = std::min(samplesAtOnce(), samplesOfPixel - leastTaken);
+    job.sampleCount = std::min(samplesAtOnce(openPixels), samplesOfPixel - leastTaken);
     job.taken = isUneven ? job.sums.taken : nullptr;
     runSlice(watch, share);
     const std::uint64_t whole = openPixels * job.sampleCount;
@@ -184,15 +202,16 @@ RenderStatistics Megakernel::finish() {
   download(&status, statusAddress, sizeof status);
   RenderOptions ofRun = options;
   ofRun.samplesPerPixel = samplesOfPixel;
-  RenderStatistics statistics = readStatus(status, ofRun);
+  const Window window = {job.left, job.top, job.left + job.width, job.top + job.height};
+  RenderStatistics statistics = readStatus(status, ofRun, window);
   statistics.kernelSeconds = kernelSeconds;
   if (leastTaken == samplesOfPixel) {
-    statistics.pixels = pixelCount();
+    statistics.pixels = windowPixels;
     statistics.samples = openPixels * samplesOfPixel;
   } else { // pixels have samples of the slice in the order of their numbers
     statistics.samples = openPixels * leastTaken + samplesOfSlice;
     if (leastTaken + job.sampleCount == samplesOfPixel)
-      statistics.pixels = pixelCount() - openPixels + samplesOfSlice / job.sampleCount;
+      statistics.pixels = windowPixels - openPixels + samplesOfSlice / job.sampleCount;
   }
   if (!sums)
     fetchPixels();
@@ -213,11 +232,11 @@ void Megakernel::uploadSums() {
 /// Lists the pixels that take samples, if others do not.
 void Megakernel::placeOpenPixels() {
   job.places = nullptr;
-  if (openPixels == pixelCount() || openPixels == 0)
+  if (openPixels == windowPixels || openPixels == 0)
     return;
   std::vector<std::uint32_t> places;
   places.reserve(openPixels);
-  for (std::uint32_t place = 0; place < pixelCount(); ++place)
+  for (std::uint32_t place = 0; place < windowPixels; ++place)
     if (sums->isOpen(device::pixelAt(job, place).number(job)))
       places.push_back(place);
   if (!placesAddress)
@@ -227,9 +246,9 @@ void Megakernel::placeOpenPixels() {
   job.placeCount = std::uint32_t(places.size());
 }
 
-/// The samples of a pixel in a slice. Fewer pixels leave room for more.
-std::uint32_t Megakernel::samplesAtOnce() const {
-  const std::uint64_t most = pixelCount() * mostSamples / std::max<std::uint64_t>(openPixels, 1);
+/// The samples of each of so many pixels in a slice. Fewer pixels leave room for more.
+std::uint32_t Megakernel::samplesAtOnce(std::uint64_t pixels) const {
+  const std::uint64_t most = mostInMemory / std::max<std::uint64_t>(pixels, 1);
   return std::uint32_t(std::min(most, mostInSlice));
 }
 

@@ -22,11 +22,28 @@ namespace rtsl::runtime {
 /// Sets the size, depth and seed of the scene's launch, and its status.
 void setOptions(FlatScene &scene, const RenderOptions &options, RtslStatus *status);
 
-/// What rays and samples have met, by the status of a job. Throws Internal if the lanes had too
-/// little memory.
-RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options);
+/// What rays and samples have met, by the status of a job that renders the window. Throws Internal
+/// if the lanes had too little memory.
+RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &options,
+                            const Window &window);
 
 class Megakernel : public Backend {
+public:
+  /// Renders rows of the picture until each pixel has `samplesOfPixel` samples: the share of one of
+  /// several devices (SeveralDevices.h). A part may not have more pixels than the options. It goes
+  /// on with `sums`, those of the part; if null, it writes its pixels to `to`. Throws as
+  /// Backend::render, but not Cancelled.
+  RenderStatistics renderPart(const Window &part, std::uint32_t samplesOfPixel, PixelSums *sums,
+                              float *to, Watch &watch);
+  /// A thread calls it before renderPart(), unless it made the backend.
+  virtual void enterThread() {}
+  /// How many samples it renders before it adds them up.
+  std::uint64_t samplesInMemory() const { return mostInMemory; }
+  /// Of the program's colors.
+  std::uint32_t channels() const final { return colorComponents; }
+  double secondsToPrepare() const { return buildSeconds; }
+  const std::optional<TreeFigures> &builtTrees() const { return trees; }
+
 protected:
   /// An address in the device's memory.
   using Address = std::uint64_t;
@@ -39,6 +56,10 @@ protected:
   RtslLaunch launch() const { return scene.launch(); }
   /// Copies the scene and the job to the device. Throws OutOfMemory.
   void prepare();
+
+  /// Floats of the pixels that are rendered.
+  std::uint64_t pixelFloats() const { return windowPixels * colorComponents; }
+  float *pixels = nullptr; // where finish() leaves them
 
 private:
   /// The result of rtsl_lane_bytes for this launch, a multiple of 16.
@@ -54,7 +75,7 @@ private:
   virtual void own(Address memory) = 0;
   /// The address of the pixels on the device, which are set to 0.
   virtual Address clearedPixels() = 0;
-  /// Copies them to `picture`.
+  /// Copies them to `pixels`.
   virtual void fetchPixels() = 0;
   /// The bytes that the samples of a slice may take.
   virtual std::uint64_t sliceBytes() = 0;
@@ -62,6 +83,8 @@ private:
   virtual double launchSeconds() const = 0;
   /// Copies sums to the device, and gives their addresses there.
   virtual RtslPixelSums placeSums(PixelSums &sums) = 0;
+  /// The addresses of sums on the device without samples, and without squares.
+  virtual RtslPixelSums clearedSums(std::uint64_t pixels) = 0;
   /// Run all lanes of the job and wait for them: for its samples, and to add these to the sums.
   /// Return RenderStatistics::kernelSeconds.
   virtual double runLanes(Address job) = 0;
@@ -70,16 +93,17 @@ private:
   virtual std::uint64_t get(Address number) = 0;
   virtual void set(Address number, std::uint32_t value) = 0;
 
-  std::uint32_t channels() const final { return colorComponents; }
   void begin() final;
+  void beginAt(float *to);
   void run(Watch &watch) final;
   RenderStatistics finish() final;
   void uploadSums() final;
+  void fetchSums() override {}
+  void setWindow(const Window &window);
   /// `share` gives what is done of the run, for a number of samples of the slice.
   void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
-  void placeOwnSums();
   void placeOpenPixels();
-  std::uint32_t samplesAtOnce() const;
+  std::uint32_t samplesAtOnce(std::uint64_t pixels) const;
   void buildTreesAt(Address sceneAddress);
 
   FlatScene scene; // empty after prepare()
@@ -87,8 +111,8 @@ private:
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0, placesAddress = 0;
   RtslJob job{};
-  std::uint32_t mostSamples = 1; // of a pixel in a slice
-  PixelSums ownSums;             // zeros: what a rendering that needs several slices begins with
+  std::uint64_t windowPixels = 0; // of the job
+  std::uint64_t mostInMemory = 1; // samples of a slice
   RtslPixelSums placedSums{};
   // Of the sums: pixels that take samples, how many each of them has, and whether some have more.
   std::uint64_t openPixels = 0;

@@ -64,19 +64,6 @@ private:
   std::thread thread;
 };
 
-/// Adds what a pass has met.
-void addMet(RenderStatistics &&pass, std::size_t mostNotFinite, RenderStatistics &met) {
-  met.badRays += pass.badRays;
-  met.retracedRays += pass.retracedRays;
-  met.rescaledRays += pass.rescaledRays;
-  met.raysTooDeep += pass.raysTooDeep;
-  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
-    met.exceptions[i] += pass.exceptions[i];
-  met.notFinite.insert(met.notFinite.end(), pass.notFinite.begin(), pass.notFinite.end());
-  std::sort(met.notFinite.begin(), met.notFinite.end());
-  met.notFinite.resize(std::min(met.notFinite.size(), mostNotFinite));
-}
-
 bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdaptive) {
   const bool endsByError = passes.error > 0 && !isAdaptive; // there pixels end one by one
   return state.seconds >= passes.seconds || (endsByError && state.error <= passes.error);

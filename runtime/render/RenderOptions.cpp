@@ -16,6 +16,18 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
     throw Error(message::optionOutOfRange(what, lowest, highest, value));
 }
 
+void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met) {
+  met.badRays += part.badRays;
+  met.retracedRays += part.retracedRays;
+  met.rescaledRays += part.rescaledRays;
+  met.raysTooDeep += part.raysTooDeep;
+  for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
+    met.exceptions[i] += part.exceptions[i];
+  met.notFinite.insert(met.notFinite.end(), part.notFinite.begin(), part.notFinite.end());
+  std::sort(met.notFinite.begin(), met.notFinite.end());
+  met.notFinite.resize(std::min(met.notFinite.size(), most));
+}
+
 void setLaunch(RtslLaunch &launch, const RenderOptions &options) {
   launch.width = options.width;
   launch.height = options.height / options.slices;

@@ -100,6 +100,10 @@ struct RenderStatistics {
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
 };
 
+/// Adds what a part of the rendering has met: its rays, its exceptions, and the first `most` of its
+/// samples that are not finite.
+void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met);
+
 /// Sets the size, depth and seed of a launch.
 void setLaunch(RtslLaunch &launch, const RenderOptions &options);
 

@@ -13,14 +13,13 @@ static constexpr double infinite = std::numeric_limits<double>::infinity();
 void Watch::advance(std::uint64_t all) {
   std::lock_guard<std::mutex> lock(mutex);
   ++done;
-  if (options.progress)
-    options.progress(double(done) / double(all));
+  report(double(done) / double(all));
 }
 
 Watch::Poll::Poll(const Watch &watch, double seconds, std::function<double()> share,
                   std::function<void()> stop)
     : watch(watch), seconds(seconds), share(std::move(share)), stop(std::move(stop)) {
-  if (watch.options.progress || watch.options.cancel || seconds < infinite)
+  if (watch.options.progress || watch.options.cancel || watch.whole || seconds < infinite)
     thread = std::thread([this] { run(); });
 }
 
@@ -50,7 +49,7 @@ void Watch::Poll::run() {
         hasStopped = true;
       }
       if (watch.options.progress)
-        watch.options.progress(std::min(1.0, share()));
+        watch.report(std::min(1.0, share()));
       lock.lock();
       ended.wait_for(lock, pause, [this] { return isOver; });
     }

@@ -15,15 +15,23 @@ namespace rtsl::runtime {
 /// use isStopped and advance; programs that cannot are polled.
 class Watch {
 public:
-  explicit Watch(const RenderOptions &options) : options(options) {}
+  /// Of a part of what `whole` watches; null: of all of it.
+  explicit Watch(const RenderOptions &options, const Watch *whole = nullptr)
+      : options(options), whole(whole) {}
 
   /// Whether the caller cancelled, or stop() was called. Cheap; callable from any thread.
   bool isStopped() const {
     return stopped.load(std::memory_order_relaxed) ||
-           (options.cancel && options.cancel->load(std::memory_order_relaxed));
+           (options.cancel && options.cancel->load(std::memory_order_relaxed)) ||
+           (whole && whole->isStopped());
   }
   void stop() { stopped = true; }
 
+  /// Reports the share that is done, in [0, 1]. One thread at a time calls it.
+  void report(double share) const {
+    if (options.progress)
+      options.progress(share);
+  }
   /// Reports that one more of `all` pieces is done. Callable from any thread.
   void advance(std::uint64_t all);
 
@@ -54,6 +62,7 @@ public:
 
 private:
   const RenderOptions &options;
+  const Watch *const whole;
   std::atomic<bool> stopped{false};
   std::mutex mutex;
   std::uint64_t done = 0;

@@ -1,7 +1,9 @@
-// Stands in for libcuda.so.1: a device whose memory is the process's, and whose kernel rtsl_render
-// paints a pattern after having checked that it was launched as it has to be. FAKE_CUDA makes it
-// fail in one of the ways in which drivers and devices do, or paint half of the picture and go on
-// until it is stopped, again and again ("endless").
+// Stands in for libcuda.so.1: devices whose memory is the process's, and whose kernel rtsl_render
+// paints a pattern after having checked that it was launched as it has to be. There are
+// FAKE_CUDA_DEVICES of them, or one; a thread that uses memory of another one than its own fails.
+// FAKE_CUDA makes them fail in one of the ways in which drivers and devices do, or paint half of
+// the picture and go on until they are stopped, again and again ("endless"), or take longer on one
+// of them ("uneven").
 #include "runtime/device/engines/SampleSums.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/trees/Clusters.h"
@@ -15,6 +17,7 @@
 #include <cstring>
 #include <iterator>
 #include <map>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -38,10 +41,22 @@ bool is(const char *failure) {
   return wanted && std::strcmp(wanted, failure) == 0;
 }
 
-RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
+/// With "uneven" one device is slower than the others.
+constexpr std::size_t mostDevices = 4, slowDevice = 1;
 
-std::map<std::uintptr_t, std::size_t> allocations;
-std::size_t allocated = 0;
+struct Device {
+  std::mutex mutex;
+  std::map<std::uintptr_t, std::size_t> allocations;
+  std::size_t allocated = 0;
+  RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
+};
+Device devices[mostDevices];
+thread_local Device *current = nullptr; // of this thread
+
+int deviceCount() {
+  const char *count = std::getenv("FAKE_CUDA_DEVICES");
+  return count ? std::atoi(count) : 1;
+}
 
 std::size_t totalMemory() {
   return is("little-memory") ? littleMemory : std::size_t(1) << 30;
@@ -49,9 +64,12 @@ std::size_t totalMemory() {
 
 /// Do `bytes` at the address belong to one allocation?
 bool isAllocated(const void *address, std::size_t bytes) {
+  if (!current)
+    return false;
+  const std::lock_guard<std::mutex> lock(current->mutex);
   const auto start = reinterpret_cast<std::uintptr_t>(address);
-  auto after = allocations.upper_bound(start);
-  if (after == allocations.begin())
+  auto after = current->allocations.upper_bound(start);
+  if (after == current->allocations.begin())
     return false;
   --after;
   return start + bytes <= after->first + after->second;
@@ -101,7 +119,7 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads) {
   for (std::uint64_t i = first; i < end; ++i)
     paint(job, i);
   __atomic_store_n(&job.status->nextSample, end, __ATOMIC_RELAXED);
-  endlessStatus = is("endless") ? job.status : nullptr;
+  current->endlessStatus = is("endless") ? job.status : nullptr;
   if (is("overflow"))
     job.status->problem = RTSL_PROBLEM_STACK;
   return Success;
@@ -177,56 +195,62 @@ int cuGetErrorString(int status, const char **text) {
   return Success;
 }
 int cuDeviceGetCount(int *count) {
-  *count = 1;
+  *count = deviceCount();
   return Success;
 }
-int cuDeviceGet(int *device, int) {
-  *device = 0;
-  return Success;
+int cuDeviceGet(int *device, int ordinal) {
+  *device = ordinal;
+  return ordinal < deviceCount() ? Success : InvalidValue;
 }
 int cuDeviceGetName(char *name, int size, int) {
   std::snprintf(name, std::size_t(size), "Fake 1000");
   return Success;
 }
 int cuDeviceGetAttribute(int *value, int attribute, int) {
-  *value = attribute == 16 ? int(multiprocessors) : attribute == 75 ? 7 : 5;
+  *value = attribute == 16   ? int(multiprocessors)
+           : attribute == 39 ? 1024
+           : attribute == 75 ? 7
+                             : 5;
   return Success;
 }
-int cuDevicePrimaryCtxRetain(void **context, int) {
-  *context = &allocations;
+int cuDevicePrimaryCtxRetain(void **context, int device) {
+  *context = &devices[device];
   return Success;
 }
-int cuDevicePrimaryCtxRelease_v2(int) {
-  for (auto &one : allocations)
+int cuDevicePrimaryCtxRelease_v2(int device) {
+  for (auto &one : devices[device].allocations)
     std::free(reinterpret_cast<void *>(one.first));
-  allocations.clear();
+  devices[device].allocations.clear();
   return Success;
 }
-int cuCtxSetCurrent(void *) {
+int cuCtxSetCurrent(void *context) {
+  current = static_cast<Device *>(context);
   return Success;
 }
 int cuMemGetInfo_v2(std::size_t *free, std::size_t *total) {
   *total = totalMemory();
-  *free = *total - allocated;
+  *free = *total - current->allocated;
   return Success;
 }
 int cuMemAlloc_v2(std::uint64_t *address, std::size_t bytes) {
-  if (bytes > totalMemory() - allocated)
+  const std::lock_guard<std::mutex> lock(current->mutex);
+  if (bytes > totalMemory() - current->allocated)
     return OutOfMemory;
   const std::size_t rounded = (bytes + 255) / 256 * 256;
   void *memory = std::aligned_alloc(256, rounded);
   std::memset(memory, 0xa5, rounded);
   *address = reinterpret_cast<std::uintptr_t>(memory);
-  allocations[*address] = bytes;
-  allocated += bytes;
+  current->allocations[*address] = bytes;
+  current->allocated += bytes;
   return Success;
 }
 int cuMemFree_v2(std::uint64_t address) {
-  const auto found = allocations.find(address);
-  if (found == allocations.end())
+  const std::lock_guard<std::mutex> lock(current->mutex);
+  const auto found = current->allocations.find(address);
+  if (found == current->allocations.end())
     return InvalidValue;
-  allocated -= found->second;
-  allocations.erase(found);
+  current->allocated -= found->second;
+  current->allocations.erase(found);
   std::free(reinterpret_cast<void *>(address));
   return Success;
 }
@@ -264,7 +288,7 @@ int cuMemcpyDtoD_v2(std::uint64_t to, std::uint64_t from, std::size_t bytes) {
   return Success;
 }
 int cuStreamCreate(void **stream, unsigned flags) {
-  *stream = &allocations;
+  *stream = current;
   return flags == 1 ? Success : InvalidValue; // it must not wait for the kernel
 }
 int cuStreamDestroy_v2(void *) {
@@ -295,18 +319,25 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
                        void **values) {
   if (is("old-ptx"))
     return UnsupportedPtxVersion;
+  char *errors = nullptr, *log = nullptr;
+  for (unsigned i = 0; i < count; ++i) {
+    if (options[i] == 5)
+      errors = static_cast<char *>(values[i]);
+    if (options[i] == 3)
+      log = static_cast<char *>(values[i]);
+  }
   if (is("other-gpu")) {
-    for (unsigned i = 0; i < count; ++i)
-      if (options[i] == 5)
-        std::strcpy(static_cast<char *>(values[i]), "SM version 120 is needed");
+    std::strcpy(errors, "SM version 120 is needed");
     return NoBinaryForGpu;
   }
-  const char *ptx = static_cast<const char *>(image);
-  *module = &allocations;
-  const bool builds = std::strstr(ptx, ".entry rtsl_build_");
+  std::strcpy(log, "ptxas info    : Function properties for rtsl_render\n"
+                   "    16 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads\n");
+  const char *code = static_cast<const char *>(image);
+  *module = current;
+  const bool builds = std::strstr(code, ".entry rtsl_build_");
   for (std::size_t i = 0; i < std::size(kernels); ++i)
     if (builds == (i >= programKernels) &&
-        !std::strstr(ptx, (std::string(".entry ") + kernels[i] + "(").c_str()))
+        !std::strstr(code, (std::string(".entry ") + kernels[i] + "(").c_str()))
       return InvalidValue;
   return Success;
 }
@@ -348,12 +379,15 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
   return function == &kernels[0] ? render(job, blocks, threads) : sum(job);
 }
 int cuCtxSynchronize() {
-  while (endlessStatus && !__atomic_load_n(&endlessStatus->stop, __ATOMIC_RELAXED))
+  if (is("uneven") && current == &devices[slowDevice])
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  RtslStatus *const endless = current->endlessStatus;
+  while (endless && !__atomic_load_n(&endless->stop, __ATOMIC_RELAXED))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return is("fault") ? IllegalAddress : Success;
 }
 int cuEventCreate(void **event, unsigned) {
-  *event = &allocated; // anything but null
+  *event = current; // anything but null
   return Success;
 }
 int cuEventDestroy_v2(void *) {

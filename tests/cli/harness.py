@@ -119,15 +119,21 @@ class Case(unittest.TestCase):
             )
         return (done.stdout or b"").decode("utf-8", "replace"), error
 
-    def run_with_fake_driver(self, command, status=FINE, fake="", folder=None):
+    def run_with_fake_driver(self, command, status=FINE, fake="", folder=None, devices=1):
         """Gives (standard output, standard error) of a command that finds the stand-in of the CUDA
-        driver, or what is in `folder`; `fake` names a way in which the stand-in fails."""
+        driver, with so many devices, or what is in `folder`; `fake` names a way in which the
+        stand-in fails."""
         folder = folder or os.environ["FAKE_CUDA_FOLDER"]
         done = subprocess.run(
             command,
             cwd=self.folder,
             timeout=SECONDS,
-            env={**os.environ, "LD_LIBRARY_PATH": str(folder), "FAKE_CUDA": fake},
+            env={
+                **os.environ,
+                "LD_LIBRARY_PATH": str(folder),
+                "FAKE_CUDA": fake,
+                "FAKE_CUDA_DEVICES": str(devices),
+            },
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

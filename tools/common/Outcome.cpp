@@ -67,10 +67,15 @@ std::string treeText(const runtime::TreeFigures &tree) {
 }
 
 std::string gpuText(const runtime::GpuStatistics &gpu) {
-  return fmt::format("{}: {} registers and {} local bytes per thread, {} blocks of {} threads, {} "
-                     "bytes for the rays of each; code loaded in {:.0f} ms, scene in {:.0f} ms",
-                     gpu.device, gpu.registers, gpu.localBytes, gpu.blocks, gpu.threadsPerBlock,
-                     gpu.laneBytes, gpu.loadSeconds * 1e3, gpu.uploadSeconds * 1e3);
+  const std::string spills =
+      gpu.spillStores && *gpu.spillStores > 0 ? fmt::format(" ({} spilled)", *gpu.spillStores) : "";
+  const std::string samples = gpu.samples > 0 ? fmt::format("{} samples; ", gpu.samples) : "";
+  return fmt::format("{}: {}{} registers and {} local bytes{} per thread, {} blocks of {} threads "
+                     "({:.0f} % of those that fit), {} bytes for the rays of each; code loaded in "
+                     "{:.0f} ms, scene in {:.0f} ms",
+                     gpu.device, samples, gpu.registers, gpu.localBytes, spills, gpu.blocks,
+                     gpu.threadsPerBlock, gpu.occupancy * 100, gpu.laneBytes, gpu.loadSeconds * 1e3,
+                     gpu.uploadSeconds * 1e3);
 }
 
 } // namespace rtsl::tool

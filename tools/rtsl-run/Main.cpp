@@ -7,13 +7,14 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/buffers/BufferOutput.h"
-#include "runtime/gpu/GpuRenderer.h"
+#include "runtime/gpu/Gpus.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/package/Package.h"
 #include "runtime/render/HostMegakernel.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
 #include "tools/common/BufferOptions.h"
+#include "tools/common/GpuOptions.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/OutOfMemory.h"
@@ -44,7 +45,8 @@ struct Options {
   std::optional<tool::PictureSize> size;
   std::optional<runtime::Window> crop;
   std::optional<runtime::TreeKind> tree;
-  std::uint32_t threads = 0, registers = 0;
+  std::uint32_t threads = 0;
+  tool::GpuOptions gpu;
   bool quiet = false, json = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
 };
@@ -73,9 +75,22 @@ std::string notFiniteJson(const std::vector<runtime::SampleId> &samples) {
   return "[" + text + "]";
 }
 
+/// Without brackets.
+std::string gpuJson(const runtime::GpuStatistics &gpu) {
+  std::string text =
+      fmt::format("\"registers\": {}, \"localBytes\": {}, \"occupancy\": {}, \"blocks\": {}, "
+                  "\"threadsPerBlock\": {}, \"loadSeconds\": {}, \"uploadSeconds\": {}",
+                  gpu.registers, gpu.localBytes, gpu.occupancy, gpu.blocks, gpu.threadsPerBlock,
+                  gpu.loadSeconds, gpu.uploadSeconds);
+  if (gpu.spillStores)
+    text +=
+        fmt::format(", \"spillStores\": {}, \"spillLoads\": {}", *gpu.spillStores, *gpu.spillLoads);
+  return text;
+}
+
 std::string toJson(const runtime::Package &package, const runtime::RenderOptions &render,
                    const runtime::RenderStatistics &statistics,
-                   const std::optional<runtime::GpuStatistics> &gpu) {
+                   const std::vector<runtime::GpuStatistics> &gpus) {
   std::string text = fmt::format(
       "{{\"version\": 1, \"size\": [{}, {}], \"spp\": {}, \"seed\": {}, \"depth\": {},\n"
       " \"renderSeconds\": {}, \"samplesPerSecond\": {}, \"samples\": {}, \"pixels\": {}, "
@@ -91,12 +106,16 @@ std::string toJson(const runtime::Package &package, const runtime::RenderOptions
       package.laneBytes[render.maxDepth]);
   if (statistics.isUnfinished)
     text += fmt::format(",\n \"stoppedBy\": \"{}\"", tool::interruption());
-  if (gpu)
-    text += fmt::format(
-        ",\n \"registers\": {}, \"localBytes\": {}, \"blocks\": {}, \"threadsPerBlock\": {},\n"
-        " \"loadSeconds\": {}, \"uploadSeconds\": {}, \"kernelSeconds\": {}",
-        gpu->registers, gpu->localBytes, gpu->blocks, gpu->threadsPerBlock, gpu->loadSeconds,
-        gpu->uploadSeconds, statistics.kernelSeconds);
+  if (!gpus.empty())
+    text += fmt::format(",\n {}, \"kernelSeconds\": {}", gpuJson(gpus.front()),
+                        statistics.kernelSeconds);
+  if (gpus.size() > 1) {
+    text += ",\n \"gpus\": [";
+    for (const runtime::GpuStatistics &gpu : gpus)
+      text += fmt::format("{}{{\"samples\": {}, {}}}", &gpu == &gpus.front() ? "" : ",\n  ",
+                          gpu.samples, gpuJson(gpu));
+    text += "]";
+  }
   if (const auto &tree = statistics.tree)
     text +=
         fmt::format(",\n \"tree\": {{\"kind\": \"{}\", \"seconds\": {}, \"nodes\": {}, "
@@ -121,10 +140,10 @@ void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics 
 
 void report(const Options &options, const runtime::Package &package,
             const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics,
-            const std::optional<runtime::GpuStatistics> &gpu) {
+            const std::vector<runtime::GpuStatistics> &gpus) {
   warn(render, statistics);
   if (options.json)
-    return tool::printOut(toJson(package, render, statistics, gpu));
+    return tool::printOut(toJson(package, render, statistics, gpus));
   if (options.quiet)
     return;
   fmt::print(stderr, "{}: {}x{}, {} spp; rendered in {:.3f} s ({:.2f} million samples/s)\n",
@@ -133,8 +152,8 @@ void report(const Options &options, const runtime::Package &package,
                                       : options.output,
              render.width, render.height, render.samplesPerPixel, statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
-  if (gpu)
-    fmt::print(stderr, "{}\n", tool::gpuText(*gpu));
+  for (const runtime::GpuStatistics &gpu : gpus)
+    fmt::print(stderr, "{}\n", tool::gpuText(gpu));
   if (statistics.tree)
     fmt::print(stderr, "{}\n", tool::treeText(*statistics.tree));
   if (const std::string text = tool::badRaysText(statistics); !text.empty())
@@ -214,15 +233,17 @@ int render(const Options &options) {
   readBuffers(options, buffers, render);
   const std::optional<runtime::Image> reference = readReference(options, package, render);
   runtime::RenderStatistics statistics;
-  std::optional<runtime::GpuStatistics> gpu;
+  std::vector<runtime::GpuStatistics> gpus;
   runtime::Image image;
   if (options.target == Target::Gpu) {
-    runtime::CudaDevice device;
+    runtime::Gpus devices(options.gpu.count);
     const runtime::GpuCode code = {package.ptx, package.laneBytes[render.maxDepth],
-                                   options.registers ? options.registers : package.registers};
-    runtime::GpuRenderer renderer(device, code, buffers.scene(), render);
-    image = renderer.render(&statistics);
-    gpu = renderer.gpu();
+                                   options.gpu.maxRegisters ? options.gpu.maxRegisters
+                                                            : package.registers};
+    const std::unique_ptr<runtime::Backend> backend =
+        devices.prepare(code, buffers.scene(), render);
+    image = backend->render(&statistics);
+    gpus = devices.statistics();
   } else {
     const runtime::NativeCode code(package.host);
     image = runtime::HostMegakernel(code.entries(), buffers.scene(), render).render(&statistics);
@@ -234,7 +255,7 @@ int render(const Options &options) {
   if (!statistics.isUnfinished)
     for (const tool::BufferFile &output : options.outputs)
       runtime::writeBuffer(output.file, buffers.output(buffers.find(output.name, "--out")));
-  report(options, package, render, statistics, gpu);
+  report(options, package, render, statistics, gpus);
   return !reference || compare(image, *reference, options) ? Fine : Refused;
 }
 
@@ -251,7 +272,7 @@ void addOptions(CLI::App &app, Options &options) {
                         "replace the elements of a buffer by those of a file");
   tool::addChoice(app, "--target", options.target,
                   tool::Choices<Target>{{"gpu", Target::Gpu}, {"host", Target::Host}},
-                  "where to render: gpu, the first CUDA device; host, all cores");
+                  "where to render: gpu, CUDA devices; host, all cores");
   tool::addWhole(app, "--spp", options.samples, 1, runtime::mostSamplesPerPixel,
                  "samples per pixel");
   tool::addTreeOption(app, options.tree);
@@ -262,8 +283,8 @@ void addOptions(CLI::App &app, Options &options) {
   tool::addWhole(app, "--seed", options.seed, 0, 0xffffffff, "seed of the random numbers");
   tool::addWhole(app, "--threads", options.threads, 1, runtime::mostThreads,
                  "threads of the host; default: all cores");
-  tool::addWhole(app, "--registers", options.registers, 16, 255,
-                 "maximum number of registers per thread on the GPU");
+  tool::addGpusOption(app, options.gpu);
+  tool::addMaxRegistersOption(app, options.gpu);
   app.add_option("--compare", options.reference,
                  "a picture that must have the same bits; exit status 1 if it differs")
       ->type_name("IMAGE");
@@ -274,7 +295,9 @@ void addOptions(CLI::App &app, Options &options) {
              "or disk space,\n"
              "2 wrong arguments, 3 an internal error; 130 after SIGINT (Ctrl-C), 143 after "
              "SIGTERM.");
-  app.callback([&options] {
+  app.callback([&options, &app] {
+    if (options.target != Target::Gpu)
+      tool::rejectGpuOptions(app);
     if (options.output.empty() && options.outputs.empty())
       throw CLI::RequiredError("--output, a picture, or --out, a buffer,");
     if (options.output.empty() && !options.reference.empty())

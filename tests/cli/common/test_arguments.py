@@ -122,7 +122,7 @@ class Arguments(Case):
                 "--pairs",
                 "-O",
                 "--error-limit",
-                "--registers",
+                "--max-registers",
             },
             tried,
         )

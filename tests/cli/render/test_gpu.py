@@ -3,6 +3,7 @@ said, and where the machine has a GPU the picture has the bits of the host megak
 
 import ctypes
 import json
+import re
 import unittest
 
 from harness import (
@@ -41,10 +42,16 @@ class Gpu(Case):
         self.glass_scene()
 
     def render(
-        self, *arguments, status=FINE, fake="", folder=None, program=(RTSLC, "render", "scene.json")
+        self,
+        *arguments,
+        status=FINE,
+        fake="",
+        folder=None,
+        program=(RTSLC, "render", "scene.json"),
+        devices=1,
     ):
         command = [*program, "-o", "a.exr", "--target=gpu", *arguments]
-        return self.run_with_fake_driver(command, status, fake, folder)
+        return self.run_with_fake_driver(command, status, fake, folder, devices)
 
     def test_the_gpu_gets_what_a_package_gives_it(self):
         """The stand-in paints x, y and the seed, if all of the launch has arrived."""
@@ -57,6 +64,7 @@ class Gpu(Case):
             (gpu["device"], gpu["blocks"], gpu["threadsPerBlock"], gpu["registers"]),
             ("Fake 1000", 5, 128, 40),
         )
+        self.assertEqual((gpu["spillStores"], gpu["spillLoads"], gpu["occupancy"]), (8, 12, 0.375))
         for seconds in (gpu["loadSeconds"], gpu["uploadSeconds"], *figures["seconds"].values()):
             self.assertGreaterEqual(seconds, 0)
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
@@ -100,11 +108,59 @@ class Gpu(Case):
         self.assertRegex(
             error,
             r"^a\.exr: 32x18, 2 spp; compiled in \d+ ms, rendered in .* samples/s\)\n"
-            r"Fake 1000: 40 registers and 40 local bytes per thread, 5 blocks of 128 threads, \d+ "
-            r"bytes for the rays of "
-            r"each; code loaded in \d+ ms, scene in \d+ ms\n"
+            r"Fake 1000: 40 registers and 40 local bytes \(8 spilled\) per thread, 5 blocks of 128 "
+            r"threads \(38 % of those that fit\), \d+ bytes for the rays of each; "
+            r"code loaded in \d+ ms, scene in \d+ ms\n"
             r"good tree: \d+ nodes for \d+ items, cost [\d.]+, built in \d+ ms\n$",
         )
+
+    def test_several_gpus_render_the_picture_of_one(self):
+        """The second one is slower than the others, and gets less of it."""
+        arguments = ("--size=64x200", "--spp=2", "-O0", "-Wno-depth-limit")
+        self.render(*arguments)
+        (self.folder / "a.exr").rename(self.folder / "one.exr")
+        out, _ = self.render(*arguments, "--gpus=all", "--json", devices=3, fake="uneven")
+        self.assert_same_bits("a.exr", "one.exr")
+        samples = [gpu["samples"] for gpu in json.loads(out)["gpus"]]
+        self.assertEqual((len(samples), sum(samples)), (3, 64 * 200 * 2))
+        self.assertLess(samples[1], max(samples))
+        _, error = self.render(*arguments, "--gpus=2", devices=3)
+        self.assert_same_bits("a.exr", "one.exr")
+        self.assertEqual(len(re.findall(r"^Fake 1000: \d+ samples; 40 reg", error, re.M)), 2)
+        passes = ("--size=64x200", "-O0", "-Wno-depth-limit", "-q")
+        self.render(*passes, "--spp=9")
+        (self.folder / "a.exr").rename(self.folder / "one.exr")
+        for spp in (4, 9):
+            self.render(*passes, f"--spp={spp}", "--checkpoint=c", "--gpus=2", devices=2)
+        self.assert_same_bits("a.exr", "one.exr")
+
+        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", "-O0")
+        out, _ = self.render(
+            *arguments[:2],
+            *("--gpus=3", "--json"),
+            devices=3,
+            program=(RTSL_RUN, "x.rtslpkg"),
+        )
+        samples = [gpu["samples"] for gpu in json.loads(out)["gpus"]]
+        self.assertEqual((len(samples), sum(samples)), (3, 64 * 200 * 2))
+
+    def test_gpus_that_are_not_there(self):
+        _, error = self.render(*SMALL, "-O0", "--gpus=3", devices=2, status=DIAGNOSED)
+        self.assertIn(
+            "error[E1002]: `--gpus 3` is more than the 2 that the CUDA driver finds", error
+        )
+        _, error = self.render(*SMALL, "--gpus=some", status=USAGE)
+        self.assertIn("--gpus", error)
+        for option in ("--gpus=2", "--max-registers=80"):
+            _, error = self.run_rtslc("render", "scene.json", "-o", "b.exr", option, status=USAGE)
+            self.assertIn("no GPU renders; add `--target=gpu`", error)
+        _, error = self.render(
+            *("--gpus=2", "-O0", "--size=64x64"),
+            program=(RTSLC, "render", str(EXAMPLES / "line-of-sight" / "city.json")),
+            devices=2,
+            status=DIAGNOSED,
+        )
+        self.assertIn("the scene writes buffers, which several GPUs cannot share", error)
 
     def test_every_example_goes_there(self):
         for scene in sorted(EXAMPLES.glob("*/scene.json")):

@@ -3,7 +3,7 @@
 #include "Arguments.h"
 #include "Functions.h"
 
-#include "runtime/gpu/CudaDriver.h"
+#include "runtime/gpu/CudaDevice.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -58,7 +58,7 @@ struct Comparison {
 class DeviceTest {
 public:
   DeviceTest(const std::string &ptx, const Options &chosen) : options(chosen), results(chunkSize) {
-    device.load(ptx);
+    code = device.compile(ptx.c_str());
     deviceResults = device.allocate(chunkSize * sizeof(float), "results");
   }
 
@@ -99,7 +99,7 @@ private:
   void launch(const char *name, void *argument, Comparison &comparison) {
     auto start = std::chrono::steady_clock::now();
     void *arguments[] = {argument, &deviceResults};
-    device.launch(device.kernel(fmt::format("evaluate_{}", name).c_str()),
+    device.launch(device.kernel(fmt::format("evaluate_{}", name).c_str(), code),
                   static_cast<unsigned>(chunkSize / threadsPerBlock), threadsPerBlock, arguments);
     std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
     comparison.deviceSeconds += elapsed.count();
@@ -117,6 +117,7 @@ private:
   }
 
   runtime::CudaDevice device;
+  runtime::CudaDevice::Module code;
   const Options &options;
   std::vector<float> results;
   runtime::CudaDevice::Address deviceResults = 0;

@@ -3,7 +3,7 @@
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/accel/FlatScene.h"
-#include "runtime/gpu/CudaDriver.h"
+#include "runtime/gpu/CudaDevice.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
@@ -112,7 +112,8 @@ private:
 
 /// What the only sample saw.
 Color seen(const RtslStatus &status, const Color &sample) {
-  runtime::readStatus(status, onePixel()); // throws if the program had too little memory
+  runtime::readStatus(status, onePixel(),
+                      windowOf(onePixel())); // throws if the program had too little memory
   return unlessNotFinite(sample);
 }
 
@@ -176,8 +177,7 @@ private:
 class GpuEye : public Eye {
 public:
   explicit GpuEye(const std::string &ptx) : ptx(ptx) {
-    device.load(ptx);
-    kernel = device.kernel("rtsl_render");
+    kernel = device.kernel("rtsl_render", device.compile(ptx.c_str()));
     jobAddress = device.allocate(sizeof(RtslJob), "the launch");
   }
 

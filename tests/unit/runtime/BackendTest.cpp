@@ -1,8 +1,8 @@
 // What every backend does alike, shown by the host's megakernel with a program of this file, and
 // that a renderer can be used again.
 #include "FakeProgram.h"
+#include "PaintingProgram.h"
 
-#include "runtime/device/engines/Slice.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
 #include "support/Error.h"
@@ -14,66 +14,13 @@
 
 using namespace rtsl::runtime;
 using rtsl::Error;
-namespace device = rtsl::device;
 using rtsl::ErrorCode;
+using namespace rtsl::test;
 
 namespace {
 
-std::atomic<unsigned> lanesBegun{0};
-
-/// A lane of a program that paints (x, y, seed) times the number of the sample, from 1, and takes
-/// its time for a pixel if it has a depth, in milliseconds.
-void paint(const RtslJob *job, std::uint32_t) {
-  ++lanesBegun;
-  const RtslLaunch &launch = *job->launch;
-  const std::uint64_t samples = std::uint64_t(job->width) * job->height * job->sampleCount;
-  while (!__atomic_load_n(&job->status->stop, __ATOMIC_RELAXED)) {
-    const std::uint64_t sample = __atomic_fetch_add(&job->status->nextSample, 1, __ATOMIC_RELAXED);
-    if (sample >= samples)
-      return;
-    const device::Pixel pixel =
-        device::pixelAt(*job, static_cast<std::uint32_t>(sample / job->sampleCount));
-    const auto number = static_cast<std::uint32_t>(sample % job->sampleCount) + job->firstSample;
-    if (job->taken && number < job->taken[pixel.number(*job)])
-      continue;
-    const float factor = float(number + 1);
-    float *color = job->samples + 3 * sample;
-    color[0] = factor * float(job->left + pixel.x);
-    color[1] = factor * float(job->top + pixel.y);
-    color[2] = factor * float(launch.seed);
-    if (number % job->sampleCount == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(launch.maxDepth));
-  }
-}
-
 void overflow(const RtslJob *job, std::uint32_t) {
   __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
-}
-
-MegakernelCode codeOf(void (*runLane)(const RtslJob *, std::uint32_t)) {
-  MegakernelCode code;
-  code.laneBytes = [](std::uint32_t, std::uint32_t) { return std::uint64_t(100); };
-  code.runLane = runLane;
-  return code;
-}
-
-FlatScene emptyScene() {
-  RtslLaunch launch{};
-  launch.colorComponents = 3;
-  FlatScene scene;
-  scene.bytes.resize(sizeof launch);
-  scene.setLaunch(launch);
-  return scene;
-}
-
-RenderOptions small() {
-  RenderOptions options;
-  options.width = 20;
-  options.height = 10;
-  options.samplesPerPixel = 3;
-  options.maxDepth = 0;
-  options.seed = 7;
-  return options;
 }
 
 ErrorCode codeThrownBy(Backend &backend) {

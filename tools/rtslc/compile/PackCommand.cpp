@@ -5,6 +5,7 @@
 #include "runtime/package/Package.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "tools/common/GpuOptions.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
@@ -28,6 +29,7 @@ struct PackOptions {
   std::string scene, output;
   std::vector<std::string> overrides;
   std::optional<runtime::TreeKind> tree;
+  GpuOptions gpu;
   bool quiet = false;
 };
 
@@ -91,6 +93,8 @@ void packScene(const PackOptions &options, Messages &messages) {
       package);
   if (!scene)
     return;
+  if (options.gpu.maxRegisters)
+    package.registers = options.gpu.maxRegisters;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
   package.scene = flatten(*scene, options.tree);
@@ -137,6 +141,7 @@ void addPackCommand(CLI::App &app, Action &action) {
       ->type_name("PACKAGE");
   addSetOption(*command, options->overrides);
   addTreeOption(*command, options->tree);
+  addMaxRegistersOption(*command, options->gpu);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
   addPreprocessorOptions(*command, options->common.preprocessor);
   addDependencyOptions(*command, options->common.dependencies);

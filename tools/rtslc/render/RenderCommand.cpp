@@ -203,6 +203,8 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
                                         ".exr, or `--format=exr`");
   if (options.target == TargetName::Gpu)
     rejectWithoutGpuSupport(options);
+  else
+    rejectGpuOptions(command);
   if (options.target != TargetName::Host)
     options.common.compile.target = Target::HostMegakernel;
   options.hasGpuArchitecture = command.count("--gpu-arch") != 0;
@@ -259,6 +261,8 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addTraversalOption(*command, options->traversal);
   addTreeOption(*command, options->tree);
   addTargetOption(*command, options->target);
+  addGpusOption(*command, options->gpu);
+  addMaxRegistersOption(*command, options->gpu);
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,

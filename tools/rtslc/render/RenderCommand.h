@@ -51,6 +51,7 @@ struct RenderCommandOptions {
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
+  GpuOptions gpu;
 };
 
 /// Renders unless there are errors, and gives whether a picture was written. `files` gets those

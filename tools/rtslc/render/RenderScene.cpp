@@ -195,7 +195,7 @@ private:
       return false;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
-    target = makeRenderTarget(options.target, options.hasGpuArchitecture);
+    target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu);
     start = Clock::now();
     std::vector<std::string> filesRead;
     module =
@@ -269,7 +269,7 @@ private:
     if (summary.statistics.isUnfinished && summary.unfinished.empty())
       summary.unfinished = unfinishedText(summary.statistics, render);
     summary.statistics.buildSeconds = seconds;
-    summary.gpu = target->gpu();
+    summary.gpus = target->gpus();
     return image;
   }
 

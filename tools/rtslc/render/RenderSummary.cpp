@@ -82,8 +82,12 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
   if (statistics.tree)
     document["tree"] = tool::toJson(*statistics.tree);
-  if (summary.gpu)
-    (document["gpu"] = tool::toJson(*summary.gpu))["kernelSeconds"] = statistics.kernelSeconds;
+  if (!summary.gpus.empty())
+    (document["gpu"] = tool::toJson(summary.gpus.front()))["kernelSeconds"] =
+        statistics.kernelSeconds;
+  if (summary.gpus.size() > 1)
+    for (const runtime::GpuStatistics &gpu : summary.gpus)
+      document["gpus"].push_back(tool::toJson(gpu));
   return document.dump(2) + "\n";
 }
 
@@ -109,8 +113,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     fmt::print(stderr, "resumed at {} spp\n", summary.resumedAt);
   if (std::isfinite(summary.error))
     fmt::print(stderr, "noise: {:.4g}\n", summary.error);
-  if (summary.gpu)
-    fmt::print(stderr, "{}\n", gpuText(*summary.gpu));
+  for (const runtime::GpuStatistics &gpu : summary.gpus)
+    fmt::print(stderr, "{}\n", gpuText(gpu));
   if (statistics.tree)
     fmt::print(stderr, "{}\n", treeText(*statistics.tree));
   for (const std::string &text : exceptionTexts(statistics, render))

@@ -24,7 +24,7 @@ struct PictureSummary {
   std::vector<SampleNotFinite> notFinite;
   std::vector<std::string> printed;
   Times times;
-  const runtime::GpuStatistics *gpu = nullptr;            // null: no GPU took part
+  std::vector<runtime::GpuStatistics> gpus;               // that took part
   double error = std::numeric_limits<double>::infinity(); // runtime::PassState::error
   std::string unfinished;      // says that the picture is so; empty: it is not
   std::uint32_t resumedAt = 0; // samples per pixel of the checkpoint

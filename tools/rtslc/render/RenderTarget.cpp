@@ -1,7 +1,6 @@
 #include "RenderTarget.h"
 
 #include "runtime/accel/FlatScene.h"
-#include "runtime/gpu/CudaDriver.h"
 #include "runtime/package/NativeCode.h"
 #include "runtime/render/HostMegakernel.h"
 #include "runtime/render/Renderer.h"
@@ -41,36 +40,34 @@ public:
 
 class Gpu : public RenderTarget {
 public:
-  explicit Gpu(bool hasArchitecture) : hasArchitecture(hasArchitecture) {}
+  Gpu(bool hasArchitecture, const GpuOptions &options)
+      : hasArchitecture(hasArchitecture), options(options), devices(options.count) {}
 
   std::optional<runtime::Scene> compile(const typed::Module &module, const LinkRequest &request,
                                         const CompileOptions &options, Diagnostics &diagnostics,
                                         const BuildScene &build) override {
     CompileOptions compile = options;
     if (!hasArchitecture)
-      compile.gpu = gpuArchitecture(device.capability());
+      compile.gpu = gpuArchitecture(devices.capability());
     return compileScenePackage(module, request, compile, diagnostics, build, package);
   }
 
   std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
-                                            const runtime::RenderOptions &options) override {
+                                            const runtime::RenderOptions &render) override {
     const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
     const std::uint64_t laneBytes =
-        host.entries().laneBytes(options.maxDepth, scene.launch().referenceChain);
-    auto renderer = std::make_unique<runtime::GpuRenderer>(
-        device, runtime::GpuCode{package.ptx, laneBytes, package.registers},
-        runtime::flatten(scene), options);
-    figures = renderer->gpu();
-    return renderer;
+        host.entries().laneBytes(render.maxDepth, scene.launch().referenceChain);
+    const unsigned registers = options.maxRegisters ? options.maxRegisters : package.registers;
+    return devices.prepare({package.ptx, laneBytes, registers}, runtime::flatten(scene), render);
   }
 
-  const runtime::GpuStatistics *gpu() const override { return figures ? &*figures : nullptr; }
+  std::vector<runtime::GpuStatistics> gpus() const override { return devices.statistics(); }
 
 private:
   const bool hasArchitecture;
-  runtime::CudaDevice device;
+  const GpuOptions options;
+  runtime::Gpus devices;
   runtime::Package package; // only its code
-  std::optional<runtime::GpuStatistics> figures;
 };
 
 } // namespace
@@ -86,14 +83,22 @@ nlohmann::ordered_json toJson(const runtime::TreeFigures &tree) {
 }
 
 nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
-  return {{"device", gpu.device},
-          {"registers", gpu.registers},
-          {"localBytes", gpu.localBytes},
-          {"blocks", gpu.blocks},
-          {"threadsPerBlock", gpu.threadsPerBlock},
-          {"laneBytes", gpu.laneBytes},
-          {"loadSeconds", gpu.loadSeconds},
-          {"uploadSeconds", gpu.uploadSeconds}};
+  nlohmann::ordered_json document = {{"device", gpu.device},
+                                     {"registers", gpu.registers},
+                                     {"localBytes", gpu.localBytes},
+                                     {"occupancy", gpu.occupancy},
+                                     {"blocks", gpu.blocks},
+                                     {"threadsPerBlock", gpu.threadsPerBlock},
+                                     {"laneBytes", gpu.laneBytes},
+                                     {"loadSeconds", gpu.loadSeconds},
+                                     {"uploadSeconds", gpu.uploadSeconds}};
+  if (gpu.spillStores) {
+    document["spillStores"] = *gpu.spillStores;
+    document["spillLoads"] = *gpu.spillLoads;
+  }
+  if (gpu.samples > 0)
+    document["samples"] = gpu.samples;
+  return document;
 }
 
 void addTargetOption(CLI::App &command, TargetName &target) {
@@ -101,7 +106,7 @@ void addTargetOption(CLI::App &command, TargetName &target) {
             Choices<TargetName>{{"host", TargetName::Host},
                                 {"host-megakernel", TargetName::HostMegakernel},
                                 {"gpu", TargetName::Gpu}},
-            "host: the fastest code for this machine; gpu: the first CUDA device; "
+            "host: the fastest code for this machine; gpu: CUDA devices; "
             "host-megakernel: the GPU's program, on the CPU");
 }
 
@@ -112,7 +117,8 @@ void addTraversalOption(CLI::App &command, runtime::Traversal &traversal) {
             "embree: fast; device: the traversal that GPUs use");
 }
 
-std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture) {
+std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture,
+                                               const GpuOptions &gpu) {
   switch (name) {
   case TargetName::Host:
     return std::make_unique<Host>();
@@ -121,7 +127,7 @@ std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitec
   case TargetName::Gpu:
     break;
   }
-  return std::make_unique<Gpu>(hasArchitecture);
+  return std::make_unique<Gpu>(hasArchitecture, gpu);
 }
 
 } // namespace rtsl::tool

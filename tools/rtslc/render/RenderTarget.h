@@ -6,14 +6,16 @@
 #pragma once
 
 #include "codegen/driver/SceneProgram.h"
-#include "runtime/gpu/GpuRenderer.h"
+#include "runtime/gpu/Gpus.h"
 #include "runtime/render/Backend.h"
+#include "tools/common/GpuOptions.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace rtsl::tool {
 
@@ -32,8 +34,8 @@ public:
   virtual std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
                                                     const runtime::RenderOptions &options) = 0;
 
-  /// What runs on the GPU, after prepare(). Null for targets without a GPU.
-  virtual const runtime::GpuStatistics *gpu() const { return nullptr; }
+  /// What ran on each GPU, while the last backend exists. Empty for targets without a GPU.
+  virtual std::vector<runtime::GpuStatistics> gpus() const { return {}; }
 };
 
 enum class TargetName : std::uint8_t { Host, HostMegakernel, Gpu };
@@ -49,6 +51,7 @@ void addTraversalOption(CLI::App &command, runtime::Traversal &traversal);
 
 /// `hasArchitecture`: CompileOptions::gpu was set by the user; otherwise code for a GPU is compiled
 /// for the installed one. Throws NoDevice if the target is a GPU and there is none.
-std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture);
+std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture,
+                                               const GpuOptions &gpu);
 
 } // namespace rtsl::tool

@@ -182,7 +182,7 @@ private:
     request.features |= features(options.prints, options.exceptions);
     keep(options.common.keep, request, compile);
     std::unique_ptr<RenderTarget> target =
-        makeRenderTarget(options.target, options.hasGpuArchitecture);
+        makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu);
     std::optional<runtime::Scene> scene =
         target->compile(module, request, compile, messages.diagnostics, [&](const auto &program) {
           return scene::buildScene(description, program, buffers);
@@ -201,8 +201,8 @@ private:
     if (!options.quiet)
       launch.render.progress = [&](double share) { progress.update(share); };
     const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, launch.render);
-    if (target->gpu())
-      launch.gpu = *target->gpu();
+    if (const auto gpus = target->gpus(); !gpus.empty())
+      launch.gpu = gpus.front();
     picture = backend->render(&launch.statistics);
     for (const std::string &line : runtime::takePrintLog().texts(scene->program().prints))
       printed.push_back(line);
@@ -376,6 +376,7 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
   addTraversalOption(command, options.traversal);
   addTreeOption(command, options.tree);
   addTargetOption(command, options.target);
+  addMaxRegistersOption(command, options.gpu);
   addWhole(command, "--repeat", options.repeats, 0, mostRepeats,
            "run each launch N more times, and print how long these took; outputs are those of the "
            "first run");
@@ -392,6 +393,8 @@ void completeRunOptions(const CLI::App &command, RunOptions &options) {
     throw CLI::ValidationError("--print",
                                "a GPU cannot print; `--target=host-megakernel` prints, and "
                                "computes the same");
+  if (options.target != TargetName::Gpu)
+    rejectGpuOptions(command);
   if (options.target != TargetName::Host)
     options.common.compile.target = Target::HostMegakernel;
   options.hasGpuArchitecture = command.count("--gpu-arch") != 0;

@@ -22,6 +22,7 @@ struct RunOptions {
   std::optional<runtime::TreeKind> tree;
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
+  GpuOptions gpu;
   bool json = false, quiet = false, prints = false, exceptions = false;
 };
 
