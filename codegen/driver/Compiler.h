@@ -63,6 +63,8 @@ struct CompileOptions {
   std::string gpu = "sm_75";
   /// Of PTX for a scene. None: Majority for Paths::Random, otherwise Prioritized.
   std::optional<Schedule> schedule;
+  /// Megakernels count the steps of warps (runtime/device/engines/StepCounts.h).
+  bool countsSteps = false;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.
   std::uint32_t sampler = 0;
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.

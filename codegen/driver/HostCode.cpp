@@ -164,7 +164,7 @@ private:
 LlvmCode PartCompiler::rest() {
   LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
                             options.checksNumbers ? &program.numberPlaces : nullptr);
-  defineFacts(code, program);
+  defineFacts(code, options, program);
   linkDeviceCode(code, bitcodes, exports);
   code.options.isMegakernel = options.target == Target::HostMegakernel;
   return code;
@@ -178,7 +178,7 @@ LlvmCode PartCompiler::part(mlir::ModuleOp functions, std::vector<std::string> &
     machine.optimization = std::min(machine.optimization, 1u);
   LlvmCode code = translate(functions, machine);
   const std::vector<std::string> own = codegen::visibleFunctions(*code.module);
-  defineFacts(code, program);
+  defineFacts(code, options, program);
   codegen::defineConstant(*code.module, "rtsl_features", program.slots.features);
   linkDeviceCode(code, bitcodes, own);
   missing = codegen::shareLargeFunctions(*code.module);
@@ -232,7 +232,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
   machine.optimization =
       program.classes.size() > manyClasses ? 0 : std::min(machine.optimization, 1u);
   LlvmCode code = translate(ir, machine);
-  defineFacts(code, program);
+  defineFacts(code, options, program);
   linkDeviceCode(code, runtime::deviceBitcode(), names);
   std::vector<codegen::ObjectCode> objects;
   objects.push_back(toObject(std::move(code)));

@@ -11,7 +11,7 @@ using namespace driver;
 static runtime::NativeImage hostImage(const Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   LlvmCode code = translate(*compilation.ir, machineOptions(options, /*hostCpu=*/false));
-  defineFacts(code, *compilation.program);
+  defineFacts(code, compilation.options, *compilation.program);
   std::vector<std::string> kept = {"memcpy", "memmove", "memset"};
   kept.insert(kept.end(), hostEntries().begin(), hostEntries().end());
   std::vector<std::string_view> bitcodes = megakernelCode(/*forGpu=*/false);
@@ -46,6 +46,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
   package.ptx = toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true));
   package.registers = registersFor(compilation.program->paths);
+  package.stateNames = compilation.program->stateNames;
   package.host = hostImage(compilation);
   return true;
 }

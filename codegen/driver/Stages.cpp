@@ -102,8 +102,22 @@ bool reachStructured(Compilation &compilation) {
   return true;
 }
 
+/// From number 1 on.
+static std::vector<std::string> stateNames(mlir::ModuleOp ir) {
+  std::vector<std::string> names;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (const mlir::ArrayAttr all = ir::attr::runsStates.of(function))
+      for (const mlir::Attribute name : all)
+        names.push_back(llvm::cast<mlir::StringAttr>(name).str());
+  return names;
+}
+
 bool reachMachine(Compilation &compilation) {
-  return split(compilation, /*dispatch=*/true);
+  if (!split(compilation, /*dispatch=*/true))
+    return false;
+  if (compilation.program)
+    compilation.program->stateNames = stateNames(*compilation.ir);
+  return true;
 }
 
 //===----------------------------------------------------------------------===//

@@ -132,9 +132,10 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
   return code;
 }
 
-void defineFacts(LlvmCode &code, const runtime::Program &program) {
+void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program) {
   codegen::defineConstant(*code.module, "rtsl_needs", program.needs | program.sceneNeeds);
   codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
+  codegen::defineConstant(*code.module, "rtsl_counts_steps", options.countsSteps);
 }
 
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
@@ -155,7 +156,7 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu) {
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
-  defineFacts(code, program);
+  defineFacts(code, options, program);
   codegen::defineConstant(*code.module, "rtsl_schedule",
                           std::uint32_t(scheduleFor(options, program)));
   linkDeviceCode(code, megakernelCode(forGpu),

@@ -79,7 +79,7 @@ LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
                    std::vector<Place> *numberPlaces = nullptr);
 
 /// Defines constants with which the device code omits unused parts.
-void defineFacts(LlvmCode &code, const runtime::Program &program);
+void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
 
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);

@@ -33,7 +33,8 @@ struct Package {
   std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};
 
   std::string ptx;
-  std::uint32_t registers = 0; // GpuCode::maxRegisters
+  std::uint32_t registers = 0;         // GpuCode::maxRegisters
+  std::vector<std::string> stateNames; // Program::stateNames; not in the file
   NativeImage host;
   FlatScene scene; // not relocated
   std::vector<PackageBuffer> buffers;

@@ -182,6 +182,8 @@ struct Program {
   std::vector<Place> numberPlaces;
 
   std::vector<PrintFormat> prints; // by number
+  /// Of the machine, from number 1; empty: it has none, or its names are not known.
+  std::vector<std::string> stateNames;
 
   std::shared_ptr<void> code; // keeps the code alive
 

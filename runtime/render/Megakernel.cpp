@@ -14,6 +14,8 @@
 
 namespace rtsl::runtime {
 
+/// Traversal, and the beginning of samples.
+static constexpr std::size_t stepsBesideStates = 2;
 /// The numbers of samples have 32 bits, and lanes count a little beyond the last.
 static constexpr std::uint64_t mostInSlice = 0x7fffffff;
 
@@ -79,6 +81,11 @@ void Megakernel::prepare() {
   job.lanes = reinterpret_cast<std::uint8_t *>(
       allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
   jobAddress = allocate(sizeof job, "the launch");
+  if (options.countedStates) {
+    stepCounts.resize(options.countedStates + stepsBesideStates);
+    job.stepCounts = reinterpret_cast<RtslStepCount *>(
+        allocate(stepCounts.size() * sizeof stepCounts[0], "the counts of steps"));
+  }
 }
 
 void Megakernel::setWindow(const Window &window) {
@@ -130,6 +137,11 @@ void Megakernel::beginAt(float *to) {
   pixels = to;
   const RtslStatus nothing{};
   upload(statusAddress, &nothing, sizeof nothing);
+  if (!stepCounts.empty()) {
+    stepCounts.assign(stepCounts.size(), {});
+    upload(reinterpret_cast<Address>(job.stepCounts), stepCounts.data(),
+           stepCounts.size() * sizeof stepCounts[0]);
+  }
   job.samplesPerPixel = samplesOfPixel;
   if (sums) {
     job.pixels = nullptr;
@@ -212,6 +224,11 @@ RenderStatistics Megakernel::finish() {
     statistics.samples = openPixels * leastTaken + samplesOfSlice;
     if (leastTaken + job.sampleCount == samplesOfPixel)
       statistics.pixels = windowPixels - openPixels + samplesOfSlice / job.sampleCount;
+  }
+  if (!stepCounts.empty()) {
+    download(stepCounts.data(), reinterpret_cast<Address>(job.stepCounts),
+             stepCounts.size() * sizeof stepCounts[0]);
+    statistics.steps = stepCounts;
   }
   if (!sums)
     fetchPixels();

@@ -120,7 +120,8 @@ private:
   bool isUneven = false;
   // Of the last run:
   double kernelSeconds = 0;
-  std::uint64_t samplesOfSlice = 0; // that were rendered
+  std::uint64_t samplesOfSlice = 0;      // that were rendered
+  std::vector<RtslStepCount> stepCounts; // empty: they are not counted
 };
 
 } // namespace rtsl::runtime

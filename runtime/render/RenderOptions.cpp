@@ -26,6 +26,11 @@ void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met) {
   met.notFinite.insert(met.notFinite.end(), part.notFinite.begin(), part.notFinite.end());
   std::sort(met.notFinite.begin(), met.notFinite.end());
   met.notFinite.resize(std::min(met.notFinite.size(), most));
+  met.steps.resize(std::max(met.steps.size(), part.steps.size()));
+  for (std::size_t i = 0; i < part.steps.size(); ++i) {
+    met.steps[i].steps += part.steps[i].steps;
+    met.steps[i].lanes += part.steps[i].lanes;
+  }
 }
 
 void setLaunch(RtslLaunch &launch, const RenderOptions &options) {

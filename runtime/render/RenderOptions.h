@@ -63,6 +63,9 @@ struct RenderOptions {
   /// where there are none.
   bool keepsUnfinished = false;
 
+  /// For a megakernel that counts its steps: the number of its states. 0: it does not.
+  std::size_t countedStates = 0;
+
   /// Renderings in passes only, with a limit of their error: pixels end one by one (Adaptive.h).
   bool isAdaptive = false;
 
@@ -98,6 +101,8 @@ struct RenderStatistics {
   std::uint64_t pixelsWithoutSample = 0; // black, for none of their samples was finite
   std::vector<SampleId> notFinite;       // the first samples that are not finite
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
+  std::vector<RtslStepCount>
+      steps; // of warps, by placeOfStep (runtime/device/engines/StepCounts.h)
 };
 
 /// Adds what a part of the rendering has met: its rays, its exceptions, and the first `most` of its

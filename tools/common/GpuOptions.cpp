@@ -2,17 +2,29 @@
 
 #include "OptionValues.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 namespace rtsl::tool {
 
 void addGpusOption(CLI::App &command, GpuOptions &options) {
-  constexpr std::uint64_t most = 64;
+  static constexpr std::uint64_t most = 64;
   command
       .add_option_function<std::string>(
           "--gpus",
           [&options](const std::string &text) {
-            options.count = text == "all" ? 0 : parseWhole("--gpus", text, 1, most);
+            if (text == "all") {
+              options.count = 0;
+              return;
+            }
+            const bool isNumber = !text.empty() && text.size() <= 2 &&
+                                  text.find_first_not_of("0123456789") == std::string::npos;
+            options.count = isNumber ? std::stoul(text) : 0;
+            if (options.count < 1 || options.count > most)
+              throw CLI::ValidationError(
+                  "--gpus",
+                  fmt::format("`{}` is neither all nor a number N from 1 to {}", text, most));
           },
           "render on the first N CUDA devices, or on all of them; default: 1")
       ->type_name("N|all");

@@ -11,6 +11,7 @@
 #include "runtime/device/engines/Machine.h"
 #include "runtime/device/engines/Schedule.h"
 #include "runtime/device/engines/Slice.h"
+#include "runtime/device/engines/StepCounts.h"
 #include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {
@@ -77,6 +78,7 @@ inline void runLane(const RtslJob &job, uint32_t number) {
     if (choice == Step::nothing)
       return;
     const bool takesPart = rays.next == choice;
+    countStep(job, choice, takesPart);
     if (choice == Step::sample) {
       const uint32_t following = takeSample(job, taken, takesPart);
       if (!takesPart)

@@ -284,6 +284,11 @@ typedef struct RtslPixelSums {
                       // squares and values of the other half, which decided that, take none either
 } RtslPixelSums;
 
+/// How often warps took a step, and how many of their lanes took part.
+typedef struct RtslStepCount {
+  uint64_t steps, lanes;
+} RtslStepCount;
+
 /// A slice of a rendering for the megakernel (runtime/device/engines/Megakernel.h): some samples of
 /// each pixel in a window of the launch. They are numbered pixel by pixel, in the order of
 /// runtime/device/engines/Slice.h; there are less than 2^31. Lanes take them in order.
@@ -302,6 +307,7 @@ typedef struct RtslJob {
   uint32_t placeCount;
   const uint32_t *taken; // sums.taken, if some pixels have samples of the slice already; or null
   float *pixels;         // the means, colorComponents per pixel, row by row; null: not wanted
+  RtslStepCount *stepCounts; // by step (runtime/device/engines/StepCounts.h), if they are counted
 } RtslJob;
 
 /// What happens in a sample, apart from its color.
@@ -486,6 +492,8 @@ const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
 #define RTSL_SCHEDULE_ROUND_ROBIN 2u
 #define RTSL_SCHEDULE_NAIVE 3u
 uint32_t rtsl_schedule(const RtslLaunch *launch);
+/// Whether RtslJob::stepCounts is written. For a measurement: it takes time.
+uint32_t rtsl_counts_steps(const RtslLaunch *launch);
 
 //===----------------------------------------------------------------------===//
 // Defined by the runtime, called by compiled programs.

@@ -144,6 +144,30 @@ class Gpu(Case):
         samples = [gpu["samples"] for gpu in json.loads(out)["gpus"]]
         self.assertEqual((len(samples), sum(samples)), (3, 64 * 200 * 2))
 
+    def test_steps_are_counted(self):
+        """Each ray is traversed once, and each state runs as often as it is entered: those of
+        glass once for each hit, and what misses once for each miss."""
+        options = (*SMALL, "-O0", "--target=host-megakernel")
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *options)
+        out, _ = self.run_rtslc(
+            "render", "scene.json", "-o", "b.exr", "--json", "--lane-use", *options
+        )
+        self.assert_same_bits("a.exr", "b.exr")
+        counts = {one["step"]: one for one in json.loads(out)["steps"]}
+        for one in counts.values():
+            self.assertEqual(one["steps"], one["lanes"], one)
+        taken = {name: one["steps"] for name, one in counts.items()}
+        self.assertGreaterEqual(taken["begin samples"], 32 * 18 * 2)
+        self.assertGreater(taken["Glass.shade.state0"], 0)
+        self.assertEqual(
+            taken["traversal"],
+            taken["rtsl_rt_Material_shade.state0"] + taken["rtsl_rt_Miss_miss.state0"],
+        )
+        _, error = self.run_rtslc("render", "scene.json", "-o", "b.exr", "--lane-use", *options)
+        self.assertRegex(error, r"steps of warps   lanes\n +\d+    1\.00  all\n +\d+    1\.00  tr")
+        _, error = self.run_rtslc("render", "scene.json", "-o", "b.exr", "--lane-use", status=USAGE)
+        self.assertIn("--lane-use: there are no lanes", error)
+
     def test_gpus_that_are_not_there(self):
         _, error = self.render(*SMALL, "-O0", "--gpus=3", devices=2, status=DIAGNOSED)
         self.assertIn(

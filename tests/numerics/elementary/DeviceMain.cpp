@@ -4,6 +4,7 @@
 #include "Functions.h"
 
 #include "runtime/gpu/CudaDevice.h"
+#include "support/Error.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -205,6 +205,9 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
     rejectWithoutGpuSupport(options);
   else
     rejectGpuOptions(command);
+  if (options.countsSteps && options.target == TargetName::Host)
+    throw CLI::ValidationError("--lane-use", "there are no lanes; add `--target=gpu`, or "
+                                             "`--target=host-megakernel` for the steps alone");
   if (options.target != TargetName::Host)
     options.common.compile.target = Target::HostMegakernel;
   options.hasGpuArchitecture = command.count("--gpu-arch") != 0;
@@ -263,6 +266,9 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addTargetOption(*command, options->target);
   addGpusOption(*command, options->gpu);
   addMaxRegistersOption(*command, options->gpu);
+  command->add_flag("--lane-use", options->countsSteps,
+                    "count the steps of warps, and the lanes that take part in them: of a GPU, and "
+                    "of --target=host-megakernel, whose warps have one lane");
   command->add_flag("--print", options->prints,
                     "write the output of `print` to standard output, in the order of pixels");
   command->add_flag("--exceptions", options->exceptions,

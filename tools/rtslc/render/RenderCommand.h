@@ -52,6 +52,7 @@ struct RenderCommandOptions {
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
   GpuOptions gpu;
+  bool countsSteps = false; // --lane-use
 };
 
 /// Renders unless there are errors, and gives whether a picture was written. `files` gets those

@@ -236,6 +236,7 @@ private:
     request = linkRequest(description);
     request.features |= features(options.prints, options.exceptions);
     keep(options.common.keep, request, compileOptions);
+    compileOptions.countsSteps = options.countsSteps;
     if (options.common.keep.has(Item::Events) && options.target != TargetName::Gpu)
       request.features |= RTSL_FEATURE_PRINT; // the lines are thrown away
     scene = target->compile(*module, request, compileOptions, messages.diagnostics,
@@ -258,6 +259,10 @@ private:
         renderOptions(options, input->description.render);
     render.samplesPerPixel = samples.value_or(render.samplesPerPixel);
     render.cancel = stop ? stop : catchInterruptions();
+    if (options.countsSteps) {
+      summary.stateNames = target->stateNames(*scene);
+      render.countedStates = summary.stateNames.size();
+    }
     Progress progress(what);
     if (!options.quiet)
       render.progress = [&](double share) { progress.update(share); };

@@ -41,6 +41,11 @@ double samplesOfPixel(const PictureSummary &summary) {
   return double(summary.statistics.samples) / double(windowOf(summary.render).pixels());
 }
 
+/// Of RenderStatistics::steps.
+std::string nameOfStep(const PictureSummary &summary, std::size_t place) {
+  return place == 0 ? "traversal" : place == 1 ? "begin samples" : summary.stateNames.at(place - 2);
+}
+
 std::string toJson(const RenderCommandOptions &options, const PictureSummary &summary) {
   const runtime::RenderOptions &render = summary.render;
   const runtime::RenderStatistics &statistics = summary.statistics;
@@ -82,6 +87,10 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
   if (statistics.tree)
     document["tree"] = tool::toJson(*statistics.tree);
+  for (std::size_t i = 0; i < statistics.steps.size(); ++i)
+    document["steps"].push_back({{"step", nameOfStep(summary, i)},
+                                 {"steps", statistics.steps[i].steps},
+                                 {"lanes", statistics.steps[i].lanes}});
   if (!summary.gpus.empty())
     (document["gpu"] = tool::toJson(summary.gpus.front()))["kernelSeconds"] =
         statistics.kernelSeconds;
@@ -89,6 +98,31 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
     for (const runtime::GpuStatistics &gpu : summary.gpus)
       document["gpus"].push_back(tool::toJson(gpu));
   return document.dump(2) + "\n";
+}
+
+/// A line for each step that was taken, the most frequent first; empty if they were not counted.
+std::string stepsText(const PictureSummary &summary) {
+  std::vector<std::pair<RtslStepCount, std::string>> taken;
+  RtslStepCount all{};
+  for (std::size_t i = 0; i < summary.statistics.steps.size(); ++i) {
+    const RtslStepCount count = summary.statistics.steps[i];
+    all.steps += count.steps;
+    all.lanes += count.lanes;
+    if (count.steps > 0)
+      taken.emplace_back(count, nameOfStep(summary, i));
+  }
+  if (taken.empty())
+    return {};
+  std::stable_sort(taken.begin(), taken.end(),
+                   [](const auto &a, const auto &b) { return a.first.steps > b.first.steps; });
+  const auto line = [](const RtslStepCount &count, const std::string &name) {
+    return fmt::format("{:>14} {:>7.2f}  {}\n", count.steps,
+                       double(count.lanes) / double(count.steps), name);
+  };
+  std::string text = "steps of warps   lanes\n" + line(all, "all");
+  for (const auto &[count, name] : taken)
+    text += line(count, name);
+  return text;
 }
 
 } // namespace
@@ -117,6 +151,7 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     fmt::print(stderr, "{}\n", gpuText(gpu));
   if (statistics.tree)
     fmt::print(stderr, "{}\n", treeText(*statistics.tree));
+  fmt::print(stderr, "{}", stepsText(summary));
   for (const std::string &text : exceptionTexts(statistics, render))
     fmt::print(stderr, "{}\n", text);
   if (const std::string text = tool::badRaysText(statistics); !text.empty())

@@ -22,7 +22,7 @@ struct PictureSummary {
   runtime::RenderOptions render;
   runtime::RenderStatistics statistics;
   std::vector<SampleNotFinite> notFinite;
-  std::vector<std::string> printed;
+  std::vector<std::string> printed, stateNames;
   Times times;
   std::vector<runtime::GpuStatistics> gpus;               // that took part
   double error = std::numeric_limits<double>::infinity(); // runtime::PassState::error

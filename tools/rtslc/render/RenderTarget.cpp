@@ -61,6 +61,9 @@ public:
     return devices.prepare({package.ptx, laneBytes, registers}, runtime::flatten(scene), render);
   }
 
+  std::vector<std::string> stateNames(const runtime::Scene &) const override {
+    return package.stateNames;
+  }
   std::vector<runtime::GpuStatistics> gpus() const override { return devices.statistics(); }
 
 private:

@@ -34,6 +34,11 @@ public:
   virtual std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
                                                     const runtime::RenderOptions &options) = 0;
 
+  /// Program::stateNames of what compile() has compiled.
+  virtual std::vector<std::string> stateNames(const runtime::Scene &scene) const {
+    return scene.program().stateNames;
+  }
+
   /// What ran on each GPU, while the last backend exists. Empty for targets without a GPU.
   virtual std::vector<runtime::GpuStatistics> gpus() const { return {}; }
 };

@@ -175,7 +175,10 @@ void Dispatcher::makeRunState() {
   mlir::Type object = ir::RefType::get(builder.getContext(), "object");
   FuncOp function = makeFunction(
       "rtsl_run_state", {builder.getI32Type(), object, ir::PtrType::get(builder.getI32Type())});
-  ir::attr::runsStates.set(function);
+  llvm::SmallVector<mlir::Attribute> names;
+  for (FuncOp state : states)
+    names.push_back(state.getSymNameAttr());
+  ir::attr::runsStates.set(function, builder.getArrayAttr(names));
   mlir::Block *entry = &function.getBody().front();
 
   mlir::Block *none = function.addBlock();
