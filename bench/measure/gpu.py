@@ -4,8 +4,9 @@ A hall is a grid of copies of a mesh in a closed room, as one list of triangles.
 `primary`, those of a camera; `ao`, seven from each point that these meet, of length 1, for which
 any hit will do; `diffuse`, one of any length; `shuffled`, the same in random order. They are traced
 by `rtslc trace --repeat`, that is by a ray generation that reads 32 bytes and writes 16 for each,
-and the time is that of the launch by the device's clock: the median of 12 after a first one. Each
-hall is traced with both kinds of trees.
+and the time is that of the launch by the device's clock: the median of 12 after a first one. A
+picture of the hall has samples of a camera ray and a diffuse one, in one kernel. Each hall is
+traced with both kinds of trees.
 """
 
 import array
@@ -123,6 +124,19 @@ def write_rays(options, grid, folder):
     (folder / "shuffled.npy").write_bytes(data[:start] + b"".join(rays))
 
 
+def write_bounce(grid, folder):
+    """Writes a scene whose samples are a camera ray and one from what it meets."""
+    scene = {
+        "rtsl": 1,
+        "import": [str(ROOT / "bench/gpu/halls/Rays.rtsl")],
+        "rayGeneration": {"class": "HallBounce", "size": SPACING * grid},
+        "materials": {"meeting": {"class": "Meeting"}},
+        "objects": [{"mesh": "hall.ply", "material": "meeting"}],
+        "render": {"engine": "programs", "size": [WIDTH, HEIGHT], "depth": 0},
+    }
+    (folder / "bounce.json").write_text(json.dumps(scene))
+
+
 def rtslc(options, command, *arguments):
     return process.run(
         [str(options.build / "bin" / "rtslc"), command, *arguments, f"--target={options.target}"]
@@ -134,6 +148,7 @@ def measure_hall(options, name, mesh, grid):
         folder = Path(temporary)
         triangles = write_hall(mesh, grid, folder / "hall.ply")
         write_rays(options, grid, folder)
+        write_bounce(grid, folder)
         figures = {"mesh": name, "grid": grid, "triangles": triangles, "trees": {}}
         for tree in TREES:
             figures["trees"][tree] = measure_tree(options, folder, tree, triangles)
@@ -173,10 +188,14 @@ def measure_tree(options, folder, tree, triangles):
         figures["treeSeconds"] = min(built["seconds"], figures.get("treeSeconds", math.inf))
         figures["cost"] = built.get("cost")
         figures["bytesPerTriangle"] = (80 * built["nodes"] + 48 * triangles) / triangles
+    bounce = measure_picture(
+        options, folder / "bounce.json", 16, f"{WIDTH}x{HEIGHT}", f"--tree={tree}"
+    )
+    figures["bounceSamplesPerSecond"] = bounce["samplesPerSecond"]
     return figures
 
 
-def measure_picture(options, scene, samples):
+def measure_picture(options, scene, samples, size="1024x1024", *arguments):
     with tempfile.TemporaryDirectory() as temporary:
         figures = json.loads(
             rtslc(
@@ -185,7 +204,8 @@ def measure_picture(options, scene, samples):
                 str(scene),
                 "-o",
                 str(Path(temporary) / "picture.exr"),
-                "--size=1024x1024",
+                f"--size={size}",
+                *arguments,
                 f"--spp={samples}",
                 "--json",
                 "-q",
@@ -216,14 +236,15 @@ def markdown(report):
     lines = [
         "| hall | triangles | tree | "
         + " | ".join(SETS)
-        + " | bytes a triangle | cost | built, ms |",
-        "|---|" + "---|" * 9,
+        + " | primary and diffuse, million samples/s | bytes a triangle | cost | built, ms |",
+        "|---|" + "---|" * 10,
     ]
     for hall in report["halls"]:
         for tree, figures in hall["trees"].items():
             rates = " | ".join(f"{figures['raysPerSecond'][rays] * 1e-6:.0f}" for rays in SETS)
             lines.append(
                 f"| {hall['mesh']} {hall['grid']} | {hall['triangles']:,} | {tree} | {rates} | "
+                f"{figures['bounceSamplesPerSecond'] * 1e-6:.0f} | "
                 f"{figures['bytesPerTriangle']:.1f} | {figures['cost'] or 0:.2f} | "
                 f"{figures['treeSeconds'] * 1e3:.1f} |"
             )
