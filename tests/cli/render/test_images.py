@@ -261,7 +261,7 @@ class Images(ImageCase):
             if not entry["needed"]
         }
         for member in ("format", "channels", "filter", "wrapU", "width"):
-            self.assertIn(("parameters", f"sampler2D.{member}"), left_out)
+            self.assertIn(("images", f"sampler2D.{member}"), left_out)
 
     def test_equal_images_are_one_object(self):
         self.write("image.png", png(2, 2, lambda x, y: (255, 0, 0)))
