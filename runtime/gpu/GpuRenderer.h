@@ -25,10 +25,10 @@ struct GpuStatistics {
   std::optional<int> spillStores, spillLoads;
   unsigned blocks = 0, threadsPerBlock = 0;
   std::uint64_t laneBytes = 0;
-  double occupancy = 0;      // the share of the threads of a multiprocessor that run at once
-  double loadSeconds = 0;    // the driver's compiler, on PTX that it has not seen
-  double uploadSeconds = 0;  // the scene
-  std::uint64_t samples = 0; // rendered in the last run, if there are several devices
+  double occupancy = 0;     // the share of the threads of a multiprocessor that run at once
+  double loadSeconds = 0;   // the driver's compiler, on PTX that it has not seen
+  double uploadSeconds = 0; // the scene
+  std::optional<std::uint64_t> samples; // rendered in the last run, if there are several devices
 };
 
 class GpuRenderer final : public Megakernel {

@@ -53,7 +53,8 @@ std::vector<GpuStatistics> Gpus::statistics() const {
   std::vector<GpuStatistics> all;
   for (std::size_t i = 0; i < renderers.size(); ++i) {
     all.push_back(renderers[i]->gpu());
-    all.back().samples = renderers.size() > 1 ? several->samplesOf(i) : 0;
+    if (renderers.size() > 1)
+      all.back().samples = several->samplesOf(i);
   }
   return all;
 }

@@ -26,6 +26,7 @@ HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
                                const RenderOptions &options)
     : Megakernel(std::move(scene), options), code(code),
       threads(options, pixelCount(), code.stackBytes) {
+  makePicture(channels());
   prepare();
 }
 

@@ -54,6 +54,7 @@ SeveralDevices::SeveralDevices(std::size_t count, const Make &make, const Render
   for (const Device &device : devices)
     buildSeconds = std::max(buildSeconds, device.backend->secondsToPrepare());
   trees = devices.front().backend->builtTrees();
+  makePicture(channels());
 }
 
 void SeveralDevices::begin() {

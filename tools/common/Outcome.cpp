@@ -69,7 +69,7 @@ std::string treeText(const runtime::TreeFigures &tree) {
 std::string gpuText(const runtime::GpuStatistics &gpu) {
   const std::string spills =
       gpu.spillStores && *gpu.spillStores > 0 ? fmt::format(" ({} spilled)", *gpu.spillStores) : "";
-  const std::string samples = gpu.samples > 0 ? fmt::format("{} samples; ", gpu.samples) : "";
+  const std::string samples = gpu.samples ? fmt::format("{} samples; ", *gpu.samples) : "";
   return fmt::format("{}: {}{} registers and {} local bytes{} per thread, {} blocks of {} threads "
                      "({:.0f} % of those that fit), {} bytes for the rays of each; code loaded in "
                      "{:.0f} ms, scene in {:.0f} ms",

@@ -113,7 +113,7 @@ std::string toJson(const runtime::Package &package, const runtime::RenderOptions
     text += ",\n \"gpus\": [";
     for (const runtime::GpuStatistics &gpu : gpus)
       text += fmt::format("{}{{\"samples\": {}, {}}}", &gpu == &gpus.front() ? "" : ",\n  ",
-                          gpu.samples, gpuJson(gpu));
+                          gpu.samples.value_or(0), gpuJson(gpu));
     text += "]";
   }
   if (const auto &tree = statistics.tree)

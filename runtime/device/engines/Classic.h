@@ -166,7 +166,7 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   const SampleNumbers numbers = beginRandomNumbers(state, x, y, index, launch.seed);
   state.Depth = 0;
   uint32_t needs = rtsl_needs(&launch);
-  const uint32_t slice = launch.slices > 1 ? y / launch.height : 0;
+  const uint32_t slice = y / launch.height;
   const uint32_t row = y - slice * launch.height;
   if (needs & RTSL_NEEDS_LAUNCH) {
     state.LaunchIndex[0] = x;

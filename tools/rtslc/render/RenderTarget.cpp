@@ -99,8 +99,8 @@ nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu) {
     document["spillStores"] = *gpu.spillStores;
     document["spillLoads"] = *gpu.spillLoads;
   }
-  if (gpu.samples > 0)
-    document["samples"] = gpu.samples;
+  if (gpu.samples)
+    document["samples"] = *gpu.samples;
   return document;
 }
 
