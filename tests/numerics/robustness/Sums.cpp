@@ -24,7 +24,7 @@ public:
     job.width = job.height = 1;
     job.samplesPerPixel = samples;
     job.pixels = &value;
-    job.sums = {&sum, &squares, &counted, &taken};
+    job.sums = {&sum, &squares, &counted, &taken, nullptr, nullptr, nullptr};
   }
   void add(float sample) {
     slice.push_back(sample);

@@ -37,7 +37,7 @@ struct OnePixel {
     job.status = &status;
     job.pixels = mean;
   }
-  void keepSums() { job.sums = {colors, &squares, &counted, &taken}; }
+  void keepSums() { job.sums = {colors, &squares, &counted, &taken, nullptr, nullptr, nullptr}; }
   /// Adds samples that follow those before, of a rendering of `all` samples per pixel.
   void add(std::vector<float> samples, std::uint32_t all) {
     job.samples = samples.data();
