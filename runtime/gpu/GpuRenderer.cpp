@@ -122,20 +122,8 @@ std::uint64_t GpuRenderer::sliceBytes() {
   return std::min<std::uint64_t>(device.freeMemory() / 4, enough);
 }
 
-/// Calls visit(values, where the device has them) for the parts of the sums; some may be missing.
-template <typename Visit>
-static void forEachPart(PixelSums &sums, RtslPixelSums &onDevice, Visit visit) {
-  visit(sums.colors, onDevice.colors);
-  visit(sums.squares, onDevice.squares);
-  visit(sums.counted, onDevice.counted);
-  visit(sums.taken, onDevice.taken);
-  visit(sums.values, onDevice.values);
-  visit(sums.deciding, onDevice.deciding);
-  visit(sums.closed, onDevice.closed);
-}
-
 RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
-  forEachPart(sums, sumsOnDevice, [&](auto &values, auto *&address) {
+  const auto place = [&](auto &values, auto *&address) {
     const std::size_t bytes = values.size() * sizeof values[0];
     if (bytes == 0)
       return;
@@ -143,7 +131,8 @@ RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
       address = reinterpret_cast<decltype(values.data())>(
           allocate(pixelCount() * (bytes / sums.pixels()), "the sums of the pixels"));
     device.upload(reinterpret_cast<Address>(address), values.data(), bytes);
-  });
+  };
+  forEachList(place, sums, sumsOnDevice);
   return sumsOnDevice;
 }
 
@@ -162,12 +151,13 @@ RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {
 }
 
 void GpuRenderer::fetchSums() {
-  forEachPart(*sums, sumsOnDevice, [&](auto &values, auto *&address) {
+  const auto fetch = [&](auto &values, auto *&address) {
     if (values.empty())
       return;
     device.download(values.data(), reinterpret_cast<Address>(address),
                     values.size() * sizeof values[0]);
-  });
+  };
+  forEachList(fetch, *sums, sumsOnDevice);
 }
 
 double GpuRenderer::runLanes(Address job) {

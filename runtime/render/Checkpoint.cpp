@@ -19,7 +19,7 @@ constexpr char magic[8] = {'R', 'T', 'S', 'L', 'C', 'K', 'P', '\n'};
 /// Counts up with every change that older programs would misread.
 constexpr std::uint32_t formatVersion = 2;
 
-/// Numbers are little-endian. The facts follow, and then the sums of all pixels (forEachPart).
+/// Numbers are little-endian. The facts follow, and then the sums of all pixels (forEachList).
 struct Header {
   char magic[8];
   std::uint32_t version;
@@ -50,19 +50,6 @@ void forEachNumber(Rendering &rendering, Visit visit) {
   visit(rendering.met.raysTooDeep);
   for (auto &count : rendering.met.exceptions)
     visit(count);
-}
-
-/// Calls visit(values) for the parts of sums, in the order of the file; those that only adaptive
-/// renderings have are empty in others.
-template <typename Sums, typename Visit>
-void forEachPart(Sums &sums, Visit visit) {
-  visit(sums.colors);
-  visit(sums.squares);
-  visit(sums.counted);
-  visit(sums.taken);
-  visit(sums.values);
-  visit(sums.deciding);
-  visit(sums.closed);
 }
 
 class FactWriter {
@@ -217,10 +204,10 @@ PixelSums readSums(std::string_view bytes, const std::string &path, std::uint64_
                    std::uint32_t components, bool isAdaptive) {
   PixelSums sums = PixelSums::make(pixels, components, isAdaptive);
   std::size_t expected = 0;
-  forEachPart(sums, [&](const auto &values) { expected += bytesOf(values).size(); });
+  forEachList([&](const auto &values) { expected += bytesOf(values).size(); }, sums);
   if (bytes.size() != expected)
     refuseDamaged(path);
-  forEachPart(sums, [&](auto &values) { bytes = readValues(bytes, values); });
+  forEachList([&](auto &values) { bytes = readValues(bytes, values); }, sums);
   for (std::size_t half = 0; half < sums.counted.size(); ++half)
     if (sums.counted[half] > sums.taken[half / sums.halves()] ||
         (isAdaptive && sums.deciding[half] > sums.taken[half / 2]))
@@ -241,7 +228,7 @@ void writeCheckpoint(const std::string &path, const Identity &identity,
   const PixelSums &sums = rendering.sums;
   Header header{};
   std::vector<std::string_view> parts = {bytesOf(header), facts.bytes};
-  forEachPart(sums, [&](const auto &values) { parts.push_back(bytesOf(values)); });
+  forEachList([&](const auto &values) { parts.push_back(bytesOf(values)); }, sums);
   std::memcpy(header.magic, magic, sizeof magic);
   header.version = formatVersion;
   header.factBytes = std::uint32_t(facts.bytes.size());

@@ -29,26 +29,15 @@ PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool i
   return sums;
 }
 
-/// Calls visit(all, of the part) for each list.
-template <typename All, typename Part, typename Visit>
-static void forEachList(All &all, Part &part, Visit visit) {
-  visit(all.colors, part.colors);
-  visit(all.squares, part.squares);
-  visit(all.counted, part.counted);
-  visit(all.taken, part.taken);
-  visit(all.values, part.values);
-  visit(all.deciding, part.deciding);
-  visit(all.closed, part.closed);
-}
-
 PixelSums PixelSums::part(std::size_t first, std::size_t count) const {
   PixelSums part;
   try {
-    forEachList(*this, part, [&](const auto &all, auto &some) {
+    const auto copy = [&](const auto &all, auto &some) {
       const std::size_t perPixel = all.size() / pixels();
       const auto begin = all.begin() + std::ptrdiff_t(first * perPixel);
       some.assign(begin, begin + std::ptrdiff_t(count * perPixel));
-    });
+    };
+    forEachList(copy, *this, part);
   } catch (const std::bad_alloc &) {
     throw Error(message::noMemoryForPixelSums());
   }
@@ -56,10 +45,11 @@ PixelSums PixelSums::part(std::size_t first, std::size_t count) const {
 }
 
 void PixelSums::putPart(std::size_t first, const PixelSums &part) {
-  forEachList(*this, part, [&](auto &all, const auto &some) {
+  const auto replace = [&](auto &all, const auto &some) {
     const std::size_t perPixel = all.size() / pixels();
     std::copy(some.begin(), some.end(), all.begin() + std::ptrdiff_t(first * perPixel));
-  });
+  };
+  forEachList(replace, *this, part);
 }
 
 RtslPixelSums PixelSums::pointers() {

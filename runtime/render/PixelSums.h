@@ -43,6 +43,20 @@ struct PixelSums {
   bool isOpen(std::size_t pixel) const { return !isAdaptive() || closed[pixel] != allClosed; }
 };
 
+/// Calls visit(list, ...) for each list of the sums: with those of several, and of RtslPixelSums,
+/// at once. Lists that only some renderings have are empty, or null, in others. Checkpoints have
+/// this order.
+template <typename Visit, typename... Sums>
+void forEachList(Visit visit, Sums &...sums) {
+  visit(sums.colors...);
+  visit(sums.squares...);
+  visit(sums.counted...);
+  visit(sums.taken...);
+  visit(sums.values...);
+  visit(sums.deciding...);
+  visit(sums.closed...);
+}
+
 /// What has been taken of all samples.
 struct SampleCounts {
   std::uint64_t samples = 0, notFinite = 0, pixelsWithoutSample = 0;
