@@ -6,6 +6,7 @@ docs/library.md shows them; --quick, for tests, renders few samples of few pixel
 with the pictures of the document. Each scene is written beside its picture while it is rendered,
 and removed after."""
 import json
+import math
 import pathlib
 import struct
 import subprocess
@@ -40,7 +41,7 @@ CLAY = {
     "albedo": {"class": "Checker", "even": [0.8, 0.4, 0.25], "odd": [0.75, 0.65, 0.5]},
 }
 PLAIN = {"class": "Lambert", "reflectance": [0.8, 0.45, 0.3]}
-FRACTALS = ("DistanceField", "Julia", "Mandelbulb")  # a pattern would hide their form
+UNPATTERNED = ("DistanceField", "Julia", "Mandelbulb", "HeightField")  # it would hide their form
 MARBLE = {"class": "Marble", "scale": 1.2}
 
 CAMERAS = {
@@ -83,7 +84,33 @@ PRIMITIVES = {
     "DistanceField": {},
     "Julia": {"extent": 1.5},
     "Mandelbulb": {"extent": 1.25, "scale": 0.85},
+    "HeightField": {
+        "heights": [
+            [
+                math.exp(-((i / 8 - 1.2) ** 2) - (j / 8 - 0.9) ** 2)
+                + 0.12 * math.cos(i) * math.cos(j)
+                for i in range(25)
+            ]
+            for j in range(25)
+        ],
+        "range": [-0.15, 1],
+        "low": [-1.1, -1, -1.1],
+        "high": [1.1, 0.6, 1.1],
+    },
+    "Curve": {
+        "points": [
+            [
+                0.9 * math.cos(i) * (1 - i / 24),
+                i / 9 - 1.2,
+                0.9 * math.sin(i) * (1 - i / 24),
+                0.16 - i / 180,
+            ]
+            for i in range(23)
+        ],
+        "basis": 1,
+    },
 }
+COUNTS = {"Curve": 20}  # primitives in an object
 MATERIALS = {
     "Lambert": {"reflectance": [0.8, 0.4, 0.25]},
     "OrenNayar": {"reflectance": [0.8, 0.4, 0.25], "sigma": 1},
@@ -216,7 +243,8 @@ def scenes():
                 FLOOR,
                 {
                     "primitive": {"class": name, **members},
-                    "material": PLAIN if name in FRACTALS else CLAY,
+                    "material": PLAIN if name in UNPATTERNED else CLAY,
+                    "count": COUNTS.get(name, 1),
                 },
             ]
         )

@@ -9,7 +9,9 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/library.md"
 BEGIN, END = "<!-- reference: begin -->\n", "<!-- reference: end -->\n"
-MEMBER = re.compile(r"^ *public (optional )?([\w\[\]]+) (\w+)(?: = (.*?))?;(?: +// (.*))?$", re.M)
+MEMBER = re.compile(
+    r"^ *public (optional )?([\w\[\]]+) (\w+(?:\[\])*)(?: = (.*?))?;(?: +// (.*))?$", re.M
+)
 FUNCTION = re.compile(r"((?:^// .*\n)+)^(\w+ \w+\([^)]*\)) \{", re.M)
 
 
@@ -40,7 +42,9 @@ def class_section(path):
     if rows:
         yield "| parameter | type | default | |\n|---|---|---|---|"
         for optional, kind, name, default, comment in rows:
-            given = f"`{default}`" if default else "none" if optional else "required"
+            given = (
+                f"`{default}`" if default else "none" if optional or "[]" in name else "required"
+            )
             yield f"| `{name}` | `{kind}` | {given} | {comment} |"
         yield ""
 
