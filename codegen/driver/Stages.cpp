@@ -15,7 +15,6 @@
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
-#include "mlir/Dialect/LLVMIR/LLVMDialect.h"
 #include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
 
@@ -153,11 +152,13 @@ static void restructureAndBack(mlir::ModuleOp ir) {
 /// traces. Slots and functions of runtime/device are only declared.
 static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   declareSlots(ir);
+  std::vector<std::string> facts;
   for (auto function : ir.getOps<mlir::func::FuncOp>())
     if (ir::attr::factOfScene.isOn(function))
-      function->setAttr("llvm.linkage", mlir::LLVM::LinkageAttr::get(
-                                            ir.getContext(), mlir::LLVM::Linkage::Internal));
+      facts.push_back(function.getSymName().str());
   LlvmCode code = translate(ir, gpuOptions(options));
+  for (const std::string &fact : facts)
+    code.module->getFunction(fact)->setLinkage(llvm::Function::InternalLinkage);
   for (llvm::Function &function : *code.module)
     if (!function.hasLocalLinkage())
       function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them

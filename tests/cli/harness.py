@@ -67,10 +67,11 @@ def obey_permissions():
 
 
 class Case(unittest.TestCase):
-    # The level of optimisation of `rtslc render` where a test gives none; None: that of users. No
-    # picture depends on it, which tests/render and the conformance suite check; a suite about
-    # something else takes less time with "-O0".
+    # The level of optimisation of `rtslc render`, `explain` and `pack` where a test gives none;
+    # None: that of users. No picture depends on it, which tests/render and the conformance suite
+    # check, nor does what a program needs; a suite about something else takes less time with "-O0".
     level = None
+    OPTIMISING = ("render", "explain", "pack")
 
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="rtslc-"))
@@ -99,7 +100,7 @@ class Case(unittest.TestCase):
         (None: any)."""
         if (
             self.level
-            and arguments[0] == "render"
+            and arguments[0] in self.OPTIMISING
             and not any(str(argument).startswith("-O") for argument in arguments)
         ):
             arguments += (self.level,)
@@ -156,7 +157,7 @@ class Case(unittest.TestCase):
 
     def graph_parts(self, path):
         """What `rtslc explain` calls needed of the things that a scene may have in its graph."""
-        said, _ = self.run_rtslc("explain", path, "--no-savings", "--json")
+        said, _ = self.run_rtslc("explain", path, "--no-savings", "--json", "-O0")
         return {
             entry["subject"]
             for item in json.loads(said)["items"]

@@ -69,6 +69,8 @@ SCENE = {
 
 
 class Explain(Case):
+    level = "-O0"
+
     def write_scene(self, **changes):
         self.write("all.rtsl", SHADERS)
         self.write("scene.json", json.dumps({**SCENE, **changes}, indent=1))
@@ -258,12 +260,12 @@ class Explain(Case):
         # the examples have one kind of trace each, in turn, without optimisation.
         traces = ("recurse", "split")
         rows = [
-            (self.folder / scene, f"--trace={trace}")
+            (self.folder / scene, f"--trace={trace}", "-O2")
             for scene in ("scene.json", "lit.json")
             for trace in traces
         ]
         rows += [
-            (scene, f"--trace={traces[number % 2]}", "-O0")
+            (scene, f"--trace={traces[number % 2]}")
             for number, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json")))
         ]
         for scene, *options in rows:
@@ -476,9 +478,9 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
             self.write_scene()
             self.write("all.rtsl", shade(index))
             self.assertEqual(self.ptx() != self.ptx("--unchecked"), isNeeded, index)
-            self.assertEqual(
-                self.entries("--no-savings")["events"]["index checks"][0], isNeeded, index
-            )
+            # Whether it is possible to tell that an index is in range depends on the level.
+            entries = self.entries("--no-savings", "-O2")
+            self.assertEqual(entries["events"]["index checks"][0], isNeeded, index)
 
     def test_prints_are_needed_where_a_shader_that_runs_prints(self):
         self.write_scene()
