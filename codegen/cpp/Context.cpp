@@ -21,7 +21,8 @@ Context::Context(const typed::Module &module, const ModuleFacts &facts, const Op
 }
 
 void Context::unsupported(SourceRange range, const std::string &what) {
-  diagnostics.report(rtsl::Code::notSupportedYet, range, what);
+  diagnostics.report(rtsl::Code::notSupportedYet, range, what)
+      .note("`--trace=recurse` keeps `trace` as a call");
   failed = true;
 }
 

@@ -81,10 +81,8 @@ bool printCpp(Compilation &compilation) {
     Diagnostics refusals(diagnostics.sources());
     if (isSplit)
       text = printStates(compilation, printing, refusals);
-    if (!text && !refusals.all().empty()) {
-      const std::string &message = refusals.all().front().message;
-      printing.whyCalls = message.substr(0, message.find(" (")); // without the advice
-    }
+    if (!text && !refusals.all().empty())
+      printing.whyCalls = refusals.all().front().message;
     if (!text)
       text = cpp::print(module, *compilation.moduleFacts, printing, diagnostics);
   }

@@ -18,9 +18,9 @@ void MethodPrinter::unsupported(mlir::Operation &op) {
   if (llvm::isa<ir::VarOp, ir::TableOp>(op))
     what = "an array or a struct";
   const unsigned line = lineOf(op.getLoc(), machine.file);
-  context.unsupported(machine.method->range,
-                      fmt::format("{} in states in C++{} (--trace=recurse keeps `trace` as a call)",
-                                  what, line ? fmt::format(", of line {}", line) : ""));
+  context.unsupported(
+      machine.method->range,
+      fmt::format("{} in states in C++{}", what, line ? fmt::format(", of line {}", line) : ""));
 }
 
 } // namespace rtsl::cpp

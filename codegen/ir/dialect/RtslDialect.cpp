@@ -59,9 +59,11 @@ mlir::Operation *RtslDialect::materializeConstant(mlir::OpBuilder &builder, mlir
 
 namespace {
 
+/// A row of Attributes.def.
 struct DeclaredAttribute {
   llvm::StringRef kind;
   bool (*isOfKind)(mlir::Attribute);
+  llvm::StringRef operations; // that may have it, separated by ", "
 };
 
 template <typename Value>
@@ -72,15 +74,26 @@ bool isOfKind(mlir::Attribute attribute) {
 const llvm::StringMap<DeclaredAttribute> &declaredAttributes() {
   static const llvm::StringMap<DeclaredAttribute> attributes = {
 #define RTSL_ATTRIBUTE(Constant, Word, Kind, On, Meaning)                                          \
-  {attr::Constant.name, {#Kind, isOfKind<mlir::Kind##Attr>}},
+  {attr::Constant.name, {#Kind, isOfKind<mlir::Kind##Attr>, On}},
 #include "codegen/ir/Attributes.def"
   };
   return attributes;
 }
 
+/// Is `name` in a list whose elements are separated by ", "?
+bool lists(llvm::StringRef names, llvm::StringRef name) {
+  while (!names.empty()) {
+    const auto [first, others] = names.split(", ");
+    if (first == name)
+      return true;
+    names = others;
+  }
+  return false;
+}
+
 } // namespace
 
-/// Rejects undeclared names: a misspelled one would be silently ignored.
+/// Rejects undeclared names and attributes of other operations: they would be silently ignored.
 mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
                                                           mlir::NamedAttribute attribute) {
   const llvm::StringRef name = attribute.getName();
@@ -88,7 +101,9 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
   if (declared == declaredAttributes().end())
     return op->emitOpError() << "has the attribute `" << name
                              << "`, which the dialect does not declare";
-  const auto &[kind, isOfKind] = declared->second;
+  const auto &[kind, isOfKind, operations] = declared->second;
+  if (!lists(operations, op->getName().getStringRef()))
+    return op->emitOpError() << "may not have `" << name << "`, an attribute of " << operations;
   if (isOfKind(attribute.getValue()))
     return mlir::success();
   if (kind == "Unit")

@@ -87,7 +87,7 @@ std::string ValueNames::ofValue(mlir::Value value) {
     if (const FrameField *field = machine.savedField(load.getName()); field && field->isUnnamed)
       return field->name;
   auto call = value.getDefiningOp<ir::EvaluateOp>();
-  if (!call || name != "value")
+  if (!call || !continuation::authorsName(value).empty())
     return name;
   const typed::Expr *expr = source.entries[call.getSource()].expr;
   const typed::Function *callee = nullptr;

@@ -54,6 +54,14 @@ KeptField fieldOf(llvm::StringRef variable) {
       .Default(device::keptFieldCount);
 }
 
+/// Is it a state variable of type color?
+bool isColor(llvm::StringRef variable) {
+  return llvm::StringSwitch<bool>(variable)
+#define RTSL_STATE_VARIABLE(name, type, ...) .Case(#name, llvm::StringRef(#type) == "color")
+#include "language/StateVariables.def"
+      .Default(false);
+}
+
 /// Fields that are the same for all rays of a sample: they stay in the state (takeFromSample in
 /// runtime/device/engines/BeginRay.h).
 Fields sharedByRays() {
@@ -328,8 +336,7 @@ std::uint32_t colorComponentsOf(mlir::ModuleOp module) {
     mlir::Type type;
     if (auto result = llvm::dyn_cast<ir::TraceResultOp>(op))
       type = result.getType();
-    else if (auto state = llvm::dyn_cast<ir::StateOp>(op);
-             state && state.getName().ends_with("Color"))
+    else if (auto state = llvm::dyn_cast<ir::StateOp>(op); state && isColor(state.getName()))
       type = llvm::cast<ir::PtrType>(state.getType()).getPointee();
     auto vector = llvm::dyn_cast_or_null<mlir::VectorType>(type);
     if (!vector)

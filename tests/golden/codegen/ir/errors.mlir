@@ -268,6 +268,19 @@ func.func private @f() attributes {rtsl.frame_size = "16"}
 
 // -----
 
+// expected-error @below {{may not have `rtsl.join`, an attribute of rtsl.suspend}}
+func.func private @f() attributes {rtsl.join}
+
+// -----
+
+func.func @f() {
+  // expected-error @below {{may not have `rtsl.shared`, an attribute of rtsl.frame_load, rtsl.frame_store}}
+  %x = arith.constant {rtsl.shared} 1.0 : f32
+  return
+}
+
+// -----
+
 func.func @f() {
   // expected-error @below {{has the attribute `rtsl.sahred`, which the dialect does not declare}}
   %x = rtsl.frame_load "x"[0] {rtsl.sahred} : f32

@@ -1,6 +1,6 @@
-// A ray within the loop over lights. Behind it only where the loop is has to be known, and the sum: how many lights there are and the
-// point are had again, and what the light said is the ray's own state, which other rays do not touch. The shadow ray of
-// `rtsl.illuminate` is no suspend: nothing is shaded that it meets.
+// A ray within the loop over lights. Only the position in the loop and the sum are saved across it: the number of lights and
+// the point are rematerialised, and what the light wrote is the ray's own state, which other rays do not change. The shadow ray
+// of `rtsl.illuminate` is not a suspend, because nothing that it meets is shaded.
 // RUN: rtsl-opt %s --rtsl-ssa --rtsl-split=no-dispatch | FileCheck %s
 // RUN: rtsl-opt %s --rtsl-ssa --rtsl-split="no-dispatch report=text" 2>&1 >/dev/null | FileCheck %s --check-prefix=REPORT
 
