@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/library.md"
 BEGIN, END = "<!-- reference: begin -->\n", "<!-- reference: end -->\n"
 MEMBER = re.compile(
-    r"^ *public (optional )?([\w\[\]]+) (\w+(?:\[\])*)(?: = (.*?))?;(?: +// (.*))?$", re.M
+    r"^ *public (optional )?([\w\[\]]+) (\w+(?:\[\])*)(?: = (.*?))?;(?: +// (.*))?$"
 )
 FUNCTION = re.compile(r"((?:^// .*\n)+)^(\w+ \w+\([^)]*\)) \{", re.M)
 
@@ -19,6 +19,24 @@ def prose(comment):
     """The text of comment lines, with paragraphs."""
     lines = [line[2:].strip() for line in comment.strip().split("\n")]
     return re.sub(r"\n\n+", "\n\n", "\n".join(lines)).strip().replace("<", "&lt;")
+
+
+def members(text):
+    """The public members, each with its comment: what follows it on its line, and the lines below
+    that go on in the same column."""
+    lines = text.split("\n")
+    for i, line in enumerate(lines):
+        found = MEMBER.match(line)
+        if not found:
+            continue
+        optional, kind, name, default, comment = found.groups()
+        column = line.find("//")
+        for below in lines[i + 1 :] if comment else []:
+            if below[:column].strip() or not below.startswith("// ", column):
+                break
+            comment += " " + below[column + 3 :].strip()
+        given = f"`{default}`" if default else "none" if optional or "[]" in name else "required"
+        yield f"| `{name}` | `{kind}` | {given} | {comment or ''} |"
 
 
 def class_section(path):
@@ -38,14 +56,10 @@ def class_section(path):
     yield (f"A class of `{base}`." if base else "A [helper class](language.md#8-classes).") + (
         f" Constructor: `{constructor.group(1)}`." if constructor else ""
     ) + "\n"
-    rows = MEMBER.findall(text)
+    rows = list(members(text))
     if rows:
         yield "| parameter | type | default | |\n|---|---|---|---|"
-        for optional, kind, name, default, comment in rows:
-            given = (
-                f"`{default}`" if default else "none" if optional or "[]" in name else "required"
-            )
-            yield f"| `{name}` | `{kind}` | {given} | {comment} |"
+        yield from rows
         yield ""
 
 
