@@ -91,6 +91,27 @@ void forEachObject(const SceneDescription &description, const ObjectVisitor &vis
       forEachObject(*object, visit);
 }
 
+/// The class of the object that a value is or names; empty: it is another one.
+std::string classOfReferred(const SceneDescription &description, const JsonValue &value) {
+  if (isImage(value))
+    return imageClass(value);
+  if (value.kind == Kind::Object) {
+    const JsonValue *className = value.find("class");
+    return className && className->kind == Kind::String ? className->string : "";
+  }
+  if (value.kind != Kind::String)
+    return "";
+  std::string className;
+  for (const auto *section :
+       {&description.images, &description.helpers, &description.textures, &description.materials})
+    if (const auto found = section->find(value.string); found != section->end()) {
+      if (!className.empty()) // the member's type decides between them
+        return "";
+      className = found->second.className.text;
+    }
+  return className;
+}
+
 bool isNothing(const JsonValue &value) {
   return value.kind == Kind::Null ||
          (value.kind == Kind::Array &&
@@ -201,6 +222,30 @@ std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription
         members.insert(name);
   });
   return given;
+}
+
+std::map<std::pair<std::string, std::string>, std::set<std::string>>
+referredClasses(const SceneDescription &description) {
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> referred;
+  std::set<std::pair<std::string, std::string>> unknown;
+  std::set<std::string> variables;
+  forEachVariable(description,
+                  [&](const std::string &name, const JsonValue &) { variables.insert(name); });
+  forEachObject(description, [&](const LocatedName &name, const auto &members) {
+    for (const auto &[member, value] : members) {
+      const std::pair<std::string, std::string> key(name.text, member.text);
+      if (isNothing(*value))
+        continue;
+      const std::string className = classOfReferred(description, *value);
+      if (className.empty() || variables.count(member.text))
+        unknown.insert(key);
+      else
+        referred[key].insert(className);
+    }
+  });
+  for (const auto &key : unknown)
+    referred.erase(key);
+  return referred;
 }
 
 std::vector<std::string> classesUsed(const SceneDescription &description) {

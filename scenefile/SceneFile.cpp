@@ -288,6 +288,8 @@ private:
       scene.passes.push_back(std::move(pass));
     });
     const JsonValue *passes = root.find("passes");
+    if (passes && passes->kind == Kind::Array && passes->elements.empty())
+      throw Error(message::noPasses(), passes->place());
     if (!passes || scene.passes.empty())
       return;
     if (libraryEngine || root.find("rayGeneration"))
@@ -359,8 +361,8 @@ private:
   GeometryDescription readGeometry(const JsonValue &value, const std::string &what) {
     errors.attempt([&] {
       checkKeys(value,
-                {"name", "primitive", "mesh", "part", "material", "transform", "mask", "id",
-                 "count", "textureCoordinates", "backFaces", "variables", "attributes"},
+                {"name", "primitive", "mesh", "part", "weights", "material", "transform", "mask",
+                 "id", "count", "textureCoordinates", "backFaces", "variables", "attributes"},
                 what);
     });
     GeometryDescription geometry;
@@ -424,6 +426,8 @@ private:
       readMesh(*mesh, geometry);
       if (const JsonValue *part = value.find("part"))
         readPart(*part, geometry);
+      if (const JsonValue *weights = value.find("weights"))
+        readWeights(*weights, geometry);
       if (const JsonValue *coordinates = value.find("textureCoordinates")) {
         expect(*coordinates, Kind::String, "`textureCoordinates`");
         if (coordinates->string != "file" && coordinates->string != "barycentric")
@@ -480,6 +484,25 @@ private:
     for (const MeshPath &key : geometry.mesh)
       gltf::primitiveOf(modelsOf(scene).open(key.path, key.name.place), part.string, part.place());
     geometry.part = part.string;
+  }
+
+  /// A number for each morph target of the part; or {"keys": [lists of them], "times": [...]}.
+  void readWeights(const JsonValue &value, GeometryDescription &geometry) const {
+    if (geometry.part.empty() || geometry.mesh.size() != 1)
+      throw Error(message::weightsWithoutPart(), value.place());
+    const MeshPath &file = geometry.mesh.front();
+    const std::size_t targets =
+        gltf::targetCount(gltf::primitiveOf(modelsOf(scene).open(file.path, file.name.place),
+                                            geometry.part, value.place()),
+                          geometry.part);
+    if (value.kind != Kind::Object) {
+      geometry.weights = {readNumbers(value, targets, "`weights`")};
+      return;
+    }
+    checkKeys(value, {"keys", "times"}, "`weights` with keys");
+    geometry.meshTimes = readKeyTimes(value, "`weights`");
+    for (const JsonValue &key : value.find("keys")->elements)
+      geometry.weights.push_back(readNumbers(key, targets, "a key of `weights`"));
   }
 
   /// A number or a list of numbers; the program determines how many.

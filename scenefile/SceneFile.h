@@ -115,6 +115,8 @@ struct GeometryDescription {
   std::vector<MeshPath> mesh;                 // of a mesh: its keys, or its only file
   std::vector<float> meshTimes;               // of several keys
   std::string part; // of a glTF file, as "meshes.0.primitives.1"; empty: all meshes of the file
+  /// Of the morph targets of the part, one list or one for each key; empty: all are 0.
+  std::vector<std::vector<double>> weights;
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
   std::vector<AttributeDescription> attributes; // of a mesh
@@ -210,6 +212,12 @@ std::vector<LocatedName> classMentions(const SceneDescription &description);
 /// The members that are set in some object of each class that the scene names, inherited ones
 /// included, or may be set by a variable. Null, or a list of nulls, does not count.
 std::map<std::string, std::set<std::string>> givenMembers(const SceneDescription &description);
+
+/// The classes of the objects that a member refers to in the objects of a class, by the names of
+/// the class and the member; left out where something else than an object of the scene is given, or
+/// where it may be a variable.
+std::map<std::pair<std::string, std::string>, std::set<std::string>>
+referredClasses(const SceneDescription &description);
 
 /// The image, helper, texture or material of this name; null: there is none.
 const ObjectDescription *findObject(const SceneDescription &description, const std::string &name);

@@ -24,7 +24,8 @@ struct Use {
 /// A file, or a part of one, and what it holds.
 struct File {
   std::string path;
-  std::string part; // of a glTF file; empty: all of it
+  std::string part;            // of a glTF file; empty: all of it
+  std::vector<double> weights; // of its morph targets
   std::size_t uses = 0;
   bool keepsOrder = false; // the scene gives values for its vertices or faces
   Mesh mesh = {};
@@ -53,18 +54,23 @@ void setSpaces(Mesh &mesh, const GeometryDescription &geometry) {
 } // namespace
 
 MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshRequest &request) {
-  std::map<std::pair<std::string, std::string>, std::size_t> fileNumbers; // by path and part
+  // by path, part and weights
+  std::map<std::tuple<std::string, std::string, std::vector<double>>, std::size_t> fileNumbers;
   std::vector<File> files;
   std::vector<Use> uses;
   for (const GeometryDescription &geometry : description.objects) {
     if (geometry.primitive || !numbers.emplace(keyOf(geometry), numbers.size()).second)
       continue;
     uses.push_back({{}, &geometry});
-    for (const MeshPath &key : geometry.mesh) {
+    const std::size_t keys = std::max(geometry.mesh.size(), geometry.weights.size());
+    for (std::size_t i = 0; i < keys; ++i) {
+      const std::string &path = geometry.mesh[std::min(i, geometry.mesh.size() - 1)].path;
+      const std::vector<double> weights =
+          geometry.weights.empty() ? std::vector<double>() : geometry.weights[i];
       const auto [file, isNew] =
-          fileNumbers.emplace(std::pair(key.path, geometry.part), files.size());
+          fileNumbers.emplace(std::tuple(path, geometry.part, weights), files.size());
       if (isNew)
-        files.push_back({key.path, geometry.part});
+        files.push_back({path, geometry.part, weights});
       ++files[file->second].uses;
       files[file->second].keepsOrder |= hasValues(geometry);
       uses.back().files.push_back(file->second);
@@ -76,9 +82,9 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
     runtime::MeshRequest wanted = request;
     wanted.keepsOrder = file.keepsOrder;
     try {
-      file.mesh = file.part.empty()
-                      ? runtime::loadMesh(file.path, wanted)
-                      : gltf::readMesh(description.models->open(file.path), file.part, wanted);
+      file.mesh = file.part.empty() ? runtime::loadMesh(file.path, wanted)
+                                    : gltf::readMesh(description.models->open(file.path), file.part,
+                                                     wanted, file.weights);
     } catch (...) {
       file.failure = std::current_exception();
     }
@@ -120,8 +126,9 @@ MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
   std::vector<const JsonValue *> attributes;
   for (const AttributeDescription &attribute : geometry.attributes)
     attributes.push_back(attribute.json);
-  return {std::move(paths),           geometry.part,          geometry.meshTimes,
-          geometry.transform.columns, geometry.isBarycentric, std::move(attributes)};
+  return {
+      std::move(paths),           geometry.part,          geometry.weights,     geometry.meshTimes,
+      geometry.transform.columns, geometry.isBarycentric, std::move(attributes)};
 }
 
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {

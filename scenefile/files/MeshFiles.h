@@ -33,9 +33,9 @@ private:
     std::exception_ptr failure;
   };
 
-  using Key =
-      std::tuple<std::vector<std::string>, std::string, std::vector<float>,
-                 decltype(runtime::Transform::columns), bool, std::vector<const JsonValue *>>;
+  using Key = std::tuple<std::vector<std::string>, std::string, std::vector<std::vector<double>>,
+                         std::vector<float>, decltype(runtime::Transform::columns), bool,
+                         std::vector<const JsonValue *>>;
   static Key keyOf(const GeometryDescription &geometry);
 
   std::map<Key, std::size_t> numbers;

@@ -1,6 +1,7 @@
 #include "scenefile/gltf/Animation.h"
 
 #include "scenefile/gltf/Accessor.h"
+#include "scenefile/gltf/Mesh.h"
 #include "scenefile/gltf/Parts.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorMessages.h"
@@ -64,6 +65,18 @@ const JsonValue *chosen(const File &file, const Play &play, std::size_t &number)
   throw Error(message::noSuchAnimation(file.path(), play.animation), play.place);
 }
 
+/// How many morph targets the mesh of a node has: all of its primitives have as many.
+std::size_t targetsOf(const File &file, std::size_t node) {
+  const JsonValue *mesh = file.list("nodes")[node].find("mesh");
+  if (!mesh)
+    return 0;
+  const std::size_t index = file.index("meshes", *mesh, fmt::format("`mesh` of `nodes.{}`", node));
+  const JsonValue *primitives = file.list("meshes")[index].find("primitives");
+  if (!primitives || primitives->kind != Kind::Array || primitives->elements.empty())
+    return 0;
+  return targetCount(primitives->elements.front(), partOfPrimitive(index, 0));
+}
+
 } // namespace
 
 /// The values of one property of a node.
@@ -71,6 +84,7 @@ struct Animation::Channel {
   std::vector<float> times;  // in seconds, ascending
   std::vector<float> values; // of each key; of a cubic spline with tangents around it
   std::size_t width = 3;
+  bool isRotation = false;
   Interpolation interpolation = Interpolation::Linear;
 
   std::vector<double> key(std::size_t index, std::size_t part, double factor = 1) const {
@@ -94,7 +108,7 @@ struct Animation::Channel {
     const double length = double(times[before + 1]) - double(times[before]);
     const double share = (time - double(times[before])) / length;
     const std::vector<double> from = key(before, point), to = key(before + 1, point);
-    if (interpolation == Interpolation::Linear && width == 4)
+    if (interpolation == Interpolation::Linear && isRotation)
       return turned(from, to, share);
     // Without tangents, the line; with them Hermite's spline (glTF 2.0, appendix C).
     std::vector<double> result(width);
@@ -113,9 +127,10 @@ struct Animation::Channel {
 };
 
 struct Animation::NodeChannels {
-  std::optional<Channel> translation, rotation, scale;
+  std::optional<Channel> translation, rotation, scale, weights;
 
-  std::vector<const Channel *> all() const {
+  /// Of its transform.
+  std::vector<const Channel *> ofMotion() const {
     std::vector<const Channel *> channels;
     for (const std::optional<Channel> *one : {&translation, &rotation, &scale})
       if (*one)
@@ -157,11 +172,12 @@ void Animation::addChannel(const JsonValue &channel, const JsonValue &samplers,
   const std::size_t index = file.index("nodes", *node, "`node` of " + what);
   const JsonValue &path = expect(require(target, "path", what), Kind::String, "`path` of " + what);
   const bool isRotation = path.string == "rotation";
-  if (!isRotation && path.string != "translation" && path.string != "scale") {
+  const std::size_t targets = path.string == "weights" ? targetsOf(file, index) : 0;
+  if (targets == 0 && !isRotation && path.string != "translation" && path.string != "scale") {
     warnings.push_back({message::channelIgnored(what, path.string), path.place()});
     return;
   }
-  if (file.list("nodes")[index].find("matrix")) {
+  if (targets == 0 && file.list("nodes")[index].find("matrix")) {
     warnings.push_back({message::channelOfMatrixIgnored(what, index), path.place()});
     return;
   }
@@ -185,11 +201,13 @@ void Animation::addChannel(const JsonValue &channel, const JsonValue &samplers,
   const Accessor input(file, require(sampler, "input", what), "`input` of " + what);
   input.require("SCALAR");
   const Accessor output(file, require(sampler, "output", what), "`output` of " + what);
-  output.require(isRotation ? "VEC4" : "VEC3");
-  made.width = isRotation ? 4 : 3;
+  output.require(targets != 0 ? "SCALAR" : isRotation ? "VEC4" : "VEC3");
+  made.width = targets != 0 ? targets : isRotation ? 4 : 3;
+  made.isRotation = isRotation;
   made.times = input.floats();
   made.values = output.floats();
-  const std::size_t parts = made.interpolation == Interpolation::Cubic ? 3 : 1;
+  const std::size_t parts =
+      (made.interpolation == Interpolation::Cubic ? 3 : 1) * std::max<std::size_t>(targets, 1);
   if (made.times.empty() || output.count() != parts * made.times.size())
     throw Error(message::badKeyFrameCount(what, output.count(), made.times.size(),
                                           parts * made.times.size()),
@@ -203,11 +221,8 @@ void Animation::addChannel(const JsonValue &channel, const JsonValue &samplers,
     channels = std::make_unique<NodeChannels>();
   (isRotation                     ? channels->rotation
    : path.string == "translation" ? channels->translation
-                                  : channels->scale) = std::move(made);
-}
-
-bool Animation::isAnimated(std::size_t node) const {
-  return nodes.count(node) != 0;
+   : path.string == "scale"       ? channels->scale
+                                  : channels->weights) = std::move(made);
 }
 
 Motion Animation::at(std::size_t node, const Motion &rest) const {
@@ -232,14 +247,14 @@ Motion Animation::at(std::size_t node, const Motion &rest, double frames) const 
 }
 
 /// Times of the frame between which numbers are nearly linear, and rotations steady.
-std::vector<float> Animation::timesOf(const NodeChannels &channels) const {
+std::vector<float> Animation::timesOf(const std::vector<const Channel *> &channels) const {
   constexpr int piecesOfSpline = 8;
   std::set<float> times{0, 1};
   const auto add = [&](float time) {
     if (time > 0 && time < 1)
       times.insert(time);
   };
-  for (const Channel *channel : channels.all()) {
+  for (const Channel *channel : channels) {
     for (const float seconds : channel->times) {
       const double exact = double(seconds) * play.framesPerSecond - play.frame;
       if (!(exact > 0 && exact < 1))
@@ -260,7 +275,7 @@ std::optional<JsonValue> Animation::transformOf(const JsonValue &node, std::size
   const auto found = nodes.find(index);
   if (!play.isDuringFrame || found == nodes.end())
     return std::nullopt;
-  const std::vector<float> times = timesOf(*found->second);
+  const std::vector<float> times = timesOf(found->second->ofMotion());
   JsonValue keys = valueAt(node, Kind::Array), timesOfKeys = valueAt(node, Kind::Array);
   const auto columns = at(index, rest).transform().columns;
   bool moves = false;
@@ -276,6 +291,33 @@ std::optional<JsonValue> Animation::transformOf(const JsonValue &node, std::size
   if (!moves)
     return std::nullopt;
   return object(node, {{"keys", std::move(keys)}, {"times", std::move(timesOfKeys)}});
+}
+
+std::vector<double> Animation::weightsAt(std::size_t node, const std::vector<double> &rest) const {
+  const auto found = nodes.find(node);
+  return found == nodes.end() || !found->second->weights
+             ? rest
+             : found->second->weights->at(play.frame / play.framesPerSecond);
+}
+
+std::optional<JsonValue> Animation::weightsOf(const JsonValue &node, std::size_t index) const {
+  const auto found = nodes.find(index);
+  if (!play.isDuringFrame || found == nodes.end() || !found->second->weights)
+    return std::nullopt;
+  const Channel &channel = *found->second->weights;
+  JsonValue keys = valueAt(node, Kind::Array), times = valueAt(node, Kind::Array);
+  const std::vector<double> first = weightsAt(index, {});
+  bool changes = false;
+  for (const float time : timesOf({&channel})) {
+    const std::vector<double> weights =
+        channel.at((play.frame + double(time)) / play.framesPerSecond);
+    changes |= weights != first;
+    times.elements.push_back(number(node, time));
+    keys.elements.push_back(numbers(node, weights));
+  }
+  if (!changes)
+    return std::nullopt;
+  return object(node, {{"keys", std::move(keys)}, {"times", std::move(times)}});
 }
 
 } // namespace rtsl::scene::gltf

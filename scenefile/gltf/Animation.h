@@ -40,7 +40,12 @@ public:
   std::optional<JsonValue> transformOf(const JsonValue &node, std::size_t index,
                                        const Motion &rest) const;
 
-  bool isAnimated(std::size_t node) const;
+  /// The weights of a node's morph targets at the frame; `rest` is what they are without an
+  /// animation.
+  std::vector<double> weightsAt(std::size_t node, const std::vector<double> &rest) const;
+
+  /// `weights` of a mesh in a scene file, if they change during the frame.
+  std::optional<JsonValue> weightsOf(const JsonValue &node, std::size_t index) const;
 
 private:
   struct Channel;
@@ -49,7 +54,7 @@ private:
   void addChannel(const JsonValue &channel, const JsonValue &samplers, const std::string &what,
                   std::vector<Warning> &warnings);
   Motion at(std::size_t node, const Motion &rest, double frames) const;
-  std::vector<float> timesOf(const NodeChannels &channels) const;
+  std::vector<float> timesOf(const std::vector<const Channel *> &channels) const;
 
   const File &file;
   const Play play;

@@ -11,6 +11,7 @@
 #include <charconv>
 #include <numeric>
 #include <optional>
+#include <set>
 
 namespace rtsl::scene::gltf {
 
@@ -68,6 +69,39 @@ struct Vertices {
   }
 };
 
+/// What the morph targets of a primitive add to its positions or normals.
+std::vector<Accessor> differencesOf(const File &file, const JsonValue &primitive,
+                                    const std::string &part, std::size_t target, const char *name,
+                                    std::size_t count) {
+  const std::string what = fmt::format("`targets.{}` of `{}`", target, part);
+  const JsonValue &attributes =
+      expect(primitive.find("targets")->elements[target], Kind::Object, what);
+  const JsonValue *number = attributes.find(name);
+  if (!number)
+    return {};
+  Accessor accessor(file, *number, fmt::format("`{}` of {}", name, what));
+  accessor.require("VEC3");
+  if (accessor.count() != count)
+    throw Error(message::attributeCountsDiffer(part, accessor.count(), name, count),
+                number->place());
+  return {std::move(accessor)};
+}
+
+/// Adds the morph targets to the positions or normals of a primitive, by their weights.
+void morph(std::vector<float> &values, const File &file, const JsonValue &primitive,
+           const std::string &part, const char *name, const std::vector<double> &weights) {
+  std::vector<double> sums(values.begin(), values.end());
+  for (std::size_t target = 0; target < weights.size(); ++target)
+    if (weights[target] != 0)
+      for (const Accessor &differences :
+           differencesOf(file, primitive, part, target, name, values.size() / 3)) {
+        const std::vector<float> numbers = differences.floats();
+        for (std::size_t i = 0; i < sums.size(); ++i)
+          sums[i] += weights[target] * double(numbers[i]);
+      }
+  std::transform(sums.begin(), sums.end(), values.begin(), [](double sum) { return float(sum); });
+}
+
 /// The vertices of triangles, from those of a strip or a fan.
 std::vector<std::uint32_t> trianglesOf(const std::vector<std::uint32_t> &vertices,
                                        std::uint32_t mode) {
@@ -119,17 +153,30 @@ bool hasTriangles(const JsonValue &primitive, const std::string &part) {
   return modeOf(primitive, part) >= triangles;
 }
 
+std::size_t targetCount(const JsonValue &primitive, const std::string &part) {
+  const JsonValue *targets = primitive.find("targets");
+  return targets
+             ? expect(*targets, Kind::Array, fmt::format("`targets` of `{}`", part)).elements.size()
+             : 0;
+}
+
 void checkPrimitive(const File &file, const JsonValue &primitive, const std::string &part) {
   modeOf(primitive, part);
-  Vertices(file, primitive, part);
+  const Vertices vertices(file, primitive, part);
+  for (std::size_t target = 0; target < targetCount(primitive, part); ++target)
+    for (const char *name : {"POSITION", "NORMAL"})
+      differencesOf(file, primitive, part, target, name, vertices.positions.count());
 }
 
 std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part) {
   std::vector<Warning> warnings;
   if (!hasTriangles(primitive, part))
     warnings.push_back({message::pointsAndLinesIgnored(part), primitive.place()});
-  if (const JsonValue *targets = primitive.find("targets"))
-    warnings.push_back({message::morphTargetsIgnored(part), targets->place()});
+  std::set<std::string> ignored; // each once
+  for (std::size_t target = 0; target < targetCount(primitive, part); ++target)
+    for (const auto &[name, number] : primitive.find("targets")->elements[target].members)
+      if (name.text != "POSITION" && name.text != "NORMAL" && ignored.insert(name.text).second)
+        warnings.push_back({message::targetAttributeIgnored(name.text, part), number.place()});
   if (const JsonValue *colors = Vertices::attributes(primitive, part).find("COLOR_0"))
     warnings.push_back({message::vertexColorsIgnored(part), colors->place()});
   return warnings;
@@ -192,15 +239,18 @@ void addAttributes(runtime::Mesh &mesh, const File &file, const JsonValue &primi
 } // namespace
 
 runtime::Mesh readMesh(const File &file, const std::string &part,
-                       const runtime::MeshRequest &request) {
+                       const runtime::MeshRequest &request, const std::vector<double> &weights) {
   try {
     const JsonValue &primitive = primitiveOf(file, part, Place{file.path()});
     const std::uint32_t mode = modeOf(primitive, part);
     const Vertices vertices(file, primitive, part);
     runtime::Mesh mesh;
     mesh.positions = vertices.positions.floats();
-    if (vertices.normals)
+    morph(mesh.positions, file, primitive, part, "POSITION", weights);
+    if (vertices.normals) {
       mesh.normals = vertices.normals->floats();
+      morph(mesh.normals, file, primitive, part, "NORMAL", weights);
+    }
     if (vertices.uvs) {
       mesh.uvs = vertices.uvs->floats();
       flip(mesh.uvs);

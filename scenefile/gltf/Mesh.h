@@ -15,6 +15,9 @@ const JsonValue &primitiveOf(const File &file, const std::string &part, const Pl
 /// Whether it has triangles: points and lines are not seen.
 bool hasTriangles(const JsonValue &primitive, const std::string &part);
 
+/// How many morph targets a primitive has.
+std::size_t targetCount(const JsonValue &primitive, const std::string &part);
+
 /// Checks a primitive as far as it can be without the bytes of buffers.
 void checkPrimitive(const File &file, const JsonValue &primitive, const std::string &part);
 
@@ -24,8 +27,10 @@ std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &p
 /// Reads a primitive, and of its other attributes those that are requested: `TEXCOORD_1` is `uv1`,
 /// `COLOR_0` `color`, `TANGENT` `tangent`, and an author's own, such as `_WEAR`, `wear`. Texture
 /// coordinates are turned from glTF's, which begin at the upper left corner of an image, to ours.
+/// `weights`: of its morph targets, whose positions and normals are added; empty: all are 0.
 /// Throws BadMesh, BadBuffer.
 runtime::Mesh readMesh(const File &file, const std::string &part,
-                       const runtime::MeshRequest &request = {});
+                       const runtime::MeshRequest &request = {},
+                       const std::vector<double> &weights = {});
 
 } // namespace rtsl::scene::gltf

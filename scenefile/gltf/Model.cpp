@@ -1,5 +1,6 @@
 #include "scenefile/gltf/Model.h"
 
+#include "scenefile/gltf/Animation.h"
 #include "scenefile/gltf/Material.h"
 #include "scenefile/gltf/Mesh.h"
 #include "scenefile/gltf/Nodes.h"
@@ -9,8 +10,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
+#include <utility>
 
 namespace rtsl::scene::gltf {
 
@@ -27,7 +31,10 @@ public:
   Model make() {
     model.root = name;
     std::vector<Node> nodes;
-    errors.attempt([&] { nodes = nodesOf(file, Animation(file, play, model.warnings)); });
+    errors.attempt([&] {
+      animation.emplace(file, play, model.warnings);
+      nodes = nodesOf(file, *animation);
+    });
     keepLightsAtRest(nodes);
     std::vector<std::vector<JsonValue>> children(nodes.size() + 1); // by 1 + the node; of the root
     // Children come after their parents.
@@ -100,13 +107,38 @@ private:
     addChildren(key, json, std::move(children), &node);
   }
 
-  /// Each mesh is one node, which all nodes that show it share.
+  /// The weights of the morph targets of a node's mesh, as a scene file has them; nothing: it has
+  /// no targets, or all weights are 0.
+  std::optional<JsonValue> weightsOf(std::size_t mesh, const Node &node) const {
+    const JsonValue &json = file.list("meshes")[mesh];
+    const JsonValue *given = node.json->find("weights");
+    const bool isOfNode = given != nullptr;
+    if (!given)
+      given = json.find("weights");
+    std::vector<double> rest;
+    if (given)
+      rest = readNumbers(
+          *given, given->elements.size(),
+          fmt::format("`weights` of {}", isOfNode ? node.what : fmt::format("`meshes.{}`", mesh)));
+    if (std::optional<JsonValue> moving = animation->weightsOf(*node.json, node.index))
+      return moving;
+    const std::vector<double> weights = animation->weightsAt(node.index, rest);
+    if (std::all_of(weights.begin(), weights.end(), [](double one) { return one == 0; }))
+      return std::nullopt;
+    return numbers(given ? *given : *node.json, weights);
+  }
+
+  /// Each mesh is one node, which all nodes that show it share, if its shape is the same in all.
   void addMesh(const JsonValue &number, const Node &node, std::vector<JsonValue> &children) {
     const std::size_t index = file.index("meshes", number, "`mesh` of " + node.what);
-    const auto [known, isNew] = meshes.emplace(index, std::string());
+    const std::optional<JsonValue> weights = weightsOf(index, node);
+    const auto [known, isNew] =
+        meshes.emplace(std::pair(index, weights ? node.index + 1 : 0), std::string());
     if (isNew) {
-      const std::string key = fmt::format("{}/meshes/{}", name, meshLabels.of(index));
-      std::vector<JsonValue> primitives = primitivesOf(index);
+      std::string key = fmt::format("{}/meshes/{}", name, meshLabels.of(index));
+      if (weights)
+        key += fmt::format(" of {}", nodeLabels.of(node.index));
+      std::vector<JsonValue> primitives = primitivesOf(index, weights);
       if (!primitives.empty()) {
         addChildren(key, file.list("meshes")[index], std::move(primitives));
         known->second = key;
@@ -116,7 +148,7 @@ private:
       children.push_back(text(number, known->second));
   }
 
-  std::vector<JsonValue> primitivesOf(std::size_t index) {
+  std::vector<JsonValue> primitivesOf(std::size_t index, const std::optional<JsonValue> &weights) {
     const JsonValue &mesh = file.list("meshes")[index];
     const std::string what = fmt::format("`meshes.{}`", index);
     const JsonValue &primitives =
@@ -127,8 +159,9 @@ private:
         const std::string part = partOfPrimitive(index, i);
         const JsonValue &primitive = primitiveOf(file, part, mesh.place());
         checkPrimitive(file, primitive, part);
-        for (Warning &warning : warningsOf(primitive, part))
-          model.warnings.push_back(std::move(warning));
+        if (warned.insert(part).second)
+          for (Warning &warning : warningsOf(primitive, part))
+            model.warnings.push_back(std::move(warning));
         if (!hasTriangles(primitive, part))
           return;
         JsonValue path = text(primitive, mention.path);
@@ -137,6 +170,8 @@ private:
                                           {"mesh", std::move(path)},
                                           {"part", text(primitive, part)},
                                           {"material", materialOf(primitive, part)}}));
+        if (weights && targetCount(primitive, part) != 0)
+          set(made.back(), "weights", *weights);
       });
     return made;
   }
@@ -180,8 +215,11 @@ private:
   Model model;
   const Labels nodeLabels{file, "nodes"}, meshLabels{file, "meshes"},
       materialLabels{file, "materials"};
-  std::map<std::size_t, std::string> meshes; // names of their nodes; empty: without triangles
-  std::set<std::size_t> materials;           // made
+  std::optional<Animation> animation;
+  /// Names of their nodes, by mesh and 1 + the node whose weights it has; empty: without triangles.
+  std::map<std::pair<std::size_t, std::size_t>, std::string> meshes;
+  std::set<std::string> warned;    // parts
+  std::set<std::size_t> materials; // made
   bool hasDefault = false;
   ErrorCollector errors;
 };

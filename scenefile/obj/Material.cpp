@@ -38,11 +38,11 @@ public:
       : material(material), size(size), mention(mention), modules(modules), warnings(warnings) {}
 
   JsonValue make() {
-    for (const Statement &statement : material.statements)
-      if (!isKnown(statement.keyword))
-        warn(statement, fmt::format("`{}` of the material `{}`", statement.keyword, material.name));
     illumination = int(number("illum", 0, 10).value_or(2));
     metallic = number("Pm", 0, 1);
+    for (const Statement &statement : material.statements)
+      if (!isKnown(statement.keyword) && !(statement.keyword == "map_Ks" && isMirror()))
+        warn(statement, nameOf(statement));
     JsonValue made = isRefracting() ? dielectric() : isThinGlass() ? pane() : surface();
     return covered(withRelief(std::move(made)));
   }
@@ -313,6 +313,7 @@ private:
     JsonValue made = libraryObject(material.source, "materials.Principled", modules);
     if (isMirror()) {
       setColor(made, "baseColor", "Ks", color("Ks").value_or(std::vector<double>(3, 1)));
+      setColors(made, "baseColorMap", "map_Ks");
     } else {
       setColor(made, "baseColor", "Kd", diffuse());
       setColors(made, "baseColorMap", "map_Kd");

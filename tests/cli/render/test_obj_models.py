@@ -163,6 +163,12 @@ class Materials(ObjCase):
         self.assert_color(left, [0.9, 0.7, 0.5], 0.02)
         self.assert_color(right, [1, 1, 1], 0.02)
         self.assertEqual(warnings, "")
+        # An image multiplies the color of a mirror.
+        (self.folder / "green.png").write_bytes(png([[(0, 255, 0)] * 2] * 2))
+        self.materials("illum 3\nKs 0.9 0.7 0.5\nmap_Ks green.png", "illum 7\nNi 1.5\nKd 0 0 0")
+        left, _, warnings = self.halves("--engine", "path", "--depth", "40", "--spp", "256")
+        self.assert_color(left, [0, 0.7, 0], 0.02)
+        self.assertEqual(warnings, "")
 
     def test_metal_and_roughness(self):
         """Smooth metal of the statements for physically based shading."""

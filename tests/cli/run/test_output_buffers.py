@@ -141,7 +141,9 @@ class Sky : rt_Miss { void miss(inout Ray ray) { ray.at = rt_LaunchIndex; } };
             self.assertEqual(len(found), 1, found)
             self.assertIn("between 1 and", found[0]["message"])
         self.scene(rayGeneration=None, passes=[])
-        self.assert_message(self.diagnose("run", "scene.json"), "E0818", "no ray generation")
+        self.assert_message(
+            self.diagnose("run", "scene.json"), "E0805", "`passes` is an empty list"
+        )
         # A buffer of two dimensions has no size of its own in such a launch.
         self.write(
             "one.rtsl",

@@ -18,7 +18,8 @@ namespace {
 std::string animated(const std::string &path, const std::vector<float> &times,
                      const std::vector<float> &values, const std::string &sampler = "",
                      const std::string &node = R"({"mesh": 0})") {
-  const std::size_t width = path == "rotation" ? 4 : 3, timeBytes = 4 * times.size();
+  const std::size_t width = path == "rotation" ? 4 : path == "weights" ? 1 : 3;
+  const std::size_t timeBytes = 4 * times.size();
   std::string file = squareFile(
       node,
       R"(, "animations": [{"name": "Walk", "samplers": [{"input": 2, "output": 3)" + sampler +
@@ -27,11 +28,13 @@ std::string animated(const std::string &path, const std::vector<float> &times,
   const auto replace = [&](const std::string &from, const std::string &to) {
     file.replace(file.find(from), from.size(), to);
   };
-  replace(R"("max": [1, 1, 0]})",
-          fmt::format(R"("max": [1, 1, 0]}},
+  replace(R"("max": [1, 1, 0]})", fmt::format(R"("max": [1, 1, 0]}},
 {{"bufferView": 2, "componentType": 5126, "count": {}, "type": "SCALAR"}},
 {{"bufferView": 3, "componentType": 5126, "count": {}, "type": "{}"}})",
-                      times.size(), values.size() / width, width == 4 ? "VEC4" : "VEC3"));
+                                              times.size(), values.size() / width,
+                                              width == 4   ? "VEC4"
+                                              : width == 1 ? "SCALAR"
+                                                           : "VEC3"));
   replace(R"("byteLength": 48})",
           fmt::format(R"("byteLength": 48}}, {{"buffer": 0, "byteOffset": 60, "byteLength": {}}},
 {{"buffer": 0, "byteOffset": {}, "byteLength": {}}})",
@@ -123,6 +126,29 @@ TEST_F(GltfAnimation, NodesMoveWhileTheShutterIsOpen) {
   EXPECT_NEAR(at(1)[1], 3 * 0.5 / 24, 1e-6);
   EXPECT_NEAR(moving.at(0.7f).columns[0][0], 2, 1e-6);
   EXPECT_FALSE(transform(model, "\"frame\": 100" + shutter).moves()); // at rest
+}
+
+TEST_F(GltfAnimation, WeightsOfMorphTargetsChange) {
+  std::string model = animated("weights", {0, 1, 2}, {0, 4, 2, 2, 2, 0});
+  const std::string indices = "\"indices\": 0";
+  model.replace(model.find(indices), indices.size(),
+                indices + R"(, "targets": [{"POSITION": 1}, {"POSITION": 1}])");
+  using Weights = std::vector<std::vector<double>>;
+  const auto at = [&](double frame) {
+    return scene(model, fmt::format("\"frame\": {}", frame)).objects.at(0).weights;
+  };
+  EXPECT_EQ(at(0), (Weights{{0, 4}}));
+  EXPECT_EQ(at(12), (Weights{{1, 3}}));
+  EXPECT_EQ(at(100), (Weights{{2, 0}}));
+  // While the shutter is open, with the key frame between; at rest there is one list.
+  const SceneDescription moving = scene(model, "\"frame\": 23.5" + shutter);
+  ASSERT_EQ(moving.objects.at(0).weights.size(), 3u);
+  EXPECT_NEAR(moving.objects[0].weights[0][0], 2 * 23.5 / 24, 1e-6);
+  EXPECT_NEAR(moving.objects[0].weights[1][1], 2, 1e-5);
+  EXPECT_NEAR(moving.objects[0].weights[2][1], 2 - 2 * 0.5 / 24, 1e-6);
+  ASSERT_EQ(moving.objects[0].meshTimes.size(), 3u);
+  EXPECT_NEAR(moving.objects[0].meshTimes[1], 0.5, 1e-6);
+  EXPECT_EQ(scene(model, "\"frame\": 60" + shutter).objects.at(0).weights.size(), 1u);
 }
 
 TEST_F(GltfAnimation, CamerasMoveFromFrameToFrame) {

@@ -250,7 +250,7 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
                  R"(, "extensionsUsed": ["KHR_materials_iridescence", "KHR_texture_transform"])");
   file.replace(
       file.find("\"indices\": 0"), 12,
-      R"("indices": 0, "targets": [{}]}, {"mode": 1, "attributes": {"POSITION": 1, "COLOR_0": 1})");
+      R"("indices": 0, "targets": [{"TANGENT": 1}]}, {"mode": 1, "attributes": {"POSITION": 1, "COLOR_0": 1})");
   std::vector<std::string> found;
   for (const Warning &warning : scene(file).warnings)
     found.push_back(folder.without(warning.message));
@@ -260,9 +260,37 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
                 "the skin of `nodes.0` is ignored: the mesh is not deformed",
                 "`meshes.0.primitives.1` has points or lines, which are ignored",
                 "the colors of vertices, `COLOR_0` of `meshes.0.primitives.1`, are ignored",
-                "the morph targets of `meshes.0.primitives.0` are ignored",
+                "`TANGENT` of the morph targets of `meshes.0.primitives.0` is ignored: they change "
+                "positions and normals",
                 "the extension `KHR_materials_iridescence` of `m.gltf` is not supported; what it "
                 "adds is ignored"}));
+}
+
+TEST_F(Gltf, MorphTargetsAreAddedByTheirWeights) {
+  // The square as a target of itself: with a weight w it is larger by w.
+  std::string model = squareFile(R"({"children": [1, 2, 3]}, {"mesh": 0},
+{"mesh": 0, "weights": [3, 0]}, {"mesh": 0, "weights": [0, 0]})");
+  const std::string indices = "\"indices\": 0";
+  model.replace(model.find(indices), indices.size(),
+                indices + R"(, "targets": [{"POSITION": 1}, {"POSITION": 1}])");
+  const SceneDescription described = scene(model);
+  ASSERT_EQ(described.objects.size(), 2u); // the last node's mesh is the first one's
+  EXPECT_TRUE(described.objects[0].weights.empty() != described.objects[1].weights.empty());
+  EXPECT_TRUE(described.warnings.empty());
+
+  const gltf::File file(folder.path + "/m.gltf");
+  const std::string part = "meshes.0.primitives.0";
+  const std::vector<float> plain = gltf::readMesh(file, part).positions;
+  const std::vector<float> larger = gltf::readMesh(file, part, {}, {0.5, 1}).positions;
+  ASSERT_EQ(plain.size(), larger.size());
+  for (std::size_t i = 0; i < plain.size(); ++i)
+    EXPECT_FLOAT_EQ(larger[i], 2.5f * plain[i]);
+
+  model.replace(model.find("[3, 0]"), 6, "[3]");
+  EXPECT_NE(sceneError(model).find("`weights`"), std::string::npos);
+  const std::string more = R"("objects": [{"mesh": "m.gltf", "weights": [1], "material": "m"}])";
+  EXPECT_NE(errorOf([&] { scene(model, more); }).find("`weights` are for a `part`"),
+            std::string::npos);
 }
 
 TEST_F(Gltf, ReadsMeshes) {
