@@ -43,6 +43,7 @@ static void turn(double degrees) {
 int main(int count, char **arguments) {
   const float ambient[] = {0.12f, 0.13f, 0.16f};
   RtslRenderSettings settings = rtslRenderDefaults();
+  RtslObject ground;
   RtslNode table;
   char path[4096];
   int i;
@@ -53,8 +54,8 @@ int main(int count, char **arguments) {
   argument("uv0", 2, -1.6, -0.9, 0), argument("uv1", 2, 1.6, 0.9, 0), argument("d", 1, 4, 0, 0);
   need((uint32_t)rtslSceneSetCamera(scene, need(rtslSceneAddObject(scene, "PinholeCamera"))));
   argument("anchor_", 3, -8, 0, 8), argument("e1", 3, 16, 0, 0), argument("e2", 3, 0, 0, -16);
-  rtslSceneAddPrimitive(scene, need(rtslSceneAddObject(scene, "Parallelogram")),
-                        lambert(0.7, 0.7, 0.65));
+  ground = need(rtslSceneAddObject(scene, "Parallelogram"));
+  rtslSceneAddPrimitive(scene, ground, lambert(0.7, 0.7, 0.65));
   turn(0);
   table = need(rtslEnter(scene)); /* what is added from here on stands on it */
   need((uint32_t)rtslSceneAddMeshFile(scene, arguments[1], NULL, lambert(0.8, 0.35, 0.2)));

@@ -52,9 +52,38 @@ void *rtslMapBuffer(RtslScene *scene, RtslBufferNumber buffer);
 /* The launches that follow see what was written. */
 int rtslUnmapBuffer(RtslScene *scene, RtslBufferNumber buffer);
 /* Sets a member of the next rtslSceneAddObject, a buffer of 1 to 3 dimensions of these sizes, which
- * must fill the memory. Several members may share a buffer unless one of them is an output. */
+ * must fill the memory. Several members may share a buffer unless one of them is an output; those
+ * of two ray generations always may, of which each launch runs one (rtslSceneSetRayGeneration). */
 int rtslMemberBuffer(RtslScene *scene, const char *member, RtslBufferNumber buffer,
                      const uint32_t *sizes, uint32_t dimensions);
+
+/* How images are read: as a scene file says with the same names (docs/scene-format.md). */
+typedef enum RtslFilter {
+  RTSL_NEAREST,
+  RTSL_BILINEAR,
+  RTSL_TRILINEAR,
+  RTSL_ANISOTROPIC
+} RtslFilter;
+typedef enum RtslWrap { RTSL_REPEAT, RTSL_MIRROR, RTSL_CLAMP, RTSL_BLACK } RtslWrap;
+typedef enum RtslColorSpace { RTSL_AUTO, RTSL_LINEAR, RTSL_SRGB } RtslColorSpace;
+typedef struct RtslSampling {
+  RtslFilter filter;
+  RtslWrap wrap[3]; /* by axis */
+  RtslColorSpace colorSpace;
+  uint32_t anisotropy; /* the most lookups along a footprint, 1 to 256 */
+} RtslSampling;
+/* Trilinear, repeated, RTSL_AUTO, 16. */
+RtslSampling rtslSamplingDefaults(void);
+
+/* An image of files, for rtslMemberObject and rtslArgumentObject: a sampler2D of one file, or a
+ * sampler3D of one or more slices, from front to back. `sampling` null: the defaults. */
+RtslObject rtslSceneAddImage(RtslScene *scene, const char *const *files, size_t count, int isVolume,
+                             const RtslSampling *sampling);
+/* The same of linear numbers in memory, which are copied: `channels` (1, 2 or 4) side by side, rows
+ * from the bottom, slices from the front; `depth` 0: a sampler2D. */
+RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t width,
+                              uint32_t height, uint32_t depth, uint32_t channels,
+                              const RtslSampling *sampling);
 
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
  * and the mask of the next instance that is added. Fails if a number is not finite. */
@@ -152,7 +181,8 @@ int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
 /* Samples have times between these two, 0 <= open <= close <= 1. Without it they have times from 0
  * to 1 if something moves. */
 int rtslSceneSetShutter(RtslScene *scene, float open, float close);
-/* Replaces the camera: its `generate` computes the samples. */
+/* Replaces the camera: its `generate` computes the samples. Several launches in order, each with a
+ * ray generation of its own over the same buffers, are what a scene file calls passes. */
 int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration);
 /* Handles samples with an exception, in shaders compiled with --exceptions. */
 int rtslSceneSetException(RtslScene *scene, RtslObject exception);

@@ -95,6 +95,9 @@ bool read(PngError &error, Source &source, Pixels &pixels, std::vector<png_bytep
     png_error(png, "unexpected layout of rows");
   if (pixels.height > mostImageBytes / rowBytes)
     png_error(png, "the image is too large");
+  // Deflate makes at most 1032 bytes of one: memory is requested only for pixels that may be there.
+  if (pixels.height * rowBytes / 1032 > source.bytes->size())
+    png_error(png, "the file ends too early");
   pixels.bytes.resize(pixels.height * rowBytes);
   rows.resize(pixels.height);
   for (std::uint32_t y = 0; y < pixels.height; ++y)

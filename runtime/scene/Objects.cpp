@@ -94,7 +94,7 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
       callOutsideOfRays(launch(), object.reference,
                         [&](RtslState &state) { classInfo.initialize(&state, object.reference); });
     runConstructor(object, values, launch);
-    storeMembers(classInfo, object.name, values, recordOf(object), storeContext());
+    storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
     checkUnset(classInfo, object.name, values, recordOf(object));
     measureChain(object);
   } catch (...) { // half an object is none
@@ -113,7 +113,7 @@ void Objects::setMember(RtslRef reference, const NamedValue &value) {
   values.members.push_back(value);
   const std::size_t size = std::max(object.classInfo->recordSize, 4u);
   std::vector<std::uint8_t> changed(recordOf(object), recordOf(object) + size);
-  storeMembers(*object.classInfo, object.name, values, changed.data(), storeContext());
+  storeMembers(*object.classInfo, object.name, values, changed.data(), storeContext(object));
   std::copy(changed.begin(), changed.end(), recordOf(object));
   measureChain(object);
 }
@@ -123,7 +123,8 @@ void Objects::runConstructor(const Object &object, const ObjectValues &values,
   const ClassInfo &classInfo = *object.classInfo;
   if (!classInfo.hasConstructor && std::holds_alternative<std::monostate>(values.constructor))
     return;
-  const std::vector<std::uint32_t> arguments = packArguments(classInfo, values, storeContext());
+  const std::vector<std::uint32_t> arguments =
+      packArguments(classInfo, values, storeContext(object));
   if (classInfo.construct)
     callOutsideOfRays(launch(), object.reference, [&](RtslState &state) {
       classInfo.construct(&state, object.reference, arguments.data());
@@ -140,16 +141,24 @@ bool Objects::derivesFrom(const ClassInfo *info, const std::string &className) c
   return false;
 }
 
-StoreContext Objects::storeContext() {
+StoreContext Objects::storeContext(const Object &object) {
   StoreContext context;
   context.colorComponents = code->colorComponents;
   context.allocate = [this](std::size_t bytes) {
     bufferMemory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
     return reinterpret_cast<std::uint8_t *>(bufferMemory.back().get());
   };
-  context.keep = [this](std::shared_ptr<Value::Words> words, bool isOutput) {
-    const auto [block, isNew] = blocks.try_emplace(std::move(words), isOutput);
-    return isNew || !(isOutput || block->second);
+  // A launch runs one ray generation: others may read what it writes in other launches.
+  const RtslRef launched =
+      object.classInfo->root == "rt_RayGeneration" ? object.reference : RtslRef(0);
+  context.keep = [this, launched](std::shared_ptr<Value::Words> words, bool isOutput) {
+    std::vector<BlockUse> &uses = blocks[std::move(words)];
+    const bool clashes = std::any_of(uses.begin(), uses.end(), [&](const BlockUse &use) {
+      const bool areApart = launched && use.launched && launched != use.launched;
+      return (isOutput || use.isOutput) && !areApart;
+    });
+    uses.push_back({launched, isOutput});
+    return !clashes;
   };
   context.classMismatch = [this](RtslRef object,
                                  const std::string &className) -> const std::string * {

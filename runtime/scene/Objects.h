@@ -81,15 +81,21 @@ private:
                       const std::function<RtslLaunch()> &launch);
   void measureChain(const Object &object);
   bool derivesFrom(const ClassInfo *info, const std::string &className) const;
-  StoreContext storeContext();
+  StoreContext storeContext(const Object &object);
   std::uint8_t *recordOf(const Object &object) { return records.data() + object.reference; }
 
   std::shared_ptr<const Program> code;
   std::vector<std::uint8_t> records;
   std::vector<Object> objects; // ascending by reference
   std::vector<std::unique_ptr<std::uint32_t[]>> bufferMemory;
-  std::map<std::shared_ptr<Value::Words>, bool> blocks; // and whether an output buffer uses it
-  std::unordered_map<RtslRef, std::uint32_t> chains;    // measureChain
+  /// A member that uses a block of memory as its buffer: of which ray generation, 0 if of another
+  /// object, and whether it is an output buffer.
+  struct BlockUse {
+    RtslRef launched;
+    bool isOutput;
+  };
+  std::map<std::shared_ptr<Value::Words>, std::vector<BlockUse>> blocks;
+  std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
   std::uint32_t longestChain = 0;
 };
 

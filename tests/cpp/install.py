@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""install.py CMAKE BUILD SOURCE CC CXX: installs into a folder, and builds the example and a C
-program from there alone."""
+"""install.py CMAKE BUILD SOURCE CC CXX: installs into a folder, and builds the examples of the
+interfaces for C++ and C, and another C program, from there alone."""
 import json
 import os
 import pathlib
@@ -77,6 +77,21 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
     assert (
         builds_anew() and generated.read_text() != second
     ), "a changed shader was not compiled again"
+
+    # The same for the example in C, with the shaders beside it.
+    turntable = folder / "c-build"
+    run(
+        cmake,
+        "-S",
+        f"{source}/examples/c-api",
+        "-B",
+        turntable,
+        f"-DCMAKE_PREFIX_PATH={prefix}",
+        "-DCMAKE_BUILD_TYPE=Release",
+    )
+    run(cmake, "--build", turntable)
+    run(turntable / "c-api", f"{source}/examples/glass/knot.obj", folder, "2", "48")
+    assert len(list(folder.glob("*.png"))) == 3, "two frames, and the picture of the other example"
 
     # pkg-config and C.
     environment = dict(

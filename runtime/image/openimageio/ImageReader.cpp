@@ -44,7 +44,55 @@ std::string nameOf(const void *bytes, std::uint64_t size) {
   return isJpeg ? "bytes.jpg" : "bytes";
 }
 
-void read(OIIO::ImageInput *input, std::uint64_t mostBytes,
+/// How many bytes of pixels a byte of a file may hold, at most; 0: there is no bound that helps.
+/// Formats that are read row by row need none. The others are those whose readers get memory for
+/// the whole image first.
+std::uint64_t mostPixelBytes(const std::string &format) {
+  if (format == "jpeg" || format == "tiff" || format == "openexr" || format == "png")
+    return 0;
+  if (format == "pnm") // bits become bytes
+    return 8;
+  for (const char *ofRuns : {"targa", "bmp", "hdr", "sgi", "psd", "iff", "rla", "softimage"})
+    if (format == ofRuns) // a run has at most 255 equal pixels, and two bytes or more
+      return 128 * 4;
+  return 4096; // dictionaries, such as GIF's
+}
+
+/// Reads rows from the top, up to `end`, which follow those that have been read.
+bool readRows(OIIO::ImageInput &input, int begin, int end, int channels, OIIO::TypeDesc type,
+              void *pixels) {
+  const OIIO::ImageSpec &spec = input.spec();
+  if (spec.tile_width == 0)
+    return input.read_scanlines(0, 0, spec.y + begin, spec.y + end, 0, 0, channels, type, pixels);
+  return input.read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + begin, spec.y + end, 0, 1, 0,
+                          channels, type, pixels);
+}
+
+/// Reads the pixels in pieces, each as large as all before it: a file that claims to be large gets
+/// memory only as far as it has pixels. False if the file is damaged; file.pixels is null if there
+/// is no memory.
+bool readPixels(OIIO::ImageInput &input, int channels, OIIO::TypeDesc type, std::uint64_t rowBytes,
+                void *(*allocate)(void *, std::uint64_t), void *context, ImageFile &file) {
+  constexpr std::uint64_t firstBytes = std::uint64_t(1) << 26;
+  const OIIO::ImageSpec &spec = input.spec();
+  const auto height = static_cast<std::uint64_t>(spec.height);
+  const auto step = static_cast<std::uint64_t>(std::max(spec.tile_height, 1));
+  std::uint64_t rows = 0;
+  while (rows < height) {
+    std::uint64_t next = std::max(2 * rows, firstBytes / rowBytes);
+    next = std::min((next / step + 1) * step, height);
+    file.pixels = allocate(context, next * rowBytes);
+    if (!file.pixels)
+      return true;
+    if (!readRows(input, static_cast<int>(rows), static_cast<int>(next), channels, type,
+                  static_cast<char *>(file.pixels) + rows * rowBytes))
+      return false;
+    rows = next;
+  }
+  return true;
+}
+
+void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBytes,
           void *(*allocate)(void *, std::uint64_t), void *context, ImageFile &file) {
   if (!input)
     return fail(file, ImageFile::Problem::Bad, OIIO::geterror());
@@ -65,12 +113,13 @@ void read(OIIO::ImageInput *input, std::uint64_t mostBytes,
   const std::uint64_t pixelBytes = std::uint64_t(file.channels) * file.bytesPerChannel;
   if (std::uint64_t(file.width) * file.height > mostBytes / pixelBytes)
     return fail(file, ImageFile::Problem::TooLarge, "");
-  const std::uint64_t bytes = std::uint64_t(file.width) * file.height * pixelBytes;
-  file.pixels = allocate(context, bytes);
-  if (!file.pixels)
-    return fail(file, ImageFile::Problem::NoMemory, "");
-  if (!input->read_image(0, 0, 0, channels, type, file.pixels))
+  const std::uint64_t expansion = mostPixelBytes(input->format_name());
+  if (expansion != 0 && file.width * pixelBytes * file.height / expansion > fileBytes)
+    return fail(file, ImageFile::Problem::Bad, "the file ends too early");
+  if (!readPixels(*input, channels, type, file.width * pixelBytes, allocate, context, file))
     fail(file, ImageFile::Problem::Bad, input->geterror());
+  else if (!file.pixels)
+    fail(file, ImageFile::Problem::NoMemory, "");
 }
 
 } // namespace
@@ -90,7 +139,8 @@ rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::
     const auto input =
         bytes ? OIIO::ImageInput::open(rtsl::runtime::nameOf(bytes, size), &config, &memory)
               : OIIO::ImageInput::open(path, &config);
-    rtsl::runtime::read(input.get(), mostBytes, allocate, context, *file);
+    rtsl::runtime::read(input.get(), bytes ? size : OIIO::Filesystem::file_size(path), mostBytes,
+                        allocate, context, *file);
   } catch (const std::bad_alloc &) {
     file->problem = ImageFile::Problem::NoMemory;
   } catch (const std::exception &error) {

@@ -26,8 +26,9 @@ struct ImageFile {
 };
 
 /// Reads the first image of a file, unless it has more bytes than `mostBytes`; if `bytes` is not
-/// null, of these bytes, which are a file's. `allocate(context, bytes)` returns null if there is no
-/// memory.
+/// null, of these bytes, which are a file's. `allocate(context, bytes)` is called several times for
+/// a large file, each time for more, and keeps what the memory before had; it returns null if there
+/// is no memory.
 using ReadImageFile = void (*)(const char *path, const void *bytes, std::uint64_t size,
                                std::uint64_t mostBytes,
                                void *(*allocate)(void *context, std::uint64_t), void *context,

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 import zlib
 
-from harness import RTSLC, SECONDS
+from harness import RTSLC, SECONDS, bounded
 from image_case import ImageCase
 from image_files import png, hdr, tiff
 
@@ -129,6 +129,32 @@ class Mistakes(ImageCase):
             "E0905",
             "differs from the first slice",
         )
+
+    def test_files_that_only_claim_to_be_large(self):
+        """Just below the limit of 8 GiB, of which they have nothing: no memory is requested for
+        them, so that all is well with 2 GiB."""
+        small = tiff(2, 2, lambda x, y: (0.5, 0.5, 0.5), "f", 3)
+        size = struct.pack("<I", 2)
+        header = struct.pack(">IIBBBBB", 46000, 46000, 8, 6, 0, 0, 0)
+        chunk = b"IHDR" + header
+        files = {
+            "large.png": png(2, 2, lambda x, y: (0, 0, 0))[:12]
+            + chunk
+            + struct.pack(">I", zlib.crc32(chunk))
+            + png(2, 2, lambda x, y: (0, 0, 0))[33:],
+            "large.hdr": hdr(0, 0, None).replace(b"-Y 0 +X 0", b"-Y 40000 +X 17000") + bytes(64),
+            "large.tga": struct.pack("<BBB9xHHBB", 0, 0, 2, 65000, 33000, 32, 0) + bytes(64),
+            "large.tif": small.replace(
+                struct.pack("<HHI", 256, 4, 1) + size, struct.pack("<HHII", 256, 4, 1, 33000)
+            ).replace(
+                struct.pack("<HHI", 257, 4, 1) + size, struct.pack("<HHII", 257, 4, 1, 21000)
+            ),
+        }
+        for name, data in files.items():
+            self.write(name, data)
+            self.scene({"class": "Plain", "image": {"file": name}})
+            messages = self.diagnose("check", "scene.json", prepare=bounded)
+            self.assert_message(messages, "E0905", f"cannot read `{name}`")
 
     def diagnose_any(self, file):
         self.scene({"class": "Plain", "image": {"file": file}})

@@ -164,6 +164,60 @@ static void changes(void) {
   rtslSceneDestroy(world.scene);
 }
 
+/* Two ray generations, one after the other, over one buffer. */
+static void passes(void) {
+  const Places places = {0.25, 1, -1, 1.5f};
+  const uint32_t one[] = {1}, all[] = {slices, height, width};
+  const World world = make(&places);
+  const float *found = launch(&world);
+  const RtslBufferNumber total = rtslSceneAddBuffer(world.scene, 1);
+  RtslRenderSettings settings = rtslRenderDefaults();
+  float sum = 0;
+  int i;
+  need(rtslMemberBuffer(world.scene, "found", world.found, all, 3) &&
+           rtslMemberBuffer(world.scene, "total", total, one, 1) &&
+           rtslSceneSetRayGeneration(world.scene, rtslSceneAddObject(world.scene, "Total")),
+       "another ray generation");
+  settings.width = settings.height = settings.samplesPerPixel = 1;
+  need(rtslLaunch(world.scene, &settings), "a second pass");
+  for (i = 0; i < rays; ++i)
+    sum += found[2 * i];
+  need(sum == *(const float *)rtslMapBuffer(world.scene, total), "the sum of the first pass");
+  need(rtslSceneSetRayGeneration(world.scene, world.measure) && launch(&world) == found,
+       "the first pass again");
+  rtslSceneDestroy(world.scene);
+}
+
+/* An image of numbers, and one of a file of `texels` columns. */
+static void images(const char *file, int texels) {
+  const float numbers[] = {0.5f, -2, 1e30f, 0};
+  const uint32_t five[] = {5};
+  RtslScene *scene = rtslSceneCreate(launches_shaders());
+  RtslSampling sampling = rtslSamplingDefaults();
+  RtslRenderSettings settings = rtslRenderDefaults();
+  RtslObject pictures[2];
+  int i, column;
+  sampling.filter = RTSL_NEAREST;
+  pictures[0] = rtslSceneAddTexels(scene, numbers, 4, 1, 0, 1, &sampling);
+  pictures[1] = rtslSceneAddImage(scene, &file, 1, 0, NULL);
+  settings.width = 5, settings.height = settings.samplesPerPixel = 1;
+  for (i = 0; i < 2; ++i) {
+    const RtslBufferNumber seen = rtslSceneAddBuffer(scene, 5);
+    const float *values = (const float *)rtslMapBuffer(scene, seen);
+    need(pictures[i] && rtslMemberObject(scene, "picture", pictures[i]) &&
+             rtslMemberBuffer(scene, "seen", seen, five, 1) &&
+             rtslSceneSetRayGeneration(scene, rtslSceneAddObject(scene, "Look")) &&
+             rtslLaunch(scene, &settings),
+         "a launch that looks up an image");
+    for (column = 0; i == 0 && column < 4; ++column)
+      need(values[column] == numbers[column], "a texel");
+    for (column = 0; i == 1 && column < 4; ++column)
+      need(values[column] >= 0 && values[column] <= 1, "a color");
+    need(values[4] == (i == 0 ? 4 : texels), "the size of an image");
+  }
+  rtslSceneDestroy(scene);
+}
+
 static void mistakes(void) {
   const Places places = {0, 0, 0, 1};
   const uint32_t sizes[] = {3, 1, 1};
@@ -172,6 +226,8 @@ static void mistakes(void) {
   RtslRenderSettings settings = rtslRenderDefaults();
   World world = make(&places);
   RtslScene *scene = world.scene;
+  const char *nowhere = "nowhere.png";
+  const float texel = 1;
   float *positions;
 #define EXPECT_FAILURE(call)                                                                       \
   if (call) {                                                                                      \
@@ -203,13 +259,20 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslLaunch(scene, &settings));
   settings.width = 4, settings.slices = 0x7fffffff;
   EXPECT_FAILURE(rtslLaunch(scene, &settings));
+  EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 1, 0, NULL));
+  EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 2, 0, NULL));
+  EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 3, NULL));
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
   rtslSceneDestroy(scene);
 }
 
-int main(void) {
+int main(int count, char **arguments) {
+  if (count != 3)
+    return fprintf(stderr, "usage: %s IMAGE COLUMNS\n", arguments[0]), 2;
   changes();
+  passes();
+  images(arguments[1], atoi(arguments[2]));
   mistakes();
   return 0;
 }

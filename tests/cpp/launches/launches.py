@@ -31,8 +31,11 @@ WORDS = (
     "reference 4711",
     "the width",
     "slices",
+    "there is no file `nowhere.png`",
+    "a `sampler2D` has one file",
+    "of 1, 2 or 4 channels",
 )
-said = run(launches).splitlines()
+said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
 for line, word in zip(said, WORDS, strict=True):
     assert word in line, (word, said)
 
