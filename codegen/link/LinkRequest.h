@@ -44,6 +44,9 @@ struct LinkRequest {
   /// The members that the scene sets in some object of a class, by class. An optional one that is
   /// not listed is empty in all objects; of a class that is not listed nothing is known.
   std::map<std::string, std::set<std::string>> givenMembers = {};
+  /// The classes of the objects that a member refers to in objects of a class, by the names of the
+  /// class and the member. Of members that are not listed nothing is known.
+  std::map<std::pair<std::string, std::string>, std::set<std::string>> referredClasses = {};
   bool hasCounts = true; // an object of the scene may hold several primitives
   runtime::Engine engine = runtime::Engine::Classic;
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints

@@ -109,18 +109,22 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   buildZeroReturn(builder, function);
 }
 
+SlotCall slotOf(ir::CallMethodOp call) {
+  return {llvm::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
+          call.getMethod().str()};
+}
+
 void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
                   llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
   llvm::SmallVector<ir::CallMethodOp> calls;
   ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
 
-  std::map<std::pair<std::string, std::string>, mlir::func::FuncOp> functions;
+  std::map<SlotCall, mlir::func::FuncOp> functions;
   for (ir::CallMethodOp call : calls) {
-    const SlotCall slot = {mlir::cast<ir::RefType>(call.getObject().getType()).getClassName().str(),
-                           call.getMethod().str()};
+    const SlotCall slot = slotOf(call);
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
-    mlir::func::FuncOp &function = functions[{slot.base, slot.method}];
+    mlir::func::FuncOp &function = functions[slot];
     if (!function) {
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
       function = mlir::func::FuncOp::create(
@@ -139,18 +143,21 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 
 void resolveSlots(LinkContext &context) {
   // then the function does nothing and returns zero
-  const bool mayBeNone = typed::mayReferToNothing(context.module);
+  const bool anyMayBeNone = typed::mayReferToNothing(context.module);
+  const std::map<SlotCall, Referred> referred = referredClasses(context);
   replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
+    const Referred &objects = referred.at(slot);
     std::vector<const LinkedClass *> classes;
     for (const LinkedClass &linked : context.classes) {
       if (!derivesFrom(*linked.info, slot.base))
         continue;
-      if (linked.isUsed)
+      if (linked.isUsed && (!objects.isKnown || objects.classes.count(linked.info->name)))
         classes.push_back(&linked);
       if (context.hasScene && linked.hasObjects && !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
                                    linked.info->name);
     }
+    const bool mayBeNone = anyMayBeNone && (!objects.isKnown || objects.mayBeNone);
     if (!classes.empty())
       context.dispatches[function.getSymName().str()] = describeDispatch(
           slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()), mayBeNone);

@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace rtsl::linking {
@@ -143,7 +144,22 @@ const typed::Member *findScratch(const typed::Class &info, const std::string &na
 struct SlotCall {
   std::string base; // the class of the reference: "rt_Texture" or one of the source
   std::string method;
+
+  bool operator<(const SlotCall &other) const {
+    return std::tie(base, method) < std::tie(other.base, other.method);
+  }
 };
+SlotCall slotOf(ir::CallMethodOp call);
+
+/// The objects that the calls of a slot may reach.
+struct Referred {
+  bool isKnown = true; // if not, those of all classes that derive from the slot's
+  std::set<std::string> classes;
+  bool mayBeNone = false;
+};
+
+/// By slot, as far as members of objects of the scene tell.
+std::map<SlotCall, Referred> referredClasses(const LinkContext &context);
 
 /// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`, which has
 /// attr::dispatch. Calls `define` once for each such function, which has no body.

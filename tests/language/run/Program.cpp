@@ -160,6 +160,7 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   LinkRequest request;
   request.classes = scene::classesUsed(description);
   request.givenMembers = scene::givenMembers(description);
+  request.referredClasses = scene::referredClasses(description);
   for (const scene::GeometryDescription &geometry : description.objects)
     request.surfaces.push_back(
         {geometry.primitive->className.text, geometry.material.object->className.text});

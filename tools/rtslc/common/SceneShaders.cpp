@@ -166,6 +166,7 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
                              std::move(part.refersTo),
                              {part.place.file, part.place.line, part.place.column}});
   request.givenMembers = scene::givenMembers(description);
+  request.referredClasses = scene::referredClasses(description);
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;

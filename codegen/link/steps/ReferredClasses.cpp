@@ -1,0 +1,84 @@
+//===- ReferredClasses.cpp - what a call through a member may reach -------===//
+//
+//   %p = rtsl.load (rtsl.member %self "pattern")
+//   %c = rtsl.call_method "colorAt" on %p
+//
+// If all objects of the class refer to a Checker there, the call is a Checker's, whatever other
+// patterns the scene has. A method is lowered for each class that has it, so members of other
+// classes, including derived ones, are treated separately.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
+#include "codegen/link/Members.h"
+#include "codegen/link/steps/Steps.h"
+
+#include "llvm/ADT/StringSet.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+/// The members that some constructor writes, by name.
+llvm::StringSet<> membersWritten(mlir::ModuleOp ir) {
+  llvm::StringSet<> written;
+  for (auto function : ir.getOps<mlir::func::FuncOp>())
+    if (ir::attr::constructor.isOn(function))
+      function.walk([&](ir::MemberOp member) {
+        if (llvm::any_of(member->getUsers(),
+                         [](mlir::Operation *user) { return !llvm::isa<ir::LoadOp>(user); }))
+          written.insert(member.getMember());
+      });
+  return written;
+}
+
+/// The member that a reference is loaded from; null if it comes from elsewhere, an element of an
+/// array included: which object that is may depend on the ray.
+ir::MemberOp memberOf(mlir::Value reference) {
+  while (auto cast = reference.getDefiningOp<ir::CastRefOp>())
+    reference = cast.getObject();
+  auto load = reference.getDefiningOp<ir::LoadOp>();
+  return load ? load.getAddress().getDefiningOp<ir::MemberOp>() : nullptr;
+}
+
+/// The typed member of an object's class; null if the object may be of a derived class.
+const typed::Member *findMember(const LinkContext &context, ir::MemberOp member) {
+  const llvm::StringRef name = llvm::cast<ir::RefType>(member.getObject().getType()).getClassName();
+  const typed::Member *found = nullptr;
+  for (const LinkedClass &linked : context.classes) {
+    if (!derivesFrom(*linked.info, name))
+      continue;
+    if (linked.info->name != name)
+      return nullptr;
+    for (const typed::Member *each : allMembers(*linked.info))
+      if (each->name == member.getMember())
+        found = each;
+  }
+  return found;
+}
+
+} // namespace
+
+std::map<SlotCall, Referred> referredClasses(const LinkContext &context) {
+  const llvm::StringSet<> written = membersWritten(context.ir);
+  std::map<SlotCall, Referred> referred;
+  mlir::ModuleOp(context.ir).walk([&](ir::CallMethodOp call) {
+    Referred &all = referred[slotOf(call)];
+    ir::MemberOp member = memberOf(call.getObject());
+    const typed::Member *info = member ? findMember(context, member) : nullptr;
+    const auto classes =
+        info && !written.contains(member.getMember())
+            ? context.request.referredClasses.find(
+                  {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),
+                   info->name})
+            : context.request.referredClasses.end();
+    if (classes == context.request.referredClasses.end()) {
+      all.isKnown = false;
+      return;
+    }
+    all.classes.insert(classes->second.begin(), classes->second.end());
+    all.mayBeNone |= info->isOptional;
+  });
+  return referred;
+}
+
+} // namespace rtsl::linking
