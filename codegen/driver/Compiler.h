@@ -22,6 +22,8 @@
 
 namespace rtsl {
 
+class CodeCache;
+
 /// How `trace` runs: as a call, or as the end of one state and the beginning of another, without
 /// recursion (docs/continuations.md). The picture is the same, bit for bit.
 enum class TraceMode : std::uint8_t { Recurse, Split };
@@ -69,6 +71,8 @@ struct CompileOptions {
   std::uint32_t sampler = 0;
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.
   std::uint32_t undefined = 0;
+  /// Machine code for the host that earlier programs had is used again; null: none is kept.
+  std::shared_ptr<CodeCache> codeCache = {};
 };
 
 /// Makes the objects of a scene with a program that contains only constructors, defaults and

@@ -1,6 +1,7 @@
 //===- HostCode.cpp - linked IR as a program in this process --------------===//
 #include "codegen/driver/HostCode.h"
 
+#include "codegen/driver/CodeCache.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/Parts.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
@@ -11,6 +12,11 @@
 
 #include "mlir/IR/Threading.h"
 #include "mlir/Transforms/Passes.h"
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/Bitcode/BitcodeWriter.h"
+#include "llvm/Support/SHA256.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -115,9 +121,24 @@ void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbo
 // Machine code
 //===----------------------------------------------------------------------===//
 
-codegen::ObjectCode toObject(LlvmCode code) {
-  codegen::optimize(*code.module, *code.machine, code.options);
-  return take(codegen::makeObjectCode(*code.module, *code.machine));
+/// All that decides what machine code a module gets: its bits, and how it is compiled.
+std::string identityOf(const LlvmCode &code) {
+  llvm::SmallVector<char, 0> bits;
+  llvm::raw_svector_ostream stream(bits);
+  llvm::WriteBitcodeToFile(*code.module, stream);
+  llvm::SHA256 hash;
+  hash.update(llvm::StringRef(bits.data(), bits.size()));
+  const codegen::MachineOptions &options = code.options;
+  return fmt::format("{} {} {} {} {}", llvm::toHex(hash.final()), options.optimization,
+                     options.hostCpu, options.isMegakernel, int(options.floatingPoint));
+}
+
+codegen::ObjectCode toObject(LlvmCode code, const CompileOptions &options) {
+  const auto make = [&] {
+    codegen::optimize(*code.module, *code.machine, code.options);
+    return take(codegen::makeObjectCode(*code.module, *code.machine));
+  };
+  return options.codeCache ? options.codeCache->codeOf(identityOf(code), make) : make();
 }
 
 /// Calls `work(0)` ... `work(count - 1)`, on several threads if the context allows it. Rethrows an
@@ -203,7 +224,7 @@ std::vector<codegen::ObjectCode> PartCompiler::run() {
   std::vector<std::optional<codegen::ObjectCode>> objects(
       parts.size() + 1); // the rest takes longest, so it is started first
   forEach(context, objects.size(), [&](std::size_t index) {
-    objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1])));
+    objects[index].emplace(toObject(index == 0 ? rest() : std::move(*codes[index - 1]), options));
   });
   std::vector<codegen::ObjectCode> made;
   for (std::optional<codegen::ObjectCode> &object : objects)
@@ -235,7 +256,7 @@ void compileConstructors(mlir::ModuleOp ir, const CompileOptions &options,
   defineFacts(code, options, program);
   linkDeviceCode(code, runtime::deviceBitcode(), names);
   std::vector<codegen::ObjectCode> objects;
-  objects.push_back(toObject(std::move(code)));
+  objects.push_back(toObject(std::move(code), options));
   load(std::move(objects), {}, options, program);
 }
 
@@ -265,6 +286,8 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
                                                        const CompileOptions &options,
                                                        Diagnostics &diagnostics,
                                                        const MakeObjects &makeObjects) {
+  if (options.codeCache)
+    options.codeCache->beginProgram();
   CompileInput input;
   input.module = &module;
   input.scene = &request;

@@ -190,6 +190,9 @@ StackUse::StackUse(llvm::Module &module) : self(std::make_unique<Implementation>
 }
 
 StackUse::StackUse(StackUse &&) noexcept = default;
+StackUse::StackUse(const StackUse &other) : self(std::make_unique<Implementation>(*other.self)) {
+  self->frames = std::make_shared<Frames>(*self->frames);
+}
 StackUse::~StackUse() = default;
 
 void StackUse::add(const StackUse &other) {

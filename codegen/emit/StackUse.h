@@ -23,6 +23,8 @@ public:
   /// out. This object must exist until the code is generated.
   explicit StackUse(llvm::Module &module);
   StackUse(StackUse &&) noexcept;
+  /// Of code that has been generated.
+  StackUse(const StackUse &other);
   ~StackUse();
 
   /// Adds another module of the same program. Functions with the same name are copies.

@@ -232,6 +232,23 @@ class Frames(Parts):
         self.render("%d.exr", "--frames=10..10", "--checkpoint=%d.ckpt")
         self.assertTrue({"10.exr", "10.ckpt"} <= set(self.files()))
 
+    def test_frames_that_only_move_have_one_code(self):
+        """What moves is in tables: the second frame and those after it are not compiled."""
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["background"] = [0.1, 0.2, 0.3]
+        scene["camera"]["constructor"]["eye"] = [0, 1, 5]
+        scene["objects"][0]["transform"] = {
+            "translate": {"frames": {"0": [0.1, 0, 0], "4": [1, 0.5, 0]}}
+        }
+        self.write("scene.json", json.dumps(scene))
+        for way in ([], ["--target=host-megakernel"], ["--trace=split", "--traversal=device"]):
+            options = ("--frames=0..2", "-Wno-depth-limit", "--spp=3", *SMALL, *way)
+            _, said = self.run_rtslc("render", "scene.json", "-o", "frame.%04d.exr", *options)
+            self.assertEqual(said.count("machine code of the picture before: "), 2, said)
+            for frame in (0, 1, 2):
+                self.render("one.exr", f"--frame={frame}", *way)
+                self.assert_same_bits("one.exr", f"frame.000{frame}.exr")
+
     def test_a_checkpoint_is_of_one_frame(self):
         self.render("a.exr", "--frame=1", "--checkpoint=a.ckpt")
         arguments = [

@@ -3,6 +3,7 @@
 
 #include "Preview.h"
 #include "RenderOnChange.h"
+#include "codegen/driver/CodeCache.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
 #include "support/AtomicFile.h"
@@ -82,10 +83,11 @@ int renderFrames(const RenderCommandOptions &options) {
 }
 
 int render(const RenderCommandOptions &options) {
-  if (options.watches)
-    return watch(options);
-  if (options.frames)
-    return renderFrames(options);
+  if (options.watches || options.frames) {
+    RenderCommandOptions several = options;
+    several.common.compile.codeCache = std::make_shared<CodeCache>();
+    return options.watches ? watch(several) : renderFrames(several);
+  }
   Rendering rendering;
   const ExitStatus status = render(options, nullptr, rendering);
   return statusAfterInterruption(status);

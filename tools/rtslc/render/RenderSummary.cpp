@@ -1,5 +1,6 @@
 #include "RenderSummary.h"
 
+#include "codegen/driver/CodeCache.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/Outcome.h"
 #include "tools/common/Output.h"
@@ -143,6 +144,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
              render.height, render.samplesPerPixel, adaptive, summary.times.compile * 1e3,
              statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
+  if (const auto &cache = options.common.compile.codeCache; cache && cache->reused())
+    fmt::print(stderr, "machine code of the picture before: {} modules\n", cache->reused());
   if (summary.resumedAt)
     fmt::print(stderr, "resumed at {} spp\n", summary.resumedAt);
   if (std::isfinite(summary.error))

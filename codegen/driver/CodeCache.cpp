@@ -1,0 +1,55 @@
+#include "codegen/driver/CodeCache.h"
+
+#include "codegen/emit/ObjectCode.h"
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <utility>
+
+namespace rtsl {
+
+struct CodeCache::Implementation {
+  struct Entry {
+    codegen::ObjectCode code;
+    std::uint64_t program; // the last that used it
+  };
+
+  std::mutex mutex; // for the next two
+  std::map<std::string, Entry> entries;
+  std::uint64_t program = 0;
+  std::atomic<std::uint64_t> reused{0};
+};
+
+CodeCache::CodeCache() : self(std::make_unique<Implementation>()) {}
+CodeCache::~CodeCache() = default;
+
+void CodeCache::beginProgram() {
+  const std::lock_guard<std::mutex> lock(self->mutex);
+  for (auto entry = self->entries.begin(); entry != self->entries.end();)
+    entry = entry->second.program < self->program ? self->entries.erase(entry) : std::next(entry);
+  ++self->program;
+  self->reused = 0;
+}
+
+codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
+                                      const std::function<codegen::ObjectCode()> &make) {
+  {
+    const std::lock_guard<std::mutex> lock(self->mutex);
+    if (const auto found = self->entries.find(identity); found != self->entries.end()) {
+      found->second.program = self->program;
+      ++self->reused;
+      return found->second.code;
+    }
+  }
+  codegen::ObjectCode code = make();
+  const std::lock_guard<std::mutex> lock(self->mutex);
+  self->entries.try_emplace(identity, Implementation::Entry{code, self->program});
+  return code;
+}
+
+std::uint64_t CodeCache::reused() const {
+  return self->reused;
+}
+
+} // namespace rtsl

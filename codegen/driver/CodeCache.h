@@ -1,0 +1,43 @@
+//===- CodeCache.h - machine code of the programs before -------------------===//
+//
+// Frames of a sequence, and pictures that are rendered again after a change, often have the same
+// code, or parts of it: what moves is in tables that the code reads. So machine code is kept by the
+// module that it was made of, from one program to the next.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace rtsl {
+
+namespace codegen {
+struct ObjectCode;
+} // namespace codegen
+
+/// May be used by several threads at once.
+class CodeCache {
+public:
+  CodeCache();
+  ~CodeCache();
+
+  /// A new program begins: what the one before did not use is forgotten.
+  void beginProgram();
+
+  /// The code of a module, which `identity` names with all that decides what code it gets. Calls
+  /// `make` if it is not known.
+  codegen::ObjectCode codeOf(const std::string &identity,
+                             const std::function<codegen::ObjectCode()> &make);
+
+  /// How many modules of the program were known.
+  std::uint64_t reused() const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self;
+};
+
+} // namespace rtsl
