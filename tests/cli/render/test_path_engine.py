@@ -6,7 +6,7 @@ import math
 import pathlib
 import unittest
 
-from harness import RTSLC
+from harness import EXAMPLES, RTSLC
 from path_case import BALL, FLOOR, SHADERS, WAYS, PathCase
 
 
@@ -348,6 +348,44 @@ class Broken : Own {
         _, messages = self.run_rtslc("render", "scene.json", "-o", "a.exr")
         self.assertIn("were infinite or not a number", messages)
         self.assertIn("zero / zero", messages)
+
+    def test_check_tries_the_methods_of_materials(self):
+        """Values below 0, values that are no numbers, and directions without a density."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Below : Own { void BSDF() { rt_BSDFValue = color(rt_LightDirection.x < 0.0 ? -0.5 : 0.5); } };
+class NoNumber : Own {
+  void sampleBSDF() {
+    rt_LightDirection = normal();
+    rt_PDF = 1.0;
+    rt_BSDFValue = color(0.0 / (rt_BSDFSeed.x < 0.5 ? 0.0 : 1.0));
+  }
+};
+class Lost : Own {
+  void sampleBSDF() { rt_LightDirection = normal(); rt_BSDFValue = color(1.0); rt_PDF = 0.0; }
+};
+""",
+        )
+        said = {}
+        for name in ("Below", "NoNumber", "Lost", "Own"):
+            self.scene([(BALL, {"class": name})], spp=1)
+            _, said[name] = self.run_rtslc("check", "scene.json")
+        self.assertRegex(
+            said["Below"], "W2800.*`BSDF` of `Below` wrote values below 0 for [0-9]+ of 512"
+        )
+        self.assertIn('"class": "Below"', said["Below"])
+        self.assertRegex(
+            said["NoNumber"],
+            "`sampleBSDF` of `NoNumber` wrote values that are infinite or not a number",
+        )
+        self.assertRegex(said["Lost"], "`sampleBSDF` of `Lost` drew 512 of 512 directions")
+        self.assertEqual(said["Own"], "")
+
+    def test_materials_of_the_library_have_no_such_values(self):
+        for example in ("cornell/room.json", "product-shot/scene.json", "metal/scene.json"):
+            self.assertEqual(self.run_rtslc("check", EXAMPLES / example)[1], "", example)
 
     def test_only_shade(self):
         """Its color counts, and its own rays are answered by `shade`."""

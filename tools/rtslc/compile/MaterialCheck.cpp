@@ -1,0 +1,130 @@
+#include "tools/rtslc/compile/MaterialCheck.h"
+
+#include "runtime/device/ray/Vector.h"
+#include "runtime/scene/Objects.h"
+#include "support/ErrorMessages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+
+namespace rtsl::tool {
+
+namespace {
+
+using device::Vec3;
+
+/// Of each object, from both sides of a surface.
+constexpr unsigned directions = 512;
+
+/// How often a method wrote what it should not.
+struct Faults {
+  unsigned drawn = 0, negative = 0, notFinite = 0, withoutDensity = 0;
+
+  void add(const float *value, std::uint32_t components) {
+    const float *end = value + components;
+    notFinite += std::any_of(value, end, [](float one) { return !std::isfinite(one); });
+    negative += std::any_of(value, end, [](float one) { return one < 0; });
+  }
+};
+
+/// By class and method.
+using FaultsByMethod = std::map<std::pair<std::string, std::string>, Faults>;
+
+/// A hit of a ray from a random direction with a surface in the plane z = 0.
+RtslState randomHit(const RtslLaunch &launch, std::mt19937 &random, unsigned number) {
+  std::uniform_real_distribution<float> uniform(0.0f, 0.9999999f);
+  const float z = 2 * uniform(random) - 1, turn = 6.2831853f * uniform(random),
+              sine = std::sqrt(std::max(1 - z * z, 0.0f));
+  RtslState state{};
+  state.launch = &launch;
+  state.instance = state.primitive = RTSL_NO_HIT;
+  state.randomKey[0] = number;
+  state.HitDistance = 1;
+  device::store(state.RayDirection, Vec3{sine * std::cos(turn), sine * std::sin(turn), z});
+  device::store(state.RayOrigin, device::load(state.RayDirection) * -1.0f);
+  device::store(state.GeometricNormal, Vec3{0, 0, 1});
+  device::store(state.ShadingNormal, Vec3{0, 0, 1});
+  device::store(state.dPdu, Vec3{1, 0, 0});
+  device::store(state.dPdv, Vec3{0, 1, 0});
+  for (float &one : state.TextureUV)
+    one = uniform(random);
+  for (float &one : state.BSDFSeed)
+    one = uniform(random);
+  return state;
+}
+
+void draw(const runtime::Scene &scene, RtslRef material, FaultsByMethod &found) {
+  const runtime::Program &program = scene.program();
+  const runtime::ClassInfo &info = scene.classOf(material);
+  const RtslLaunch launch = scene.launch();
+  const bool isDrawn = runtime::hasMethod(info, "sampleBSDF"),
+             isEvaluated = runtime::hasMethod(info, "BSDF");
+  Faults &ofDrawn = found[{info.name, "sampleBSDF"}], &ofValue = found[{info.name, "BSDF"}];
+  std::mt19937 random(1);
+  for (unsigned i = 0; i < directions; ++i) {
+    RtslState state = randomHit(launch, random, i);
+    if (isDrawn) {
+      program.slots.rt_Material_sampleBSDF(&state, material);
+      ++ofDrawn.drawn;
+      ofDrawn.add(state.BSDFValue, program.colorComponents);
+      ofDrawn.notFinite += !std::isfinite(state.PDF);
+      ofDrawn.withoutDensity +=
+          state.PDF == 0 && std::any_of(state.BSDFValue, state.BSDFValue + program.colorComponents,
+                                        [](float one) { return one > 0; });
+    } else { // any direction
+      const RtslState other = randomHit(launch, random, i);
+      device::store(state.LightDirection, device::load(other.RayDirection));
+    }
+    if (!isEvaluated || (isDrawn && state.PDF <= 0))
+      continue;
+    std::fill_n(state.BSDFValue, program.colorComponents, 0.0f);
+    program.slots.rt_Material_BSDF(&state, material);
+    ++ofValue.drawn;
+    ofValue.add(state.BSDFValue, program.colorComponents);
+  }
+}
+
+} // namespace
+
+bool scattersByMethods(const LinkRequest &request, const runtime::Program &program) {
+  return request.engine != runtime::Engine::Classic &&
+         std::any_of(program.classes.begin(), program.classes.end(), [](const auto &info) {
+           return info.root == "rt_Material" &&
+                  (runtime::hasMethod(info, "sampleBSDF") || runtime::hasMethod(info, "BSDF"));
+         });
+}
+
+std::vector<Warning> checkMaterials(const runtime::Scene &scene, const LinkRequest &request) {
+  const RtslLaunch launch = scene.launch();
+  std::set<RtslRef> materials;
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
+    materials.insert(launch.instances[i].material);
+  FaultsByMethod found;
+  for (const RtslRef material : materials)
+    if (material && scene.classOf(material).root == "rt_Material")
+      draw(scene, material, found);
+
+  std::vector<Warning> warnings;
+  for (const auto &[name, faults] : found) {
+    const auto &[className, method] = name;
+    std::optional<Place> place;
+    if (const auto known = request.places.find(className); known != request.places.end())
+      place = Place{known->second.file, known->second.line, known->second.column};
+    if (faults.negative)
+      warnings.push_back(
+          {message::methodNegative(method, className, faults.negative, faults.drawn), place});
+    if (faults.notFinite)
+      warnings.push_back(
+          {message::methodNotFinite(method, className, faults.notFinite, faults.drawn), place});
+    if (faults.withoutDensity)
+      warnings.push_back(
+          {message::sampleWithoutDensity(className, faults.withoutDensity, faults.drawn), place});
+  }
+  return warnings;
+}
+
+} // namespace rtsl::tool
