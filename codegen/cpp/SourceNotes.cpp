@@ -34,6 +34,29 @@ bool SourceNotes::inParentheses(SourceRange range) const {
   return before > 0 && after < text.size() && text[before - 1] == '(' && text[after] == ')';
 }
 
+/// The comment that begins at `begin`, and those that continue it: on the lines below, alone and in
+/// the same column.
+static std::string wholeComment(std::string_view text, std::size_t begin) {
+  const std::size_t lineBegin = text.rfind('\n', begin) + 1; // 0 on the first line
+  const std::size_t column = begin - lineBegin;
+  std::string whole;
+  for (std::size_t at = lineBegin; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line = text.substr(at, end - at);
+    while (!line.empty() && isSpace(line.back()))
+      line.remove_suffix(1);
+    const std::string_view before = line.substr(0, std::min(column, line.size()));
+    const bool isAlone = std::all_of(before.begin(), before.end(), isSpace);
+    if (line.size() < column + 2 || line.compare(column, 2, "//") != 0 ||
+        (!whole.empty() && !isAlone))
+      break;
+    whole += whole.empty() ? "" : "\n";
+    whole += line.substr(column);
+    at = end + 1;
+  }
+  return whole;
+}
+
 std::string SourceNotes::trailingComment(SourceRange range) const {
   if (!range.isValid())
     return {};
@@ -48,10 +71,7 @@ std::string SourceNotes::trailingComment(SourceRange range) const {
                       rest.find_first_not_of(" \t", semicolon + 1) == comment;
   if (!isLast)
     return {};
-  std::string_view found = rest.substr(comment);
-  while (!found.empty() && isSpace(found.back()))
-    found.remove_suffix(1);
-  return std::string(found);
+  return wholeComment(text, range.end + comment);
 }
 
 std::string SourceNotes::identifier(SourceRange range) const {

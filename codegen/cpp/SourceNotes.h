@@ -21,7 +21,8 @@ public:
   /// The text, if it is one identifier; otherwise empty.
   std::string identifier(SourceRange range) const;
   /// The comment that ends the line on which the range ends, with its markers; empty: none. Only
-  /// where nothing but punctuation and initialisers stands between.
+  /// where nothing but punctuation and initialisers stands between. Lines below continue it that
+  /// hold only a comment, in the same column.
   std::string trailingComment(SourceRange range) const;
   /// Is there an empty line above the text, or above the comment directly above it? Not if it
   /// stands on the line of what comes before.

@@ -82,7 +82,8 @@ std::string AstBuilder::commentText(std::size_t first, std::size_t last) const {
   return result;
 }
 
-/// The comments on the lines directly above a declaration or statement.
+/// The comments on the lines directly above a declaration or statement. Those that continue a
+/// comment after code, in its column, are not of what is below them.
 std::string AstBuilder::commentAbove(const antlr4::ParserRuleContext *context) const {
   const std::size_t index = context->start->getTokenIndex();
   const std::uint32_t end = words[index].begin;
@@ -104,6 +105,14 @@ std::string AstBuilder::commentAbove(const antlr4::ParserRuleContext *context) c
     below = comment.begin;
     --first;
   }
+  const auto continues = [&](std::size_t i) {
+    const LineColumn above = sources.lineColumn(file, comments[i - 1].begin);
+    const LineColumn here = sources.lineColumn(file, comments[i].begin);
+    return here.line == above.line + 1 && here.column == above.column;
+  };
+  if (first > 0 && !comments[first - 1].startsLine)
+    while (first < last && continues(first))
+      ++first;
   return commentText(first, last);
 }
 

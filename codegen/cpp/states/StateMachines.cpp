@@ -54,7 +54,7 @@ std::string StateMachines::meaningOf(const typed::Function &method, const FrameF
       if (std::string comment =
               context.notes.trailingComment(local->init ? local->init->range : local->range);
           comment.compare(0, 3, "// ") == 0)
-        return comment.substr(3);
+        return comment.substr(3, comment.find('\n') - 3);
   std::string line = context.notes.textOfLine(method.range, field.madeIn);
   // On one line with the declaration, at 100 columns.
   const std::size_t room =

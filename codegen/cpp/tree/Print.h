@@ -19,6 +19,9 @@ std::string print(const Declaration &declaration);
 std::string print(const Declarations &declarations);
 /// `#line 7 "file"`, and the end of the line.
 std::string print(const SourcePlace &place);
+/// Adds a comment to the end of the last line; its further lines begin in the same column, so that
+/// clang-format does not take them for comments of what follows.
+void addComment(std::string &text, const std::string &comment);
 /// `name = value`, `name{...}` or `name(...)`, in a declaration of this type.
 std::string print(const Declarator &declarator, const std::string &type);
 

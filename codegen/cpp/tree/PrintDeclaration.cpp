@@ -83,7 +83,7 @@ static std::string print(const OnlyComment &) {
 std::string print(const Declaration &declaration) {
   std::string text = std::visit([](const auto &what) { return print(what); }, declaration.what);
   if (!declaration.trailing.empty())
-    text.insert(text.size() - 1, " " + declaration.trailing);
+    addComment(text, declaration.trailing);
   return (declaration.comment.empty() ? "" : declaration.comment + "\n") +
          (declaration.place ? print(*declaration.place) : "") + text;
 }

@@ -53,12 +53,24 @@ static bool needsBraces(const Statements &statements) {
          !only.comment.empty() || only.place;
 }
 
+void addComment(std::string &text, const std::string &comment) {
+  text.pop_back(); // the end of the line
+  const std::size_t column = text.size() - (text.rfind('\n') + 1) + 1;
+  text += ' ';
+  for (const char c : comment)
+    text += c == '\n' ? "\n" + std::string(column, ' ') : std::string(1, c);
+  text += '\n';
+}
+
 /// The body of an `if` or a loop, from its brace or the end of the line on.
 static std::string under(const Statements &statements, bool hasBraces,
                          const std::string &trailing = {}) {
   if (!hasBraces && trailing.empty() && !needsBraces(statements))
     return "\n" + print(statements);
-  return " {" + (trailing.empty() ? "" : " " + trailing) + "\n" + print(statements) + "}\n";
+  std::string text = " {\n";
+  if (!trailing.empty())
+    addComment(text, trailing);
+  return text + print(statements) + "}\n";
 }
 
 /// `else` belongs to the nearest `if`, so an `if` in the body of an `if` with `else` needs braces.
@@ -153,7 +165,7 @@ static std::string printBare(const Statement &statement) {
 std::string print(const Statement &statement) {
   std::string text = printBare(statement);
   if (!statement.trailing.empty() && !statement.is(StatementKind::If) && !text.empty())
-    text.insert(text.size() - 1, " " + statement.trailing);
+    addComment(text, statement.trailing);
   return (statement.comment.empty() ? "" : statement.comment + "\n") +
          (statement.place ? print(*statement.place) : "") + text;
 }

@@ -399,6 +399,20 @@ TEST(Comments, AboveImportsAreTheHeadOfTheFile) {
   EXPECT_EQ(parsed.unit->classes.at(0).comment, "");
 }
 
+TEST(Comments, AfterAMemberContinueInTheirColumn) {
+  const Parsed parsed("class A : rt_Material {\n"
+                      "  float a; // about a,\n"
+                      "           // and more\n"
+                      "  float b; // about b\n"
+                      "  // about c\n"
+                      "  float c;\n"
+                      "};\n");
+  std::string comments;
+  for (const ast::VariableDecl &variable : parsed.unit->classes.at(0).members)
+    comments += variable.name.text + ": " + variable.comment + "\n";
+  EXPECT_EQ(comments, "a: \nb: \nc: // about c\n");
+}
+
 TEST(Layout, CarriageReturnsTabsAndMarksDoNotMatter) {
   const std::string plain = "class A : rt_Material;\n// c\nvoid shade() {\n  a = 1;\n}\n";
   std::string windows = "\xEF\xBB\xBF";
