@@ -10,9 +10,9 @@ from . import process
 ROOT = Path(__file__).resolve().parent.parent.parent
 # The file of each scene, the wanted error, and the samples per pixel of the converged picture.
 SCENES = {
-    "cornell": ("examples/cornell/room.json", 0.1, 3000),
-    "gltf": ("examples/gltf/scene.json", 0.05, 3000),
-    "glass": ("examples/glass/scene.json", 0.03, 2000),
+    "cornell": ("examples/cornell/room.json", 0.1, 2000),
+    "gltf": ("examples/gltf/scene.json", 0.3, 1000),
+    "glass": ("examples/glass/scene.json", 0.03, 1000),
 }
 
 
