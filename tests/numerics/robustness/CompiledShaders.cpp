@@ -60,6 +60,9 @@ CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std:
     // On a GPU too this one makes the objects, and computes the memory that a ray takes.
     options.target =
         path == Path::Megakernel || path == Path::Gpu ? Target::HostMegakernel : Target::Host;
+    // The bits do not depend on it, and optimising a whole megakernel takes longer than the cases.
+    if (path == Path::Megakernel)
+      options.optimization = 1;
     compiled.program = compileProgram(*module, request, options, diagnostics);
     if (path == Path::Gpu) {
       CompileInput input;
