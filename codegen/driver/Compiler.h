@@ -41,6 +41,11 @@ enum class Schedule : std::uint32_t {
   Naive = RTSL_SCHEDULE_NAIVE,
 };
 
+/// How the steps of samples are organised on a GPU: all in one kernel, each lane with a sample of
+/// its own (runtime/device/engines/Megakernel.h), or a kernel for each step, with many more samples
+/// in flight than lanes (runtime/device/engines/Wavefront.h). The picture is the same, bit for bit.
+enum class Organisation : std::uint8_t { Megakernel, Wavefront };
+
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
@@ -65,6 +70,8 @@ struct CompileOptions {
   std::string gpu = "sm_75";
   /// Of PTX for a scene. None: Majority for Paths::Random, otherwise Prioritized.
   std::optional<Schedule> schedule;
+  /// Of programs for GPUs and for Target::HostMegakernel.
+  Organisation organisation = Organisation::Megakernel;
   /// Megakernels count the steps of warps (runtime/device/engines/StepCounts.h).
   bool countsSteps = false;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.

@@ -37,7 +37,7 @@ namespace {
 std::vector<std::string> sampleSymbols(const runtime::Program &program,
                                        const CompileOptions &options) {
   if (options.target == Target::HostMegakernel)
-    return hostEntries();
+    return hostEntries(options.organisation);
   if (options.trace == TraceMode::Split)
     return {"rtsl_sample_split"};
   return {program.engine == runtime::Engine::Classic ? "rtsl_sample" : "rtsl_generate"};
@@ -77,8 +77,9 @@ void find(const codegen::Jit &jit, const std::string &name, Function *&function)
 void fillEntries(runtime::Program &program, const codegen::Jit &jit,
                  const CompileOptions &options) {
   if (options.target == Target::HostMegakernel) {
-    find(jit, "rtsl_lane_bytes", program.megakernel.laneBytes);
-    find(jit, "rtsl_run_lane", program.megakernel.runLane);
+    const std::vector<std::string> &names = hostEntries(options.organisation);
+    find(jit, names[0], program.megakernel.laneBytes);
+    find(jit, names[1], program.megakernel.runLane);
     program.megakernel.stackBytes =
         jit.stackUse()->bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   } else {
@@ -186,8 +187,14 @@ LlvmCode PartCompiler::rest() {
   LlvmCode code = translate(ir, machineOptions(options, /*hostCpu=*/true),
                             options.checksNumbers ? &program.numberPlaces : nullptr);
   defineFacts(code, options, program);
+  const bool isMegakernel = options.target == Target::HostMegakernel;
+  const bool isWavefront = isMegakernel && options.organisation == Organisation::Wavefront;
+  if (isWavefront)
+    beginWavefront(code, program);
   linkDeviceCode(code, bitcodes, exports);
-  code.options.isMegakernel = options.target == Target::HostMegakernel;
+  if (isWavefront)
+    endWavefront(code, program);
+  code.options.isMegakernel = isMegakernel;
   return code;
 }
 

@@ -27,7 +27,9 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
 
 /// How many registers a thread of the kernel may have; docs/gpu.md has the figures. More are worth
 /// more than more warps where rays wait for others, and lanes stay together.
-static std::uint32_t registersFor(runtime::Paths paths) {
+static std::uint32_t registersFor(Organisation organisation, runtime::Paths paths) {
+  if (organisation == Organisation::Wavefront)
+    return 0; // as many as each step needs
   return paths == runtime::Paths::Alike ? 128 : 72;
 }
 
@@ -44,8 +46,11 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   package.frameBytes = compilation.report.frameSize();
   package.stateCount = compilation.report.stateCount();
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
-  package.ptx = toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true));
-  package.registers = registersFor(compilation.program->paths);
+  package.ptx =
+      toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true), &package.wave);
+  if (options.organisation == Organisation::Wavefront)
+    package.wave.states = package.stateCount;
+  package.registers = registersFor(options.organisation, compilation.program->paths);
   package.stateNames = compilation.program->stateNames;
   package.host = hostImage(compilation);
   return true;

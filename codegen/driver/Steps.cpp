@@ -6,6 +6,8 @@
 #include "codegen/emit/rewrites/CheckNumbers.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
 #include "codegen/emit/rewrites/FastMath.h"
+#include "codegen/emit/rewrites/PackRecords.h"
+#include "codegen/emit/rewrites/WaveStates.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/lower/Lower.h"
@@ -139,17 +141,27 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
 }
 
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
-  // Each uses functions of the other.
+  // They use functions of each other; what is not used is not linked.
   static const std::vector<std::string_view> host = {
-      runtime::deviceBitcode(), runtime::megakernelBitcode(), runtime::deviceBitcode()};
+      runtime::deviceBitcode(), runtime::wavefrontBitcode(), runtime::megakernelBitcode(),
+      runtime::deviceBitcode()};
   static const std::vector<std::string_view> gpu = {
-      runtime::gpuDeviceBitcode(), runtime::gpuMegakernelBitcode(), runtime::gpuDeviceBitcode()};
+      runtime::gpuDeviceBitcode(), runtime::gpuWavefrontBitcode(), runtime::gpuMegakernelBitcode(),
+      runtime::gpuDeviceBitcode()};
   return forGpu ? gpu : host;
 }
 
 Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program) {
   return options.schedule.value_or(program.paths == runtime::Paths::Random ? Schedule::Majority
                                                                            : Schedule::Prioritized);
+}
+
+/// What a program exports on a GPU.
+static std::vector<std::string> kernels(Organisation organisation) {
+  if (organisation == Organisation::Megakernel)
+    return {"rtsl_render", "rtsl_sum"};
+  return {"rtsl_wave_begin", "rtsl_wave_sample",     "rtsl_wave_trace",   "rtsl_wave_state",
+          "rtsl_sum",        "rtsl_wave_has_stacks", "rtsl_record_groups"};
 }
 
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
@@ -159,15 +171,33 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   defineFacts(code, options, program);
   codegen::defineConstant(*code.module, "rtsl_schedule",
                           std::uint32_t(scheduleFor(options, program)));
+  const bool isWavefront = options.organisation == Organisation::Wavefront;
+  if (isWavefront)
+    beginWavefront(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
-                 forGpu ? std::vector<std::string>{"rtsl_render", "rtsl_sum"} : hostEntries());
+                 forGpu ? kernels(options.organisation) : hostEntries(options.organisation));
+  if (isWavefront)
+    endWavefront(code, program);
   code.options.isMegakernel = true;
   return code;
 }
 
-const std::vector<std::string> &hostEntries() {
-  static const std::vector<std::string> entries = {"rtsl_lane_bytes", "rtsl_run_lane"};
-  return entries;
+void beginWavefront(LlvmCode &code, const runtime::Program &program) {
+  constexpr std::size_t besideStates = 2; // traversal, and the beginning of samples
+  codegen::defineConstant(*code.module, "rtsl_wave_steps",
+                          std::uint32_t(program.stateNames.size() + besideStates));
+}
+
+void endWavefront(LlvmCode &code, const runtime::Program &program) {
+  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()));
+  codegen::declareRecords(*code.module);
+}
+
+const std::vector<std::string> &hostEntries(Organisation organisation) {
+  static const std::vector<std::string> lanes = {"rtsl_lane_bytes", "rtsl_run_lane"};
+  static const std::vector<std::string> waves = {"rtsl_wave_bytes", "rtsl_run_wave",
+                                                 "rtsl_wave_state"};
+  return organisation == Organisation::Wavefront ? waves : lanes;
 }
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
@@ -197,9 +227,14 @@ void optimize(LlvmCode &code) {
   codegen::optimize(*code.module, *code.machine, code.options);
 }
 
-std::string toPtx(LlvmCode code) {
+std::string toPtx(LlvmCode code, runtime::WaveFacts *facts) {
   codegen::nameForPtx(*code.module);
   optimize(code);
+  if (facts && code.module->getFunction("rtsl_wave_has_stacks")) {
+    facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
+    // Not known of code that is not optimised.
+    facts->hasStacks = codegen::takeConstant(*code.module, "rtsl_wave_has_stacks").value_or(1) != 0;
+  }
   return take(codegen::printPtx(*code.module, *code.machine));
 }
 

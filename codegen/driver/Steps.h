@@ -92,8 +92,12 @@ Schedule scheduleFor(const CompileOptions &options, const runtime::Program &prog
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 
-/// The functions that such a program exports on the CPU.
-const std::vector<std::string> &hostEntries();
+/// The functions that such a program exports on the CPU: the size of a lane, and what runs it.
+const std::vector<std::string> &hostEntries(Organisation organisation = Organisation::Megakernel);
+
+/// Before linking with the device code of a wavefront, and after it.
+void beginWavefront(LlvmCode &code, const runtime::Program &program);
+void endWavefront(LlvmCode &code, const runtime::Program &program);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
                     std::vector<std::string> exports);
@@ -103,7 +107,7 @@ codegen::MachineOptions gpuOptions(const CompileOptions &options);
 
 void optimize(LlvmCode &code);
 
-/// Optimises and prints.
-std::string toPtx(LlvmCode code);
+/// Optimises and prints. Sets the facts of a wavefront, if it is one.
+std::string toPtx(LlvmCode code, runtime::WaveFacts *facts = nullptr);
 
 } // namespace rtsl::driver

@@ -4,6 +4,7 @@
 #include "codegen/emit/rewrites/DivideZeros.h"
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
+#include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 
 #include "mlir/IR/BuiltinOps.h"
@@ -173,6 +174,19 @@ void defineConstant(llvm::Module &module, const std::string &name, uint32_t valu
   builder.CreateRet(builder.getInt32(value));
 }
 
+std::optional<uint32_t> takeConstant(llvm::Module &module, const std::string &name) {
+  llvm::Function *function = module.getFunction(name);
+  const auto *end = llvm::dyn_cast<llvm::ReturnInst>(function->getEntryBlock().getTerminator());
+  const auto *value = end ? llvm::dyn_cast<llvm::ConstantInt>(end->getReturnValue()) : nullptr;
+  const std::optional<uint32_t> result =
+      value ? std::optional(uint32_t(value->getZExtValue())) : std::nullopt;
+  if (function->use_empty())
+    function->eraseFromParent();
+  else
+    function->setLinkage(llvm::GlobalValue::InternalLinkage);
+  return result;
+}
+
 /// Loaded lazily: functions that are never called are never parsed.
 static llvm::Error linkBitcode(llvm::Module &module, std::string_view bitcode,
                                llvm::ArrayRef<std::string> exports) {
@@ -265,6 +279,14 @@ static void addJoining(llvm::PassBuilder &builder) {
       });
 }
 
+/// After the calls are joined: which words a step needs is known then.
+static void addRecordPacking(llvm::PassBuilder &builder) {
+  builder.registerPipelineStartEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel) {
+        passes.addPass(PackRecordsPass());
+      });
+}
+
 /// After LLVM's simplification, which would move the division behind the choice.
 static void addDivisionOfZeros(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
@@ -303,6 +325,9 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
     foldConstantFunctions(module, functions);
   if (options.isMegakernel && options.optimization > 0 && joinCalls(module))
     addJoining(builder);
+
+  if (module.getFunction("rtsl_record_store"))
+    addRecordPacking(builder);
 
   static constexpr const llvm::OptimizationLevel *levels[] = {
       &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,

@@ -18,6 +18,7 @@
 #include "llvm/Support/Error.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -63,6 +64,10 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
 /// Defines `uint32_t name(const RtslLaunch *)`, which always returns `value`. If called before
 /// linkDeviceCode, it replaces a weak definition there.
 void defineConstant(llvm::Module &module, const std::string &name, uint32_t value);
+
+/// The result of a function without arguments, if it is a constant once it is optimised; afterwards
+/// it is internal, or removed if nothing calls it.
+std::optional<uint32_t> takeConstant(llvm::Module &module, const std::string &name);
 
 /// Links the functions of `bitcodes`, one after the other, that the module calls. Afterwards all
 /// functions except `exports` are internal. A name in `exports` may be undefined.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <type_traits>
 
 namespace rtsl::runtime {
@@ -47,8 +48,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
     : Megakernel(std::move(scene), options), device(device) {
   const Clock::time_point start = Clock::now();
   program = device.compile(code.ptx.c_str(), code.maxRegisters);
-  kernel = device.kernel("rtsl_render", program);
-  sumKernel = device.kernel("rtsl_sum", program);
+  loadKernels(code);
   figures.device = device.name();
   figures.loadSeconds = secondsSince(start);
   figures.registers = kernel.registers;
@@ -57,7 +57,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
   figures.spillLoads = kernel.spillLoads;
   figures.occupancy =
       double(device.blocksAtOnce(kernel, threadsPerBlock)) * threadsPerBlock / device.mostThreads();
-  figures.laneBytes = code.laneBytes;
+  figures.laneBytes = waves ? waves->stackBytes() : code.laneBytes;
   figures.threadsPerBlock = threadsPerBlock;
   try {
     prepare();
@@ -67,6 +67,19 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
   }
   figures.uploadSeconds = buildSeconds - (trees ? trees->seconds : 0);
   buildSeconds += figures.loadSeconds;
+}
+
+void GpuRenderer::loadKernels(const GpuCode &code) {
+  sumKernel = device.kernel("rtsl_sum", program);
+  if (code.wave.states == 0) {
+    kernel = device.kernel("rtsl_render", program);
+    return;
+  }
+  waves.emplace(device, program, code.wave, code.laneBytes);
+  const auto &kernels = waves->stepKernels();
+  kernel = *std::max_element(kernels.begin(), kernels.end(), [](const auto &a, const auto &b) {
+    return a.registers < b.registers;
+  });
 }
 
 GpuRenderer::~GpuRenderer() {
@@ -84,9 +97,16 @@ void GpuRenderer::release() {
   memory.clear();
 }
 
-std::uint64_t GpuRenderer::laneCount(std::uint64_t laneBytes) {
-  figures.blocks = blockCount(device, kernel, pixelCount(), laneBytes);
-  return std::uint64_t(figures.blocks) * threadsPerBlock;
+std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
+  if (waves) {
+    const std::uint64_t bytes = waves->setSlots(samplesInMemory());
+    job.slots = waves->slots();
+    figures.blocks = (waves->slots() + threadsPerBlock - 1) / threadsPerBlock;
+    figures.laneBytes = waves->slotBytes();
+    return bytes;
+  }
+  figures.blocks = blockCount(device, kernel, pixelCount(), job.laneBytes);
+  return std::uint64_t(figures.blocks) * threadsPerBlock * job.laneBytes;
 }
 
 Megakernel::Address GpuRenderer::allocate(std::uint64_t bytes, const char *what) {
@@ -161,6 +181,8 @@ void GpuRenderer::fetchSums() {
 }
 
 double GpuRenderer::runLanes(Address job) {
+  if (waves)
+    return waves->run(job, raysAddress());
   void *arguments[] = {&job};
   return device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
 }
@@ -170,6 +192,11 @@ double GpuRenderer::addSamples(Address job) {
   const std::uint64_t wanted = (pixelCount() + threadsPerBlock - 1) / threadsPerBlock;
   return device.launch(sumKernel, unsigned(std::min<std::uint64_t>(wanted, 1u << 20)),
                        threadsPerBlock, arguments);
+}
+
+double GpuRenderer::launchSeconds() const {
+  // The kernels of a wavefront are short.
+  return waves ? std::numeric_limits<double>::infinity() : 0.25;
 }
 
 std::uint64_t GpuRenderer::get(Address number) {

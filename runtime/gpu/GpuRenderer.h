@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/gpu/CudaDevice.h"
+#include "runtime/gpu/GpuWaves.h"
 #include "runtime/render/Megakernel.h"
 
 #include <cstdint>
@@ -15,12 +16,13 @@ struct GpuCode {
   const std::string &ptx;
   std::uint64_t laneBytes;   // the result of the program's rtsl_lane_bytes for the options' depth
   unsigned maxRegisters = 0; // per thread; 0: as many as the code needs
+  WaveFacts wave = {};
 };
 
 /// What ran on the GPU, to explain its speed.
 struct GpuStatistics {
   std::string device;
-  int registers = 0, localBytes = 0; // per thread
+  int registers = 0, localBytes = 0; // per thread; of a wavefront, of the kernel with most of them
   // Bytes, in the code; not known of code that the driver had compiled before.
   std::optional<int> spillStores, spillLoads;
   unsigned blocks = 0, threadsPerBlock = 0;
@@ -45,7 +47,7 @@ public:
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &) override { return figures.laneBytes; }
-  std::uint64_t laneCount(std::uint64_t laneBytes) override;
+  std::uint64_t raysBytes(RtslJob &job) override;
   Address allocate(std::uint64_t bytes, const char *what) override;
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
@@ -54,7 +56,7 @@ private:
   Address clearedPixels() override;
   void fetchPixels() override;
   std::uint64_t sliceBytes() override;
-  double launchSeconds() const override { return 0.25; }
+  double launchSeconds() const override;
   RtslPixelSums placeSums(PixelSums &sums) override;
   RtslPixelSums clearedSums(std::uint64_t pixels) override;
   void fetchSums() override;
@@ -63,12 +65,14 @@ private:
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 
+  void loadKernels(const GpuCode &code);
   void release();
   std::uint64_t pixelBytes() const { return pixelFloats() * sizeof(float); }
 
   CudaDevice &device;
   CudaDevice::Module program;
   CudaDevice::Kernel kernel, sumKernel;
+  std::optional<GpuWaves> waves; // in place of `kernel`
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;

@@ -8,6 +8,7 @@
 
 #include "runtime/accel/FlatScene.h"
 #include "runtime/package/Buffers.h"
+#include "runtime/program/Program.h"
 #include "runtime/render/RenderOptions.h"
 
 #include <array>
@@ -33,7 +34,8 @@ struct Package {
   std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};
 
   std::string ptx;
-  std::uint32_t registers = 0;         // GpuCode::maxRegisters
+  std::uint32_t registers = 0; // GpuCode::maxRegisters
+  WaveFacts wave;
   std::vector<std::string> stateNames; // Program::stateNames; not in the file
   NativeImage host;
   FlatScene scene; // not relocated

@@ -20,6 +20,10 @@ std::string_view gpuDeviceBitcode();
 std::string_view megakernelBitcode();
 std::string_view gpuMegakernelBitcode();
 
+/// The functions that run a wavefront (runtime/device/engines/Wavefront.h).
+std::string_view wavefrontBitcode();
+std::string_view gpuWavefrontBitcode();
+
 /// memcpy and similar functions, for host machine code that runs without a C library.
 std::string_view hostMemoryBitcode();
 

@@ -25,7 +25,7 @@ public:
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &launch) override;
-  std::uint64_t laneCount(std::uint64_t) override { return threads.count(); }
+  std::uint64_t raysBytes(RtslJob &job) override { return threads.count() * job.laneBytes; }
   Address allocate(std::uint64_t bytes, const char *what) override;
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;

@@ -78,8 +78,7 @@ void Megakernel::prepare() {
   mostInMemory = pixelCount() * ofPixel;
   if (options.wantsPicture)
     job.samples = reinterpret_cast<float *>(allocate(bytesAtOnce * ofPixel, "samples"));
-  job.lanes = reinterpret_cast<std::uint8_t *>(
-      allocate(laneCount(job.laneBytes) * job.laneBytes, "rays in flight"));
+  job.lanes = reinterpret_cast<std::uint8_t *>(allocate(raysBytes(job), "rays in flight"));
   jobAddress = allocate(sizeof job, "the launch");
   if (options.countedStates) {
     stepCounts.resize(options.countedStates + stepsBesideStates);

@@ -57,6 +57,8 @@ protected:
   /// Copies the scene and the job to the device. Throws OutOfMemory.
   void prepare();
 
+  /// Where the rays of all lanes are, after prepare().
+  Address raysAddress() const { return reinterpret_cast<Address>(job.lanes); }
   /// Floats of the pixels that are rendered.
   std::uint64_t pixelFloats() const { return windowPixels * colorComponents; }
   float *pixels = nullptr; // where finish() leaves them
@@ -64,8 +66,9 @@ protected:
 private:
   /// The result of rtsl_lane_bytes for this launch, a multiple of 16.
   virtual std::uint64_t laneBytes(const RtslLaunch &launch) = 0;
-  /// The number of lanes, limited by work and memory.
-  virtual std::uint64_t laneCount(std::uint64_t laneBytes) = 0;
+  /// The bytes of memory for the rays of all lanes, limited by work and memory. Of a wavefront it
+  /// sets RtslJob::slots.
+  virtual std::uint64_t raysBytes(RtslJob &job) = 0;
   // The device's memory. `what` names the contents in messages.
   virtual Address allocate(std::uint64_t bytes, const char *what) = 0;
   virtual void upload(Address to, const void *from, std::uint64_t bytes) = 0;

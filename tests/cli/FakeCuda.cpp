@@ -1,5 +1,6 @@
-// Stands in for libcuda.so.1: devices whose memory is the process's, and whose kernel rtsl_render
-// paints a pattern after having checked that it was launched as it has to be. There are
+// Stands in for libcuda.so.1: devices whose memory is the process's, and whose kernel rtsl_render,
+// or the kernels of a wavefront, paint a pattern after having checked that they were launched as
+// they have to be. There are
 // FAKE_CUDA_DEVICES of them, or one; a thread that uses memory of another one than its own fails.
 // FAKE_CUDA makes them fail in one of the ways in which drivers and devices do, or paint half of
 // the picture and go on until they are stopped, again and again ("endless"), or take longer on one
@@ -48,6 +49,7 @@ struct Device {
   std::mutex mutex;
   std::map<std::uintptr_t, std::size_t> allocations;
   std::size_t allocated = 0;
+  std::size_t waveStates = 0;          // of the program
   RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
 };
 Device devices[mostDevices];
@@ -125,6 +127,51 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads) {
   return Success;
 }
 
+/// The kernels of a wavefront, on counts of slots alone: a sample takes one traversal.
+struct WaveTurn {
+  std::uint32_t *now, *next; // how many slots wait for each step
+};
+constexpr std::size_t traceStep = 0, sampleStep = 1;
+
+WaveTurn waveTurn(const RtslJob &job, std::uint32_t turn) {
+  auto *counts = reinterpret_cast<std::uint32_t *>(job.lanes);
+  const std::size_t steps = current->waveStates + 2;
+  return {counts + (turn & 1) * steps, counts + (~turn & 1) * steps};
+}
+
+int beginWave(const RtslJob &job) {
+  const std::uint64_t queues = 2 * (current->waveStates + 2) * sizeof(std::uint32_t);
+  if (!isAllocated(&job, sizeof job) || job.slots == 0 ||
+      !isAllocated(job.lanes, job.slots * (queues + job.laneBytes)))
+    return IllegalAddress;
+  if (is("overflow"))
+    job.status->problem = RTSL_PROBLEM_STACK;
+  else
+    waveTurn(job, 0).now[sampleStep] = job.slots;
+  return Success;
+}
+
+int traceWave(const RtslJob &job, std::uint32_t turn) {
+  const WaveTurn counts = waveTurn(job, turn);
+  if (counts.now[traceStep] == 0)
+    return IllegalAddress; // a launch for nothing
+  counts.next[sampleStep] += counts.now[traceStep];
+  return Success;
+}
+
+int sampleWave(const RtslJob &job, std::uint32_t turn) {
+  const WaveTurn counts = waveTurn(job, turn);
+  if (counts.now[sampleStep] == 0)
+    return IllegalAddress;
+  const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
+  for (std::uint32_t slot = 0; slot < counts.now[sampleStep] && !job.status->stop; ++slot)
+    if (const std::uint64_t sample = job.status->nextSample++; sample < samples) {
+      paint(job, sample);
+      ++counts.next[traceStep];
+    }
+  return Success;
+}
+
 /// The kernel that adds the samples to the sums; it must follow the other one.
 int sum(const RtslJob &job) {
   const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
@@ -152,12 +199,17 @@ int sum(const RtslJob &job) {
 
 /// What the driver gives out as kernels: those of programs, and those that build trees.
 const char *const kernels[] = {
-    "rtsl_render",
-    "rtsl_sum",
+    "rtsl_render",     "rtsl_sum",         "rtsl_wave_begin",
+    "rtsl_wave_trace", "rtsl_wave_sample", "rtsl_wave_state_",
 #define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
 #include "runtime/device/trees/Steps.def"
 };
-constexpr std::size_t programKernels = 2;
+constexpr std::size_t programKernels = 6;
+constexpr const char *entry = ".entry ";
+
+bool hasKernel(const char *code, const char *name) {
+  return std::strstr(code, (std::string(entry) + name).c_str());
+}
 
 /// A step of a build, on warps of one lane.
 int buildStep(std::size_t number, const rtsl::device::build::TreeBuild &build, std::uint32_t count,
@@ -334,10 +386,18 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
                    "    16 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads\n");
   const char *code = static_cast<const char *>(image);
   *module = current;
-  const bool builds = std::strstr(code, ".entry rtsl_build_");
-  for (std::size_t i = 0; i < std::size(kernels); ++i)
-    if (builds == (i >= programKernels) &&
-        !std::strstr(code, (std::string(".entry ") + kernels[i] + "(").c_str()))
+  if (!hasKernel(code, "rtsl_build_")) {
+    current->waveStates = 0;
+    const std::string state = std::string(entry) + "rtsl_wave_state_";
+    for (const char *at = code; (at = std::strstr(at, state.c_str())); at += state.size())
+      ++current->waveStates;
+    const bool isWavefront = hasKernel(code, "rtsl_wave_begin(");
+    return hasKernel(code, "rtsl_sum(") && isWavefront != hasKernel(code, "rtsl_render(")
+               ? Success
+               : InvalidValue;
+  }
+  for (std::size_t i = programKernels; i < std::size(kernels); ++i)
+    if (!hasKernel(code, (std::string(kernels[i]) + "(").c_str()))
       return InvalidValue;
   return Success;
 }
@@ -346,7 +406,8 @@ int cuModuleUnload(void *) {
 }
 int cuModuleGetFunction(void **function, void *, const char *name) {
   for (const char *const &kernel : kernels)
-    if (std::strcmp(name, kernel) == 0) {
+    if (std::strcmp(name, kernel) == 0 ||
+        (kernel[std::strlen(kernel) - 1] == '_' && std::strstr(name, kernel) == name)) {
       *function = const_cast<void *>(static_cast<const void *>(&kernel));
       return Success;
     }
@@ -376,7 +437,17 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
                      number(2), number(3), number(4));
   }
   const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
-  return function == &kernels[0] ? render(job, blocks, threads) : sum(job);
+  const std::string name = kernels[kernel];
+  if (name == "rtsl_render")
+    return render(job, blocks, threads);
+  if (name == "rtsl_sum")
+    return sum(job);
+  if (name == "rtsl_wave_begin")
+    return beginWave(job);
+  const std::uint32_t turn = *static_cast<const std::uint32_t *>(arguments[1]);
+  if (name == "rtsl_wave_trace")
+    return traceWave(job, turn);
+  return name == "rtsl_wave_sample" ? sampleWave(job, turn) : IllegalAddress;
 }
 int cuCtxSynchronize() {
   if (is("uneven") && current == &devices[slowDevice])

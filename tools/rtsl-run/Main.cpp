@@ -237,9 +237,9 @@ int render(const Options &options) {
   runtime::Image image;
   if (options.target == Target::Gpu) {
     runtime::Gpus devices(options.gpu.count);
-    const runtime::GpuCode code = {package.ptx, package.laneBytes[render.maxDepth],
-                                   options.gpu.maxRegisters ? options.gpu.maxRegisters
-                                                            : package.registers};
+    const runtime::GpuCode code = {
+        package.ptx, package.laneBytes[render.maxDepth],
+        options.gpu.maxRegisters ? options.gpu.maxRegisters : package.registers, package.wave};
     const std::unique_ptr<runtime::Backend> backend =
         devices.prepare(code, buffers.scene(), render);
     image = backend->render(&statistics);

@@ -71,8 +71,10 @@ bool joinCalls(llvm::Module &module) {
   Sizes sizes;
   for (llvm::Function &function : module) {
     if (function.isDeclaration()) {
-      // Code outside of the module takes the address, so the variable stays in memory anyway.
-      if (!function.isIntrinsic() && takesAddress(function) && !function.use_empty())
+      // Code outside of the module takes the address, so the variable stays in memory anyway. The
+      // records of a wavefront (PackRecords.h) are no variables.
+      if (!function.isIntrinsic() && takesAddress(function) && !function.use_empty() &&
+          !function.onlyAccessesInaccessibleMemory())
         return false;
       continue;
     }

@@ -51,29 +51,32 @@ struct EmittedLight {
 };
 
 /// Chooses a direction and finds whether the background is seen there. On a GPU it is a separate
-/// function.
+/// function, and its result a value: a call that took an address would keep the ray in memory
+/// (codegen/emit/rewrites/JoinCalls.h).
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
-inline void lookAtBackground(ShadowRay ray, LeftHit left, EmittedLight *light) {
+inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left) {
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
-  light->density = 0;
-  light->distance = infinity;
+  EmittedLight light;
+  light.density = 0;
+  light.distance = infinity;
   RtslState state;
   startShadowRay(state, ray);
   setDefaults(state, components);
   setRay(state, ray.origin, {0, 0, 0}, {0, 0, RTSL_NO_HIT, 0}, infinity);
   clearForBackground(state);
   rtsl_rt_Miss_sampleDirection(&state, launch.background);
-  light->direction = load(state.RayDirection);
+  light.direction = load(state.RayDirection);
   const float density = backgroundChance(launch) * state.PDF;
   if (!(density > 0 && density < infinity))
-    return;
-  copyColor(light->radiance, state.SampleColor, components);
-  const RayStart start = startElsewhere(left, ray.origin, light->direction);
-  if (traverseShadow(ray, light->direction, start, infinity) == RTSL_MISS)
-    light->density = density;
+    return light;
+  copyColor(light.radiance, state.SampleColor, components);
+  const RayStart start = startElsewhere(left, ray.origin, light.direction);
+  if (traverseShadow(ray, light.direction, start, infinity) == RTSL_MISS)
+    light.density = density;
+  return light;
 }
 
 } // namespace rtsl::device

@@ -239,40 +239,43 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
              : point;
 }
 
-/// Chooses a point on an emitter and finds what is seen of it. On a GPU it is a separate function.
+/// Chooses a point on an emitter and finds what is seen of it. On a GPU it is a separate function,
+/// and its result a value, as that of lookAtBackground.
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
-inline void lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice, EmittedLight *light) {
+inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice) {
   const RtslLaunch &launch = *ray.launch;
-  light->density = 0;
-  light->direction = {0, 0, 0};
+  EmittedLight light;
+  light.density = 0;
+  light.direction = {0, 0, 0};
   const ChosenPart chosen = choosePart(launch, choice, ray.origin, ray.randomKey);
   if (chosen.emitter == RTSL_NO_LIGHT_LEAF)
-    return;
+    return light;
   const RtslEmitter &emitter = launch.emitters[chosen.emitter];
   const RtslInstance &instance = instanceAt(launch, emitter.instance);
   RtslState state;
   startShadowRay(state, ray);
-  light->direction =
+  light.direction =
       pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v) - ray.origin;
 
   // How much the hit's distance may differ from that of the point.
   constexpr float tolerance = 0x1p-10f;
   setDefaults(state, rtsl_color_components(&launch));
-  const RayStart start = startElsewhere(left, ray.origin, light->direction);
+  const RayStart start = startElsewhere(left, ray.origin, light.direction);
   if (!(start.epsilon < 1 - tolerance))
-    return;
-  setRay(state, ray.origin, light->direction, start, 1 + tolerance);
+    return light;
+  setRay(state, ray.origin, light.direction, start, 1 + tolerance);
   if (rtsl_traverse(&state, 0) != RTSL_HIT || state.instance != emitter.instance ||
       !(state.HitDistance > 1 - tolerance))
-    return;
+    return light;
   describeHit(state);
-  light->distance = state.HitDistance;
-  light->density = emitterDensity(state);
-  if (light->density > 0)
+  light.distance = state.HitDistance;
+  light.density = emitterDensity(state);
+  if (light.density > 0)
     rtsl_rt_Material_emission(&state, instance.material);
-  copyColor(light->radiance, state.EmissionColor, rtsl_color_components(&launch));
+  copyColor(light.radiance, state.EmissionColor, rtsl_color_components(&launch));
+  return light;
 }
 
 /// `illuminate(P)`. Always four draws.
@@ -294,11 +297,11 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
     return false;
   EmittedLight light;
   if (choice.emitter < ofBackground) {
-    lookAtBackground(shadowRayFrom(state, point), leftHit(state), &light);
+    light = lookAtBackground(shadowRayFrom(state, point), leftHit(state));
   } else {
     if (ofBackground != 0) // the rest of the draw
       choice.emitter = (choice.emitter - ofBackground) / (1 - ofBackground);
-    lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice, &light);
+    light = lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice);
   }
   const float length = squareRoot(dot(light.direction, light.direction));
   if (!(light.density > 0 && length > 0) || isBlack(light.radiance, components))

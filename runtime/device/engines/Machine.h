@@ -271,10 +271,9 @@ inline void traceRay(Rays &rays) {
     endRay(rays);
 }
 
-/// Runs state `number` of the ray, which is rays.next.
-inline void runState(Rays &rays, int32_t number) {
+/// The end of a state that returned `after`.
+inline void endState(Rays &rays, int32_t after) {
   CurrentRay &ray = rays.ray;
-  int32_t after = rtsl_run_state(&ray.state, number, ray.object, frameOf(ray));
   if (after < 0 && after != RTSL_NEXT_LAST) {
     rays.next = -after;
     return;
@@ -290,6 +289,12 @@ inline void runState(Rays &rays, int32_t number) {
     wait(rays, after);
   takeTurn(ray);
   rays.next = Rays::trace;
+}
+
+/// Runs state `number` of the ray, which is rays.next.
+inline void runState(Rays &rays, int32_t number) {
+  CurrentRay &ray = rays.ray;
+  endState(rays, rtsl_run_state(&ray.state, number, ray.object, frameOf(ray)));
 }
 
 /// The end of a sample, after its last state.

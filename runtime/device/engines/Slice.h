@@ -93,6 +93,21 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool wants) 
   return before < left ? sample : first + (before - left);
 }
 
+/// The next sample for each lane of the warp that wants one, without any in reserve; all lanes call
+/// together, and at least one wants one. TakenSamples::none if the slice has stopped.
+inline uint32_t takeOneSample(const RtslJob &job, bool wants) {
+  const uint32_t wanting = warp::lanesWhere(wants);
+  const int leader = __builtin_ctz(wanting);
+  uint32_t first = TakenSamples::none;
+  if (int(__nvvm_read_ptx_sreg_laneid()) == leader && !isToStop(job))
+    first = uint32_t(__atomic_fetch_add(&job.status->nextSample,
+                                        uint64_t(__builtin_popcount(wanting)), __ATOMIC_RELAXED));
+  first = uint32_t(warp::valueOf(int32_t(first), leader));
+  if (first == TakenSamples::none)
+    return first;
+  return first + uint32_t(__builtin_popcount(wanting & __nvvm_read_ptx_sreg_lanemask_lt()));
+}
+
 #else
 
 inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool) {
@@ -105,6 +120,12 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool) {
     taken.end = taken.next + atOnce;
   }
   return taken.next++;
+}
+
+inline uint32_t takeOneSample(const RtslJob &job, bool) {
+  if (isToStop(job))
+    return TakenSamples::none;
+  return uint32_t(__atomic_fetch_add(&job.status->nextSample, uint64_t(1), __ATOMIC_RELAXED));
 }
 
 #endif

@@ -296,7 +296,8 @@ typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
-  uint64_t laneBytes; // a multiple of 16
+  uint64_t laneBytes; // a multiple of 16; of a wavefront on a GPU, of the stack of a slot
+  uint32_t slots;     // of a wavefront on a GPU (runtime/device/engines/WaveMemory.h)
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice

@@ -12,6 +12,8 @@ namespace rtsl::device {
 
 #ifdef __NVPTX__
 
+constexpr uint32_t lanesOfWarp = 32;
+
 namespace warp {
 constexpr uint32_t all = 0xffffffffu;
 
@@ -36,6 +38,8 @@ inline int lanesHere() {
 }
 
 #else
+
+constexpr uint32_t lanesOfWarp = 1;
 
 inline int lanesHere() {
   return 1;

@@ -164,6 +164,12 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       "before traversal, new samples last; each step in its turn; or that of the first lane. "
       "auto: majority where shaders choose rays at random, otherwise prioritized. The picture "
       "is the same");
+  addChoice(command, "--organisation", options.compile.organisation,
+            Choices<Organisation>{{"megakernel", Organisation::Megakernel},
+                                  {"wavefront", Organisation::Wavefront}},
+            "how the steps of samples are organised on a GPU: megakernel, all in one kernel; "
+            "wavefront, a kernel for each step and queues of samples between them. The picture is "
+            "the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,

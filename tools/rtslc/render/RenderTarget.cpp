@@ -58,7 +58,8 @@ public:
     const std::uint64_t laneBytes =
         host.entries().laneBytes(render.maxDepth, scene.launch().referenceChain);
     const unsigned registers = options.maxRegisters ? options.maxRegisters : package.registers;
-    return devices.prepare({package.ptx, laneBytes, registers}, runtime::flatten(scene), render);
+    return devices.prepare({package.ptx, laneBytes, registers, package.wave},
+                           runtime::flatten(scene), render);
   }
 
   std::vector<std::string> stateNames(const runtime::Scene &) const override {

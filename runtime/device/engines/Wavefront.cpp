@@ -1,0 +1,127 @@
+//===- Wavefront.cpp - makes a program self-contained, with a kernel a step ===//
+//
+// Linked into programs with the organisation `wavefront`, for the GPU and for
+// `--target=host-megakernel`, in place of the entry points of Megakernel.cpp. The code generator
+// makes a copy of rtsl_wave_state for each state (codegen/emit/rewrites/WaveStates.h).
+//
+//===----------------------------------------------------------------------===//
+#include "runtime/device/engines/Wavefront.h"
+
+using namespace rtsl;
+
+extern "C" {
+
+/// Defined by the code generator for each copy of rtsl_wave_state: rtsl_run_state of its state.
+int32_t rtsl_run_this_state(RtslState *state, RtslRef object, void *frame);
+
+/// Whether slots have a stack; a constant.
+uint32_t rtsl_wave_has_stacks() {
+  return !device::hasLevelInRecord();
+}
+
+} // extern "C"
+
+namespace {
+
+/// The call is in rtsl_wave_state itself, where the code generator finds it.
+struct RunThisState {
+  RTSL_INLINED void operator()(device::Rays &rays) const {
+    device::CurrentRay &ray = rays.ray;
+    device::endState(rays, rtsl_run_this_state(&ray.state, ray.object, device::frameOf(ray)));
+  }
+};
+
+} // namespace
+
+#ifdef __NVPTX__
+
+namespace {
+
+uint32_t threadNumber() {
+  return __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
+         __nvvm_read_ptx_sreg_tid_x();
+}
+
+uint32_t threadCount() {
+  return __nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x();
+}
+
+device::Wave waveOf(const RtslJob &job) {
+  return device::Wave({job.slots, rtsl_wave_steps(job.launch), rtsl_record_groups(), job.laneBytes},
+                      job.lanes);
+}
+
+} // namespace
+
+extern "C" {
+
+__attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob *job) {
+  const RtslLaunch &launch = *job->launch;
+  if (threadNumber() == 0 && rtsl_wave_has_stacks() &&
+      device::stackSize(&launch, launch.maxDepth, launch.referenceChain) > job->laneBytes)
+    job->status->problem = RTSL_PROBLEM_STACK;
+  device::beginWave(waveOf(*job), threadNumber(), threadCount());
+}
+
+__attribute__((nvptx_kernel)) void rtsl_wave_trace(const RtslJob *job, uint32_t turn) {
+  device::traceWave(*job, waveOf(*job), turn, threadNumber(), threadCount());
+}
+
+__attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob *job, uint32_t turn) {
+  device::sampleWave(*job, waveOf(*job), turn, threadNumber(), threadCount());
+}
+
+__attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob *job, uint32_t turn,
+                                                   int32_t number) {
+  device::stateWave(*job, waveOf(*job), turn, number, threadNumber(), threadCount(),
+                    RunThisState());
+}
+
+} // extern "C"
+
+#else
+
+extern "C" {
+
+/// Defined by the code generator: the copy of rtsl_wave_state for `number`.
+void rtsl_wave_run_state(const RtslJob *job, const device::Wave *wave, uint32_t turn,
+                         int32_t number);
+
+void rtsl_wave_state(const RtslJob *job, const device::Wave *wave, uint32_t turn, int32_t number) {
+  device::stateWave(*job, *wave, turn, number, 0, 1, RunThisState());
+}
+
+static device::WaveMemory memoryOfThread(uint32_t maxDepth, uint32_t referenceChain) {
+  const uint64_t stack =
+      rtsl_wave_has_stacks() ? device::stackSize(nullptr, maxDepth, referenceChain) : 0;
+  return {device::slotsOfThread, rtsl_wave_steps(nullptr), rtsl_record_groups(), stack};
+}
+
+/// The counterparts of rtsl_lane_bytes and rtsl_run_lane.
+uint64_t rtsl_wave_bytes(uint32_t maxDepth, uint32_t referenceChain) {
+  return memoryOfThread(maxDepth, referenceChain).bytes();
+}
+
+void rtsl_run_wave(const RtslJob *job, uint32_t lane) {
+  const RtslLaunch &launch = *job->launch;
+  const device::WaveMemory size = memoryOfThread(launch.maxDepth, launch.referenceChain);
+  if (size.bytes() > job->laneBytes) {
+    __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+    return;
+  }
+  const device::Wave wave(size, job->lanes + lane * job->laneBytes);
+  for (uint32_t turn = 0; turn < 2; ++turn)
+    wave.clearCounts(turn);
+  device::beginWave(wave, 0, 1);
+  for (uint32_t turn = 0; wave.isAnyInFlight(turn); ++turn) {
+    device::sampleWave(*job, wave, turn, 0, 1);
+    device::traceWave(*job, wave, turn, 0, 1);
+    for (uint32_t state = 1; state < wave.steps() - 1; ++state)
+      rtsl_wave_run_state(job, &wave, turn, int32_t(state));
+    wave.clearCounts(turn);
+  }
+}
+
+} // extern "C"
+
+#endif

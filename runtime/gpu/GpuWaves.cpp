@@ -1,0 +1,77 @@
+#include "runtime/gpu/GpuWaves.h"
+
+#include "support/Error.h"
+#include "support/ErrorMessages.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// More keep more lanes busy at each step, and take more memory: docs/gpu.md.
+constexpr std::uint64_t mostSlots = std::uint64_t(4) << 20;
+/// Of the device's free memory, for samples in flight: one part of four.
+constexpr std::uint64_t memoryShare = 4;
+constexpr unsigned threadsPerBlock = 128;
+
+} // namespace
+
+GpuWaves::GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const WaveFacts &facts,
+                   std::uint64_t stackBytes)
+    : device(device), begin(device.kernel("rtsl_wave_begin", program)) {
+  kernels.push_back(device.kernel("rtsl_wave_trace", program));
+  kernels.push_back(device.kernel("rtsl_wave_sample", program));
+  for (std::uint32_t state = 1; state <= facts.states; ++state)
+    kernels.push_back(device.kernel(("rtsl_wave_state_" + std::to_string(state)).c_str(), program));
+  memory.slots = 0;
+  memory.steps = std::uint32_t(kernels.size());
+  memory.groups = facts.groups;
+  memory.stackBytes = facts.hasStacks ? stackBytes : 0;
+}
+
+std::uint64_t GpuWaves::slotBytes() const {
+  device::WaveMemory one = memory;
+  one.slots = 1024; // in which sizes that are rounded up do not count
+  return one.bytes() / one.slots;
+}
+
+std::uint64_t GpuWaves::setSlots(std::uint64_t samples) {
+  const std::uint64_t affordable = device.freeMemory() / memoryShare / slotBytes();
+  memory.slots = std::uint32_t(std::min({mostSlots, samples, affordable}));
+  if (memory.slots < std::min<std::uint64_t>(threadsPerBlock, samples))
+    throw Error(message::noGpuMemoryForRays(double(threadsPerBlock * slotBytes()) / (1 << 20),
+                                            threadsPerBlock,
+                                            double(device.freeMemory()) / (1 << 20)));
+  return memory.bytes();
+}
+
+void GpuWaves::launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, void **arguments) {
+  const auto blocks = unsigned((threads + threadsPerBlock - 1) / threadsPerBlock);
+  device.launchLater(kernel, blocks, threadsPerBlock, arguments);
+}
+
+double GpuWaves::run(Address job, Address rays) {
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<std::uint32_t> counts(memory.steps);
+  const std::size_t countBytes = counts.size() * sizeof counts[0];
+  device.clear(rays, 2 * countBytes);
+  void *ofBegin[] = {&job};
+  launch(begin, memory.slots, ofBegin);
+  for (std::uint32_t turn = 0;; turn ^= 1) {
+    const Address countsOfTurn = rays + turn * countBytes;
+    device.download(counts.data(), countsOfTurn, countBytes); // waits for the last turn
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 0; }))
+      break;
+    void *arguments[] = {&job, &turn};
+    for (std::size_t step = 0; step < counts.size(); ++step)
+      if (counts[step] != 0)
+        launch(kernels[step], counts[step], arguments);
+    device.clear(countsOfTurn, countBytes);
+  }
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,49 @@
+//===- GpuWaves.h - runs the kernels of a wavefront -----------------------===//
+//
+// A turn starts a kernel for each step that samples in flight wait for, one after the other, and
+// then reads how many wait for each step in the next turn (runtime/device/engines/Wavefront.h).
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/device/engines/WaveMemory.h"
+#include "runtime/gpu/CudaDevice.h"
+#include "runtime/program/Program.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace rtsl::runtime {
+
+class GpuWaves {
+public:
+  using Address = CudaDevice::Address;
+
+  /// `stackBytes` are for the rays of a sample. Throws NoDevice.
+  GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const WaveFacts &facts,
+           std::uint64_t stackBytes);
+
+  /// Decides how many samples are in flight, of so many that there are in all, and returns the
+  /// bytes of memory that they need. Throws OutOfMemory.
+  std::uint64_t setSlots(std::uint64_t samples);
+  std::uint32_t slots() const { return memory.slots; }
+  /// Of a sample in flight.
+  std::uint64_t slotBytes() const;
+  std::uint64_t stackBytes() const { return memory.stackBytes; }
+
+  /// Runs the job, with `rays` of the size that setSlots() returned. Returns the seconds.
+  double run(Address job, Address rays);
+
+  /// In the order of the steps: traversal, the beginning of samples, and states.
+  const std::vector<CudaDevice::Kernel> &stepKernels() const { return kernels; }
+
+private:
+  void launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, void **arguments);
+
+  CudaDevice &device;
+  CudaDevice::Kernel begin;
+  std::vector<CudaDevice::Kernel> kernels;
+  device::WaveMemory memory;
+};
+
+} // namespace rtsl::runtime

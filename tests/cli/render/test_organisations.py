@@ -1,0 +1,129 @@
+"""The organisations of a GPU's program: one kernel, or a kernel for each step. What a lane computes
+is the same, so the picture has the same bits; the CPU runs both, with many samples in flight."""
+
+import json
+import re
+import shutil
+import subprocess
+import unittest
+
+from harness import EXAMPLES, RTSLC, USAGE, Case
+
+PTXAS = shutil.which("ptxas") or shutil.which("/usr/local/cuda/bin/ptxas")
+HOST = "--target=host-megakernel"
+WAVE = "--organisation=wavefront"
+SMALL = ("--size=24x18", "--spp=3", "-q")
+
+# Recursion with a stack; payloads; random paths; motion and selectors; variables of the graph.
+SCENES = (
+    "glass/scene.json",
+    "whitted-programs/scene.json",
+    "cornell/scene.json",
+    "carousel/scene.json",
+    "whirligig/whirligig.json",
+    "inherit/inherit.json",
+)
+
+
+class Organisations(Case):
+    def compare(self, scene, *options):
+        self.run_rtslc("render", scene, "-o", "one.exr", HOST, *options)
+        self.run_rtslc("render", scene, "-o", "wave.exr", HOST, WAVE, *options)
+        self.assert_same_bits("one.exr", "wave.exr")
+
+    def test_pictures_have_the_same_bits(self):
+        for name in SCENES:
+            with self.subTest(scene=name):
+                self.compare(EXAMPLES / name, *SMALL)
+
+    def test_with_every_kind_of_code(self):
+        glass = EXAMPLES / "glass" / "scene.json"
+        for options in (
+            ["-O0"],
+            ["--fp=double"],
+            ["--exceptions"],
+            ["--undefined=nan"],
+            ["--color=spectral:5", "--save=live"],
+        ):
+            with self.subTest(options=options):
+                self.compare(glass, *SMALL, *options)
+
+    def test_passes_and_threads(self):
+        scene = EXAMPLES / "metal" / "scene.json"
+        self.compare(scene, *SMALL, "--threads=1")
+        self.run_rtslc("render", scene, "-o", "one.exr", HOST, *SMALL[:1], "--spp=7", "-q")
+        for spp in (2, 7):
+            self.run_rtslc(
+                *("render", scene, "-o", "wave.exr", HOST, WAVE, "-q", *SMALL[:1]),
+                *(f"--spp={spp}", "--checkpoint=c.ckpt"),
+            )
+        self.assert_same_bits("one.exr", "wave.exr")
+
+    def test_the_steps_are_the_same(self):
+        """Each sample runs the same states, whatever the organisation."""
+        scene = EXAMPLES / "metal" / "scene.json"
+        counts = []
+        for options in ((), (WAVE,)):
+            out, _ = self.run_rtslc(
+                *("render", scene, "-o", "a.exr", HOST, "--lane-use", "--json", *SMALL, *options)
+            )
+            steps = json.loads(out)["steps"]
+            counts.append({step["step"]: step["lanes"] for step in steps})
+        one, wave = counts
+        self.assertGreater(len(one), 3)
+        del one["begin samples"], wave["begin samples"]  # lanes and slots that get none
+        self.assertEqual(one, wave)
+
+    def test_a_kernel_for_each_state(self):
+        ptx, _ = self.run_rtslc(
+            "compile", EXAMPLES / "glass" / "scene.json", "--emit=ptx", WAVE, "-o", "-"
+        )
+        kernels = re.findall(r"\.entry (\w+)\(", ptx)
+        states = [name for name in kernels if name.startswith("rtsl_wave_state_")]
+        self.assertGreater(len(states), 5)
+        self.assertEqual(
+            sorted(set(kernels) - set(states)),
+            ["rtsl_sum", "rtsl_wave_begin", "rtsl_wave_sample", "rtsl_wave_trace"],
+        )
+        self.assertFalse("rtsl_record_load" in ptx or "rtsl_record_store" in ptx)
+
+    @unittest.skipUnless(PTXAS, "ptxas is not installed")
+    def test_the_assembler_accepts_it(self):
+        scene = EXAMPLES / "glass" / "scene.json"
+        self.run_rtslc("compile", scene, "--emit=ptx", WAVE, "-o", "a.ptx")
+        done = subprocess.run(
+            [PTXAS, "-arch=sm_75", "-O1", "a.ptx", "-o", "a.cubin"],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        self.assertEqual(done.returncode, 0, done.stderr[:2000])
+
+    def test_the_name_is_one_of_those_listed(self):
+        _, error = self.run_rtslc(
+            *("render", EXAMPLES / "metal" / "scene.json", "-o", "a.exr", HOST),
+            "--organisation=waves",
+            status=USAGE,
+        )
+        self.assertIn("`waves` is none of megakernel, wavefront", error)
+
+
+class OnTheStandIn(Case):
+    """On the stand-in for a CUDA driver, which checks how kernels are launched."""
+
+    def render(self, *arguments):
+        scene = EXAMPLES / "glass" / "scene.json"
+        command = (RTSLC, "render", scene, "-o", "a.exr", "--target=gpu", "-O0")
+        return self.run_with_fake_driver([*command, "-Wno-depth-limit", *arguments])
+
+    def test_turns_end_when_no_sample_is_left(self):
+        arguments = ("--size=32x18", "--spp=5", "-q")
+        self.render(*arguments)
+        (self.folder / "a.exr").rename(self.folder / "one.exr")
+        out, _ = self.render(*arguments, WAVE, "--json")
+        self.assert_same_bits("a.exr", "one.exr")
+        self.assertEqual(json.loads(out)["samples"], 32 * 18 * 5)
+
+
+if __name__ == "__main__":
+    unittest.main()
