@@ -5,6 +5,7 @@
 //===----------------------------------------------------------------------===//
 #include "scenefile/SceneFile.h"
 #include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/explain/ExplainGpu.h"
 #include "tools/rtslc/explain/MeasureItems.h"
 
 using namespace rtsl;
@@ -17,7 +18,7 @@ int main(int argc, char **argv) {
   Action action;
   addCheckCommand(app, action, &scene::buildScene);
   addCompileCommand(app, action, &scene::buildScene);
-  addExplainCommand(app, action, &scene::buildScene, &measureItems);
+  addExplainCommand(app, action, &scene::buildScene, &measureItems, &explainGpu);
   addRenderCommand(app, action);
   addRunCommand(app, action);
   addTraceCommand(app, action);

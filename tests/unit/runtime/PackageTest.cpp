@@ -24,6 +24,7 @@ Package smallPackage() {
   package.stateCount = 7;
   package.frameBytes = 28;
   package.laneBytes[2] = 2800;
+  package.wave = {5, 13, true};
   package.ptx = ".version 6.3";
   package.host.bytes = {0xc3, 0x90, 0xc3};
   package.host.laneBytes = 0;
@@ -83,6 +84,9 @@ TEST(Package, IsReadAsItWasWritten) {
   EXPECT_EQ(read.stateCount, 7u);
   EXPECT_EQ(read.frameBytes, 28u);
   EXPECT_EQ(read.laneBytes, written.laneBytes);
+  EXPECT_EQ(read.wave.states, 5u);
+  EXPECT_EQ(read.wave.groups, 13u);
+  EXPECT_TRUE(read.wave.hasStacks);
   EXPECT_EQ(read.ptx, written.ptx);
   EXPECT_EQ(read.host.bytes, written.host.bytes);
   EXPECT_EQ(read.host.runLane, 2u);
@@ -114,9 +118,9 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 9;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 9, and this program reads format "
-                            "8: use a newer rtsl-run");
+  newer[8] = 10;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 10, and this program reads format "
+                            "9: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
@@ -144,7 +148,7 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 80, 3)), ""); // an entry after the code
+  EXPECT_NE(refusal(forged(info + 88, 3)), ""); // an entry after the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);

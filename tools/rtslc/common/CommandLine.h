@@ -80,11 +80,15 @@ struct ItemMeasurement;
 using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &,
                                                                      Diagnostics &);
 
+/// What a program costs a GPU: explainGpu. Null in rtslc, too.
+struct GpuRequest;
+using GpuExplainer = std::optional<std::string> (*)(const GpuRequest &, Diagnostics &);
+
 void addNewCommand(CLI::App &app, Action &action);
 void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
 void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
-                       ItemMeasurer measure);
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure,
+                       GpuExplainer explainGpu);
 void addRenderCommand(CLI::App &app, Action &action);
 void addRunCommand(CLI::App &app, Action &action);
 void addTraceCommand(CLI::App &app, Action &action);

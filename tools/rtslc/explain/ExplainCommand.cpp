@@ -1,9 +1,11 @@
 //===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
+#include "ExplainGpu.h"
 #include "Explanation.h"
 #include "MeasureItems.h"
 #include "codegen/driver/SceneProgram.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "tools/common/GpuOptions.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
@@ -23,7 +25,8 @@ struct ExplainOptions {
   CommonOptions common;
   std::vector<std::string> files, overrides;
   std::string output = "-";
-  bool states = false, measure = false, noSavings = false;
+  bool states = false, measure = false, noSavings = false, gpu = false;
+  GpuOptions gpuOptions;
   unsigned pairs = 11;
   std::optional<PictureSize> size; // of pictures that are measured
   std::uint32_t samples = 1;
@@ -70,6 +73,18 @@ std::optional<std::string> explainStates(const ExplainOptions &options, LoadedSc
   return explainSceneStates(*loaded.module, loaded.request,
                             scene::renderOptions(loaded.description.render).maxDepth,
                             loaded.compile, options.format, messages.diagnostics);
+}
+
+std::optional<std::string> explainOnGpu(const ExplainOptions &options, LoadedScene &loaded,
+                                        SceneBuilder buildScene, GpuExplainer explain,
+                                        Messages &messages) {
+  const BuildScene build = [&](const auto &program) {
+    return buildScene(loaded.description, program);
+  };
+  return explain({options.files.front(), *loaded.module, loaded.request, loaded.compile, build,
+                  scene::renderOptions(loaded.description.render).maxDepth,
+                  options.gpuOptions.maxRegisters, options.format == ReportFormat::Json},
+                 messages.diagnostics);
 }
 
 /// Renders the scene with each item kept that something was left out for, and with everything kept.
@@ -137,25 +152,32 @@ std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedSce
   return options.format == ReportFormat::Json ? whole.json() : whole.text();
 }
 
-std::optional<std::string> explainScene(const ExplainOptions &options, SceneBuilder buildScene,
-                                        ItemMeasurer measure, Messages &messages,
-                                        std::vector<std::string> &filesRead) {
-  LoadedScene loaded(options, buildScene, messages, filesRead);
+/// What explains a scene; null in a program that binds no scene.
+struct Explainers {
+  SceneBuilder buildScene;
+  ItemMeasurer measure;
+  GpuExplainer gpu;
+};
+
+std::optional<std::string> explainScene(const ExplainOptions &options, const Explainers &by,
+                                        Messages &messages, std::vector<std::string> &filesRead) {
+  LoadedScene loaded(options, by.buildScene, messages, filesRead);
   if (!loaded.module)
     return std::nullopt;
+  if (options.gpu)
+    return explainOnGpu(options, loaded, by.buildScene, by.gpu, messages);
   return options.states ? explainStates(options, loaded, messages)
-                        : explainNeeds(options, loaded, buildScene, measure, messages);
+                        : explainNeeds(options, loaded, by.buildScene, by.measure, messages);
 }
 
-int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer measure) {
+int explain(const ExplainOptions &options, const Explainers &by) {
   Messages messages(options.common);
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text =
-        isScene(options.files.front())
-            ? explainScene(options, buildScene, measure, messages, filesRead)
-            : explainFiles(options, messages, filesRead);
+    const std::optional<std::string> text = isScene(options.files.front())
+                                                ? explainScene(options, by, messages, filesRead)
+                                                : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       writeFileAtomically(options.output, *text);
@@ -169,8 +191,8 @@ int explain(const ExplainOptions &options, SceneBuilder buildScene, ItemMeasurer
 
 } // namespace
 
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
-                       ItemMeasurer measure) {
+void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure,
+                       GpuExplainer explainGpu) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App *command =
       app.add_subcommand("explain", "explain what the compiler kept, left out and saved, and why");
@@ -182,6 +204,10 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
   command->add_flag("--states", options->states,
                     "show where shaders that trace are cut into states, and what each trace saves "
                     "and rematerialises");
+  command->add_flag("--gpu", options->gpu,
+                    "show what the program costs a GPU: registers, spills, local memory and "
+                    "occupancy, of all of it and of each state, and the bytes of waiting rays");
+  addMaxRegistersOption(*command, options->gpuOptions);
   command->add_flag("--measure", options->measure,
                     "render alternately with each item left out and kept: time, instructions, and "
                     "whether the picture is the same");
@@ -212,19 +238,30 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
   addKeepOption(*command, options->common);
   addMessageOptions(*command, options->common);
   command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain scene.json --measure\n  "
+                  "rtslc explain scene.json --gpu --gpu-arch=sm_90\n  "
                   "rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc "
                   "explain --states --format=svg Glass.rtsl -o states.svg");
-  command->callback([options, buildScene, measure, &action] {
+  const Explainers by = {buildScene, measure, explainGpu};
+  command->callback([options, by, command, &action] {
     const auto scenes = std::count_if(options->files.begin(), options->files.end(), isScene);
     if (scenes > 0 && options->files.size() > 1)
       throw CLI::ValidationError("FILE", "give RTSL files or one scene");
     if (scenes == 0 && !options->overrides.empty())
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
+    if (options->gpu && scenes == 0)
+      throw CLI::ValidationError("--gpu", "explains the program of a scene; give a scene");
     if (scenes == 0 && !options->states)
       throw CLI::ValidationError(
           "FILE", "what a program needs depends on the scene; give a scene, or --states");
     if (scenes == 0 && !options->common.keep.isEmpty())
       throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
+    if (options->gpu && (options->states || options->measure || options->noSavings))
+      throw CLI::ValidationError("--gpu",
+                                 "cannot be combined with --states, --measure or --no-savings");
+    if (options->gpu && options->common.compile.floatingPoint == FloatingPoint::Double)
+      throw CLI::ValidationError("--fp", "shaders on a GPU compute in single precision");
+    if (!options->gpu && command->get_option("--max-registers")->count() > 0)
+      throw CLI::ValidationError("--max-registers", "is for --gpu");
     if (options->states && options->measure)
       throw CLI::ValidationError("--measure", "cannot be combined with --states");
     if (options->states && options->noSavings)
@@ -232,7 +269,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene,
     if (!options->states &&
         (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");
-    action = [options, buildScene, measure] { return explain(*options, buildScene, measure); };
+    action = [options, by] { return explain(*options, by); };
   });
 }
 
