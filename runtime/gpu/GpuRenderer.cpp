@@ -17,9 +17,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Four warps: few enough that the last lanes of a block do not hold many others up.
-constexpr unsigned threadsPerBlock = 128;
-
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }

@@ -15,7 +15,6 @@ namespace {
 constexpr std::uint64_t mostSlots = std::uint64_t(4) << 20;
 /// Of the device's free memory, for samples in flight: one part of four.
 constexpr std::uint64_t memoryShare = 4;
-constexpr unsigned threadsPerBlock = 128;
 
 } // namespace
 

@@ -15,6 +15,10 @@
 
 namespace rtsl::runtime {
 
+/// Of the kernels that render: four warps, few enough that the last lanes of a block do not hold
+/// many others up.
+constexpr unsigned threadsPerBlock = 128;
+
 class GpuWaves {
 public:
   using Address = CudaDevice::Address;

@@ -16,7 +16,7 @@ class ExplainGpu(Case):
         """Each state has a row, with the names of --lane-use."""
         text, _ = self.run_with_fake_driver([RTSLC, "explain", "--gpu", SCENE])
         self.assertIn("assembled by the driver of Fake 1000", text)
-        self.assertRegex(text, r"(?m)^  megakernel +\d+ +40 +8 +40 +75 %$")
+        self.assertRegex(text, r"(?m)^  megakernel +\d+ +40 +8 +40 +38 %$")
         used = json.loads(
             self.run_rtslc(
                 *("render", SCENE, "-o", "a.exr", "--target=host-megakernel", "--lane-use"),

@@ -51,7 +51,7 @@ std::vector<Row> rowsOf(const runtime::Package &package, unsigned maxRegisters,
   return rows;
 }
 
-nlohmann::ordered_json toJson(const Row &row, const std::string &architecture) {
+nlohmann::ordered_json toJson(const Row &row) {
   nlohmann::ordered_json json = {{"name", row.name}, {"ptxInstructions", row.instructions}};
   if (!row.figures)
     return json;
@@ -61,7 +61,7 @@ nlohmann::ordered_json toJson(const Row &row, const std::string &architecture) {
     json["spillStores"] = *row.figures->spillStores;
     json["spillLoads"] = *row.figures->spillLoads;
   }
-  json["occupancy"] = occupancyOf(row.figures->registers, architecture);
+  json["occupancy"] = row.figures->occupancy;
   return json;
 }
 
@@ -71,9 +71,9 @@ std::string jsonOf(const GpuExplanation &of) {
     json["assembler"] = of.assembler;
   if (of.maxRegisters)
     json["maxRegisters"] = of.maxRegisters;
-  json["megakernel"] = toJson(of.megakernel, of.architecture);
+  json["megakernel"] = toJson(of.megakernel);
   for (const Row &step : of.steps)
-    json["steps"].push_back(toJson(step, of.architecture));
+    json["steps"].push_back(toJson(step));
   json["laneBytes"] = of.laneBytes;
   json["depth"] = of.maxDepth;
   json["frameBytes"] = of.frameBytes;
@@ -82,7 +82,7 @@ std::string jsonOf(const GpuExplanation &of) {
   return json.dump(2) + "\n";
 }
 
-std::string textOf(const Row &row, std::size_t width, const std::string &architecture) {
+std::string textOf(const Row &row, std::size_t width) {
   if (!row.figures)
     return fmt::format("  {:{}}  {:>6}\n", row.name, width, row.instructions);
   const KernelFigures &figures = *row.figures;
@@ -90,7 +90,7 @@ std::string textOf(const Row &row, std::size_t width, const std::string &archite
       figures.spillStores ? fmt::format("{}", *figures.spillStores) : std::string("?");
   return fmt::format("  {:{}}  {:>6}  {:>9}  {:>7}  {:>11}  {:>7.0f} %\n", row.name, width,
                      row.instructions, figures.registers, spilled, figures.localBytes,
-                     100 * occupancyOf(figures.registers, architecture));
+                     100 * figures.occupancy);
 }
 
 std::string textOf(const GpuExplanation &of) {
@@ -103,10 +103,10 @@ std::string textOf(const GpuExplanation &of) {
   if (!of.assembler.empty())
     text += fmt::format("  {:>9}  {:>7}  {:>11}  {:>9}", "registers", "spilled", "local bytes",
                         "occupancy");
-  text += "\n" + textOf(of.megakernel, width, of.architecture);
+  text += "\n" + textOf(of.megakernel, width);
   text += "each step alone, as in a wavefront:\n";
   for (const Row &step : of.steps)
-    text += textOf(step, width, of.architecture);
+    text += textOf(step, width);
   text += fmt::format("\nRays that wait for others take {} bytes a lane, for a depth of {}; the "
                       "largest frame has {} bytes.\nA sample in flight of a wavefront takes {} "
                       "bytes{}.\n",

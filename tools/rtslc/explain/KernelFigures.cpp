@@ -2,6 +2,7 @@
 #include "KernelFigures.h"
 
 #include "runtime/gpu/CudaDevice.h"
+#include "runtime/gpu/GpuWaves.h"
 #include "support/Error.h"
 
 #include <fcntl.h>
@@ -83,8 +84,10 @@ bool AssembledKernels::byDriver(const std::string &ptx, const std::vector<std::s
     const runtime::CudaDevice::Module code = device.compile(ptx.c_str(), maxRegisters);
     for (const std::string &one : names) {
       const runtime::CudaDevice::Kernel kernel = device.kernel(one.c_str(), code);
-      figures.push_back(
-          {kernel.registers, kernel.localBytes, kernel.spillStores, kernel.spillLoads});
+      const unsigned running = unsigned(device.blocksAtOnce(kernel, runtime::threadsPerBlock)) *
+                               runtime::threadsPerBlock;
+      figures.push_back({kernel.registers, kernel.localBytes, kernel.spillStores, kernel.spillLoads,
+                         double(running) / device.mostThreads()});
     }
     device.unload(code);
     name = fmt::format("the driver of {}", device.name());
@@ -112,8 +115,10 @@ bool AssembledKernels::byPtxas(const std::string &ptx, const std::vector<std::st
     const std::optional<std::string> log = outputOf(command, folder / "log");
     if (!log)
       continue;
-    for (const std::string &one : names)
+    for (const std::string &one : names) {
       figures.push_back(figuresInLog(*log, one).value_or(KernelFigures()));
+      figures.back().occupancy = occupancyOf(figures.back().registers, architecture);
+    }
     name = "ptxas";
     return true;
   }
@@ -153,7 +158,7 @@ unsigned instructionsInPtx(const std::string &ptx, const std::string &kernel) {
 
 double occupancyOf(int registers, const std::string &architecture) {
   constexpr int registersOfMultiprocessor = 65536, registersAtOnce = 256, warpSize = 32,
-                warpsOfBlock = 4;
+                warpsOfBlock = int(runtime::threadsPerBlock) / warpSize;
   const int number = std::atoi(architecture.c_str() + 3); // sm_90
   const int threads = number == 75                                    ? 1024
                       : number == 86 || number == 89 || number >= 120 ? 1536

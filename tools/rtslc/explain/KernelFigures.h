@@ -13,6 +13,7 @@ struct KernelFigures {
   int registers = 0;
   int localBytes = 0;                         // arrays, and registers that are spilled
   std::optional<int> spillStores, spillLoads; // bytes, in the code
+  double occupancy = 0; // the share of the threads of a multiprocessor that run at once
 };
 
 /// PTX for `architecture` (sm_90) as machine code: by the driver of the first GPU, or by NVIDIA's
@@ -44,8 +45,9 @@ std::optional<KernelFigures> figuresInLog(const std::string &log, const std::str
 /// The instructions of a kernel in PTX, without the functions that it calls.
 unsigned instructionsInPtx(const std::string &ptx, const std::string &kernel);
 
-/// The share of the threads of a multiprocessor that run at once, in blocks of 128, by the number
-/// of registers (CUDA C++ Programming Guide, "Compute Capabilities").
+/// The share of the threads of a multiprocessor that run at once, in blocks of
+/// runtime::threadsPerBlock, by the number of registers (CUDA C++ Programming Guide, "Compute
+/// Capabilities").
 double occupancyOf(int registers, const std::string &architecture);
 
 } // namespace rtsl::tool
