@@ -37,9 +37,14 @@ public:
       : description(description), program(*program), variables(description, *program),
         variablePlaces(description), buffers(buffers), scene(std::move(program)),
         files(description, runtime::requestOf(this->program)),
-        images(description, [this](const std::string &className) {
-          return readsOfImages(className, "levelStarts");
-        }) {}
+        images(
+            description,
+            [this](const std::string &className) {
+              return readsOfImages(className, "levelStarts");
+            },
+            [this](const std::string &className, const std::string &member) {
+              return channelsOfImages(className, member);
+            }) {}
 
   Scene build() {
     attempt([&] {
@@ -246,6 +251,13 @@ private:
     const ClassInfo *sampler = program.find(className);
     const MemberInfo *member = sampler ? find(sampler->members, name) : nullptr;
     return member && member->isRead;
+  }
+
+  /// Which channels the program reads of the images of a member.
+  std::uint32_t channelsOfImages(const std::string &className, const std::string &name) const {
+    const ClassInfo *info = program.find(className);
+    const MemberInfo *member = info ? find(info->members, name) : nullptr;
+    return member ? member->imageChannels : MemberInfo::allChannels;
   }
 
   /// Equal images are one object.

@@ -45,6 +45,27 @@ static void defineMeshAttributes(linking::LinkContext &context) {
                                mlir::Builder(context.ir.getContext()).getDenseI32ArrayAttr(words));
 }
 
+/// Does a member refer to images?
+static bool holdsImages(const runtime::ValueType &type) {
+  return type.kind == runtime::ValueType::Kind::Reference && isSampler(type.className);
+}
+
+/// Records what the images of a member need not have.
+static void noteChannels(const std::string &className, const runtime::MemberInfo &member,
+                         Findings &findings) {
+  std::string read;
+  for (int channel = 0; channel < 4; ++channel)
+    if (member.imageChannels >> channel & 1)
+      read += std::string(read.empty() ? "" : ", ") + "rgba"[channel];
+  if (member.imageChannels != runtime::MemberInfo::allChannels)
+    findings.push_back(
+        {Item::Images,
+         "channels of " + className + "." + member.name,
+         false,
+         read.empty() ? "nothing reads its colors" : "nothing but " + read + " is read",
+         {}});
+}
+
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
           std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
           Findings *findings, FloatingPoint floatingPoint) {
@@ -61,6 +82,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::deriveHitErrors(context);
   if (!request.hasCounts && !request.keep.has(Item::Counts))
     ir::attr::singlePrimitives.set(ir);
+  const linking::ImageChannels imageChannels = linking::findImageChannels(context);
   linking::resolveSlots(context);
   linking::dropUnreached(context);
   linking::noteClasses(context);
@@ -83,9 +105,14 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     runtime::ClassInfo info = reflect(*linked.info, linked.record, linked.parameters, required);
     info.id = linked.id;
     info.needs = needsOfClasses[index];
-    for (runtime::MemberInfo &member : info.members)
+    for (runtime::MemberInfo &member : info.members) {
       member.isRead = membersOfProgram.contains(member.name) ||
                       (request.keep.has(Item::Images) && isSampler(info.name));
+      if (holdsImages(member.type) && !request.keep.has(Item::Images)) {
+        member.imageChannels = linking::channelsOf(imageChannels, *linked.info, member.name);
+        noteChannels(info.name, member, context.findings);
+      }
+    }
     info.attributes = linking::meshAttributesOf(context, info.name);
     if (info.root == "rt_Material")
       info.anyHit = linking::anyHitTypes(context, linked);

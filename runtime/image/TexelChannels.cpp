@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <utility>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -70,6 +72,39 @@ void ChannelCodec::encode(double value, bool isAlpha, std::uint8_t *bytes) const
     store(static_cast<float>(value), bytes);
     break;
   }
+}
+
+void dropChannels(Texels &texels, std::uint32_t read) {
+  constexpr std::uint32_t colors = 7, alpha = 8;
+  if (texels.channels == 1)
+    return;
+  const bool hasAlpha = read & alpha;
+  std::uint32_t first = 0; // the color that is kept
+  if (texels.channels == 4) {
+    while (first < 3 && !(read >> first & 1))
+      ++first;
+    if ((read & colors & ~(1u << first)) != 0)
+      return;
+    first %= 3; // none is read: any
+  } else if (hasAlpha) {
+    return; // grey and alpha
+  }
+  const std::uint32_t channels = hasAlpha ? 2 : 1, bytes = bytesOf(texels.format);
+  const std::size_t count = std::size_t(texels.width) * texels.height * texels.depth;
+  const std::size_t texelBytes = std::size_t(texels.channels) * bytes;
+  std::vector<std::uint32_t> words((count * channels * bytes + 3) / 4);
+  const auto *from = reinterpret_cast<const std::uint8_t *>(texels.words.data());
+  auto *to = reinterpret_cast<std::uint8_t *>(words.data());
+  for (std::size_t i = 0; i < count; ++i, from += texelBytes) {
+    std::memcpy(to, from + std::size_t(first) * bytes, bytes);
+    to += bytes;
+    if (hasAlpha) {
+      std::memcpy(to, from + texelBytes - bytes, bytes);
+      to += bytes;
+    }
+  }
+  texels.words = std::move(words);
+  texels.channels = channels;
 }
 
 } // namespace rtsl::runtime

@@ -79,6 +79,11 @@ Texels readRawTexels(const std::string &path, Texels shape);
 /// Sets texels that are not finite to 0; returns how many channels of texels were.
 std::size_t dropNotFinite(Texels &texels);
 
+/// Leaves out channels that nothing reads, before levels are added: `read` has bits 0 to 3 for red,
+/// green, blue and alpha. What is read has the same values and bits. An image of which one color is
+/// read becomes a grey one of that color, with alpha if that is read, too; others stay as they are.
+void dropChannels(Texels &texels, std::uint32_t read);
+
 /// Adds levels until one has a single texel. A texel is the mean of the area that it covers in the
 /// level before, of linear values, rounded to the format. Throws OutOfRange, like texelsOf.
 void addLevels(Texels &texels);

@@ -43,6 +43,10 @@ struct MemberInfo {
   bool hasDefault = false; // for a reference: it may be empty
   bool isRequired = false; // no object may be without a value (codegen/link/RequiredMembers.h)
   bool isRead = true;      // by some function of the program
+  /// Of images that a member refers to: which channels the program reads, bits 0 to 3 for red,
+  /// green, blue and alpha.
+  static constexpr std::uint32_t allChannels = 15;
+  std::uint32_t imageChannels = allChannels;
 };
 
 /// A scratch member that materials read of meshes: one of their named attributes.

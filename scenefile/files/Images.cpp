@@ -242,25 +242,89 @@ ImageDescription readImage(const JsonValue &image,
   return ImageReader(image, resolve).read();
 }
 
+namespace {
+
+using ChannelsOfMember =
+    std::function<std::uint32_t(const std::string &className, const std::string &member)>;
+
+/// Which channels are read of the images of a scene, in whatever members they are.
+class ImageChannels {
+public:
+  ImageChannels(const SceneDescription &description, const ChannelsOfMember &channelsOf)
+      : description(description), channelsOf(channelsOf) {
+    for (const auto &[key, value] : description.root->members)
+      if (key.text != "images")
+        visit(value, all);
+    for (const auto &value : description.placedValues)
+      visit(*value, all);
+  }
+
+  std::uint32_t of(const JsonValue &image) const {
+    const auto found = channels.find(&image);
+    return found == channels.end() ? all : found->second;
+  }
+
+private:
+  static constexpr std::uint32_t all = runtime::MemberInfo::allChannels;
+
+  /// A value somewhere in the scene. `read`: the channels that are read if it is an image.
+  void visit(const JsonValue &value, std::uint32_t read) {
+    if (value.kind == Kind::String) {
+      if (const auto named = description.images.find(value.string);
+          named != description.images.end())
+        channels[named->second.image] |= read;
+    } else if (isImage(value)) {
+      channels[&value] |= read;
+    } else if (value.kind == Kind::Array) {
+      for (const JsonValue &element : value.elements)
+        visit(element, read);
+    } else if (value.kind == Kind::Object) {
+      const JsonValue *className = value.find("class");
+      const bool isObject = className && className->kind == Kind::String;
+      for (const auto &[key, member] : value.members)
+        visit(member, isObject && key.text != "constructor"
+                          ? channelsOf(className->string, key.text)
+                          : all);
+    }
+  }
+
+  const SceneDescription &description;
+  const ChannelsOfMember &channelsOf;
+  std::map<const JsonValue *, std::uint32_t> channels;
+};
+
+/// An image, and what the program reads of it.
+struct ReadImage {
+  const ImageDescription *description;
+  bool withLevels;
+  std::uint32_t channels;
+};
+
+} // namespace
+
 ImageFiles::ImageFiles(const SceneDescription &description,
-                       const std::function<bool(const std::string &)> &withLevels) {
+                       const std::function<bool(const std::string &)> &withLevels,
+                       const ChannelsOfMember &channelsOf) {
+  const ImageChannels channels(description, channelsOf);
   std::map<std::string, std::size_t> known;
-  std::vector<std::pair<const ImageDescription *, bool>> images; // with levels?
+  std::vector<ReadImage> images;
   for (const auto &[json, image] : description.imageValues) {
     const std::string className = imageClass(*json);
     const auto [found, isNew] = known.emplace(identity(image, className), images.size());
     if (isNew)
-      images.emplace_back(&image,
-                          image.sampling.filter >= Filter::Trilinear && withLevels(className));
+      images.push_back(
+          {&image, image.sampling.filter >= Filter::Trilinear && withLevels(className), 0});
+    images[found->second].channels |= channels.of(*json);
     numbers[json] = found->second;
   }
   results.resize(images.size());
   forEachOnThreads(0, images.size(), [&](std::size_t i) {
     Result &result = results[i];
     try {
-      result.texels = load(*images[i].first, description);
+      result.texels = load(*images[i].description, description);
       result.notFinite = runtime::dropNotFinite(result.texels);
-      if (images[i].second)
+      runtime::dropChannels(result.texels, images[i].channels);
+      if (images[i].withLevels)
         runtime::addLevels(result.texels);
     } catch (...) {
       result.failure = std::current_exception();

@@ -53,9 +53,12 @@ ImageDescription readImage(const JsonValue &image,
 /// Reads the files of all images of a scene, on all cores. Equal images are read once.
 class ImageFiles {
 public:
-  /// `withLevels`: whether the program reads levels of an image of this class.
+  /// `withLevels`: whether the program reads levels of an image of this class. `channelsOf`: which
+  /// channels it reads of the images of a member of a class, as MemberInfo::imageChannels.
   ImageFiles(const SceneDescription &description,
-             const std::function<bool(const std::string &className)> &withLevels);
+             const std::function<bool(const std::string &className)> &withLevels,
+             const std::function<std::uint32_t(const std::string &className,
+                                               const std::string &member)> &channelsOf);
 
   /// The number of an image. Equal images have the same.
   std::size_t numberOf(const JsonValue &image) const { return numbers.at(&image); }

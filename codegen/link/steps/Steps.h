@@ -221,6 +221,15 @@ std::uint32_t findNeeds(const LinkContext &context);
 /// ClassInfo::needs of each of the context's classes. `ofProgram`: findNeeds.
 std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::uint32_t ofProgram);
 
+/// What is read of the images that members hold, as MemberInfo::imageChannels: by the class of the
+/// object as the reader knows it, which may be of a derived class, and the member's name.
+using ImageChannels = std::map<std::pair<std::string, std::string>, std::uint32_t>;
+/// Before resolveSlots.
+ImageChannels findImageChannels(const LinkContext &context);
+/// Of the objects of a class.
+std::uint32_t channelsOf(const ImageChannels &channels, const typed::Class &info,
+                         const std::string &member);
+
 /// A method as a class of the program defines it: `@Checker.lookup`. Null if it does not.
 mlir::func::FuncOp findMethod(const LinkContext &context, const LinkedClass &linked,
                               const std::string &method);

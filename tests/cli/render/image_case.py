@@ -57,6 +57,30 @@ class Plain : rt_RayGeneration {
     print(image.levels(), image.sample(rt_ScreenCoord));
   }
 };
+// Some channels of images.
+class Channels : rt_RayGeneration {
+  public sampler2D red;
+  public sampler2D alpha;
+  public sampler2D blueAndAlpha;
+  public sampler2D greens[2];
+  public sampler2D sizeOnly;
+  public sampler2D redAndGreen;
+  public sampler2D passed;
+  public optional sampler2D missing;
+  float redOf(sampler2D image, vec2 uv) { return image.sample(uv).r; }
+  void generate() {
+    vec2 uv = 3.0 * rt_ScreenCoord - 1.0;
+    float lod = 4.0 * rt_ScreenCoord.x;
+    ivec2 at = ivec2(rt_LaunchIndex.xy);
+    vec4 value = 0.5 * blueAndAlpha.sample(uv, lod);
+    rt_SampleColor =
+        color(red.sample(uv).r + 2.0 * red.load(at, 1).x + 4.0 * alpha.sample(uv, lod).a,
+              value.b + 2.0 * value.wz.x + 4.0 * redOf(passed, uv) + float(sizeOnly.size().x),
+              greens[at.x & 1].sampleGrad(uv, vec2(0.1, 0.0), vec2(0.0, 0.4)).g +
+                  2.0 * dot(redAndGreen.sample(uv).rg, vec2(1.0, 4.0)) +
+                  (missing ? missing.sample(uv).b : 7.0));
+  }
+};
 // Images by an index.
 class Bindless : rt_RayGeneration {
   public sampler2D images[];

@@ -4,6 +4,7 @@ files that are wrong."""
 import json
 import math
 import random
+import re
 import struct
 import unittest
 
@@ -248,6 +249,52 @@ class Images(ImageCase):
             }
         )
         self.assertEqual(self.printed()[0][2], 4)
+
+    def test_channels_are_kept_only_where_they_are_read(self):
+        names = ("red", "alpha", "blueAndAlpha", "sizeOnly", "redAndGreen", "passed")
+        for bits, channels in ((8, 4), (16, 4), (8, 2)):
+            texels = self.integers(9, 7, channels, 2**bits - 1)
+            self.write("image.png", png(9, 7, texels, bits, channels))
+            image = {"file": "image.png"}
+            generation = {
+                "class": "Channels",
+                # Equal images would be one.
+                **{name: {**image, "anisotropy": i + 1} for i, name in enumerate(names)},
+                "greens": ["first", "second"],
+            }
+            images = {"first": {**image, "wrap": "clamp"}, "second": {**image, "wrap": "mirror"}}
+            self.expect_the_bits_of_all_channels(generation, images)
+        self.assertEqual(
+            self.channels_left_out(),
+            {
+                "red": "r",
+                "alpha": "a",
+                "blueAndAlpha": "b, a",
+                "greens": "g",
+                "sizeOnly": None,
+                "redAndGreen": "r, g",
+                "missing": None,
+            },
+        )
+        # An image that two members share has what either of them reads.
+        self.expect_the_bits_of_all_channels({**generation, "red": "first"}, images)
+
+    def expect_the_bits_of_all_channels(self, generation, images):
+        render = {"engine": "programs", "size": [12, 8], "spp": 1}
+        self.scene(generation, images=images, render=render)
+        for name, options in (("kept.exr", ["--keep=images"]), ("read.exr", [])):
+            self.run_rtslc("render", "scene.json", "-q", "-o", name, "-O1", *options)
+        self.assert_same_bits("read.exr", "kept.exr")
+
+    def channels_left_out(self):
+        text, _ = self.run_rtslc("explain", "scene.json", "--json", "--no-savings")
+        found = {}
+        for item in json.loads(text)["items"]:
+            for entry in item["entries"]:
+                if entry["subject"].startswith("channels of Channels."):
+                    read = re.fullmatch("nothing but (.*) is read", entry["reason"])
+                    found[entry["subject"].split(".")[1]] = read[1] if read else None
+        return found
 
     def test_what_images_have_in_common_is_constant(self):
         self.write("image.png", png(8, 8, self.integers(8, 8, 3, 255)))
