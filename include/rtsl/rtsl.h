@@ -34,6 +34,20 @@ const char *rtslError(void);
 RtslScene *rtslSceneCreate(const RtslShaders *shaders);
 void rtslSceneDestroy(RtslScene *scene);
 
+/* The scene of a scene file (docs/scene-format.md) with all that belongs to it: files that it
+ * includes, models (glTF, OBJ), meshes, images and buffers. Its classes are those of the shaders.
+ * `settings` are `count` values that replace those of the file, as --set of `rtslc render` gives
+ * them: "camera=side" is one of its cameras by name, "frame=12" the frame that its key frames are
+ * of, "nodes.car.transform.translate=[0, 1, 0]" any other value. More can be added to the scene.
+ * A file with `passes` fails. */
+RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
+                         size_t count);
+/* Reads the file of the scene again, with these settings in place of those before, such as the next
+ * frame. What was added to it since, and its numbers of objects and the like, are no longer valid.
+ * Nothing is compiled; and where the meshes and instances are as many as before, trees keep their
+ * shapes. If it fails, the scene is as it was. */
+int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count);
+
 /* Sets, by name, constructor arguments and public members for the next rtslSceneAddObject. A
  * value is `count` numbers (a vector, a color, a matrix by columns, an array), or an object. */
 int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count);
@@ -171,6 +185,9 @@ int rtslMoveNode(RtslScene *scene, RtslNode node);
  * mesh stays as it was. */
 float *rtslMapVertices(RtslScene *scene, int32_t mesh);
 int rtslUnmapVertices(RtslScene *scene, int32_t mesh);
+/* The first object of this name: an image, texture, material or helper of a scene file, or of the
+ * class, if it was created without a name. */
+RtslObject rtslSceneFind(const RtslScene *scene, const char *name);
 /* Sets a public member of an object that exists, but of no primitive. */
 int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const double *numbers,
                   size_t count);
@@ -202,6 +219,9 @@ typedef struct RtslRenderSettings {
 /* 960 x 540, 16 samples, depth 8, seed 1, all cores, one slice. */
 RtslRenderSettings rtslRenderDefaults(void);
 
+/* The same but for what the file of the scene (rtslSceneLoad) says. */
+RtslRenderSettings rtslSceneSettings(const RtslScene *scene);
+
 /* Runs the ray generation once for each sample, and makes no picture: what it computes is in its
  * output buffers. One rendering of a scene after the other uses the trees of the one before. */
 int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings);
@@ -210,6 +230,9 @@ int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings);
  * top, with as many channels as the shaders' colors have (rtslSceneChannels). */
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels);
 uint32_t rtslSceneChannels(const RtslScene *scene);
+/* The elements of an output buffer of the ray generation, which launches write, and its three
+ * sizes; those that it does not have are 1. They stay where they are as long as the scene. */
+void *rtslSceneOutput(RtslScene *scene, const char *member, uint32_t sizes[3]);
 /* Renders and writes an .exr or .png. */
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path);
 

@@ -15,6 +15,7 @@
 struct RtslScene {
   explicit RtslScene(std::shared_ptr<const rtsl::runtime::Program> program)
       : scene(std::move(program)) {}
+  explicit RtslScene(rtsl::runtime::Scene &&scene) : scene(std::move(scene)) {}
 
   rtsl::runtime::Scene scene;
   std::vector<rtsl::runtime::NamedValue> arguments, members; // of the next object
@@ -63,6 +64,16 @@ struct RtslScene {
   mutable std::unique_ptr<rtsl::runtime::Renderer> renderer;
   mutable RtslRenderSettings settings{};
   mutable bool hadPicture = false;
+
+  //===--------------------------------------------------------------------===//
+  // Scene files (SceneFile.cpp)
+  //===--------------------------------------------------------------------===//
+
+  std::string file;                                      // empty: the scene is of none
+  std::shared_ptr<const rtsl::runtime::Program> program; // of such a scene
+  RtslRenderSettings ofFile = rtslRenderDefaults();
+  /// Trees of the scene before it was read again, for the next rendering; or null.
+  mutable std::shared_ptr<rtsl::runtime::KeptTrees> kept;
 };
 
 namespace rtsl::c {

@@ -49,9 +49,12 @@ runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings
       throw;
     }
   } else {
-    scene->renderer = std::make_unique<runtime::Renderer>(
-        scene->scene, optionsOf(wanted, wantsPicture),
-        scene->renderer ? scene->renderer->hostScene() : nullptr);
+    const runtime::RenderOptions options = optionsOf(wanted, wantsPicture);
+    scene->renderer =
+        scene->renderer ? std::make_unique<runtime::Renderer>(scene->scene, options,
+                                                              scene->renderer->hostScene())
+                        : std::make_unique<runtime::Renderer>(scene->scene, options,
+                                                              std::exchange(scene->kept, nullptr));
     scene->settings = wanted;
     scene->hadPicture = wantsPicture;
   }

@@ -5,6 +5,7 @@
 #include "runtime/scene/Geometry.h"
 #include "runtime/scene/Objects.h"
 
+#include <algorithm>
 #include <optional>
 #include <unordered_set>
 
@@ -84,6 +85,13 @@ const ClassInfo &Scene::classOf(RtslRef object) const {
 }
 const std::string &Scene::nameOf(RtslRef object) const {
   return self->objects.at(object).name;
+}
+
+RtslRef Scene::find(const std::string &name) const {
+  const std::vector<Objects::Object> &all = self->objects.all();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Objects::Object &one) { return one.name == name; });
+  return found == all.end() ? 0 : found->reference;
 }
 
 std::size_t Scene::recordBytes() const {

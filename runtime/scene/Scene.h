@@ -116,6 +116,8 @@ public:
   /// What a program can be bound to. Records stay where they are until something is added.
   SceneFacts facts() const;
   const std::string &nameOf(RtslRef object) const;
+  /// The first object of this name; 0: there is none.
+  RtslRef find(const std::string &name) const;
 
   const std::vector<Warning> &warnings() const;
   void addWarning(Warning warning);

@@ -218,6 +218,38 @@ static void images(const char *file, int texels) {
   rtslSceneDestroy(scene);
 }
 
+static void picture(RtslScene *scene, const char *file) {
+  const RtslRenderSettings settings = rtslSceneSettings(scene);
+  need(rtslRenderToFile(scene, &settings, file), file);
+}
+
+/* A scene of a file, at two frames and by two cameras, and another one that writes a buffer. */
+static void files(void) {
+  const char *first[] = {"camera=side", "frame=1"}, *second[] = {"camera=front", "frame=2"};
+  const char *nowhere = "camera=nowhere";
+  const double level = 0.25;
+  uint32_t sizes[3];
+  const float *found;
+  RtslScene *scene = rtslSceneLoad(launches_shaders(), "scene.json", first, 2);
+  RtslRenderSettings settings;
+  need(scene != NULL, "a scene of a file");
+  picture(scene, "first.exr");
+  need(rtslSetMember(scene, rtslSceneFind(scene, "clay"), "level", &level, 1), "a named object");
+  picture(scene, "level.exr");
+  need(rtslSceneReload(scene, second, 2), "another frame");
+  picture(scene, "second.exr");
+  need(!rtslSceneReload(scene, &nowhere, 1), "a setting of a camera that is not there");
+  picture(scene, "same.exr"); /* after a mistake the scene is as it was */
+  rtslSceneDestroy(scene);
+  need((scene = rtslSceneLoad(launches_shaders(), "rays.json", NULL, 0)) != NULL, "a launch");
+  settings = rtslSceneSettings(scene);
+  need(rtslLaunch(scene, &settings), "a launch of a file");
+  need((found = (const float *)rtslSceneOutput(scene, "found", sizes)) != NULL, "an output");
+  need(sizes[0] == 1 && sizes[1] == 2 && sizes[2] == 3, "its sizes");
+  need(found[0] == 19, "a distance");
+  rtslSceneDestroy(scene);
+}
+
 static void mistakes(void) {
   const Places places = {0, 0, 0, 1};
   const uint32_t sizes[] = {3, 1, 1};
@@ -226,7 +258,8 @@ static void mistakes(void) {
   RtslRenderSettings settings = rtslRenderDefaults();
   World world = make(&places);
   RtslScene *scene = world.scene;
-  const char *nowhere = "nowhere.png";
+  const char *nowhere = "nowhere.png", *setting = "camera=nowhere";
+  uint32_t found[3];
   const float texel = 1;
   float *positions;
 #define EXPECT_FAILURE(call)                                                                       \
@@ -262,6 +295,12 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 1, 0, NULL));
   EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 2, 0, NULL));
   EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 3, NULL));
+  EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "nowhere.json", NULL, 0));
+  EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "passes.json", NULL, 0));
+  EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "scene.json", &setting, 1));
+  EXPECT_FAILURE(rtslSceneReload(scene, NULL, 0));
+  EXPECT_FAILURE(rtslSceneFind(scene, "nothing"));
+  EXPECT_FAILURE(rtslSceneOutput(scene, "nothing", found));
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
   rtslSceneDestroy(scene);
@@ -273,6 +312,7 @@ int main(int count, char **arguments) {
   changes();
   passes();
   images(arguments[1], atoi(arguments[2]));
+  files();
   mistakes();
   return 0;
 }

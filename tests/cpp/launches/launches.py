@@ -2,8 +2,11 @@
 """launches.py RTSLC SOURCE LAUNCHES TURNTABLE: runs the test of launches in C, checks the messages
 of its mistakes, and compares pictures of the turntable, whose trees follow what moves, with those
 of scenes that `rtslc render` makes."""
+import base64
 import json
+import os
 import pathlib
+import struct
 import sys
 import tempfile
 
@@ -34,10 +37,98 @@ WORDS = (
     "there is no file `nowhere.png`",
     "a `sampler2D` has one file",
     "of 1, 2 or 4 channels",
+    "nowhere.json",
+    "the scene has `passes`",
+    "nowhere",
+    "the scene is of no file",
+    "no object of the scene is named `nothing`",
+    "no output buffer `nothing`",
 )
-said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
-for line, word in zip(said, WORDS, strict=True):
-    assert word in line, (word, said)
+
+
+def write_scenes(folder):
+    """The scenes that the test loads: one of cameras, frames, an included file and a part of a
+    model, one that writes a buffer, and one of passes."""
+    shaders = f"{source}/tests/cpp/launches/Launches.rtsl"
+    start = {"rtsl": 1, "import": [shaders], "render": {"size": [48, 32], "spp": 2}}
+    triangle = struct.pack("<9f", -1, -1, 0, 1, -1, 0.3, 0, 1.5, 0)
+    model = {
+        "asset": {"version": "2.0"},
+        "buffers": [
+            {
+                "byteLength": len(triangle),
+                "uri": "data:application/octet-stream;base64,"
+                + base64.b64encode(triangle).decode(),
+            }
+        ],
+        "bufferViews": [{"buffer": 0, "byteLength": len(triangle)}],
+        "accessors": [
+            {
+                "bufferView": 0,
+                "componentType": 5126,
+                "count": 3,
+                "type": "VEC3",
+                "min": [-1, -1, 0],
+                "max": [1, 1.5, 0.3],
+            }
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    }
+    ball = {"primitive": {"class": "Ball"}, "material": "clay"}
+    moving = {"translate": {"frames": {"0": [0, 0, 0], "4": [2, 1, 0]}}}
+    part = {"mesh": "model.gltf", "part": "meshes.0.primitives.0", "material": "clay"}
+    measure = {"class": "Measure", "steps": [0.5], "from": [0, 0, 20], "hits": [0]}
+    scenes = {
+        "model.gltf": model,
+        "materials.json": {"rtsl": 1, "materials": {"clay": {"class": "Lit"}}},
+        "scene.json": {
+            **start,
+            "include": ["materials.json"],
+            "cameras": {"front": {"class": "Eye"}, "side": {"class": "Eye", "eye": [1, 0, 8]}},
+            "nodes": {
+                "ball": ball,
+                "part": part,
+                "all": {
+                    "children": [
+                        {"child": "ball", "transform": moving},
+                        {"child": "part", "transform": moving},
+                        {"child": "part", "transform": {"translate": [-2, 0, 0]}},
+                    ]
+                },
+            },
+            "root": "all",
+        },
+        "rays.json": {
+            **start,
+            "materials": {"clay": {"class": "Marked"}},
+            "objects": [ball],
+            "rayGeneration": {**measure, "found": [[[[0, 0]] * 3] * 2]},
+            "render": {"engine": "programs", "size": [3, 2, 1], "spp": 1},
+        },
+        "passes.json": {**start, "passes": [{"rayGeneration": measure}] * 2},
+    }
+    for name, document in scenes.items():
+        (folder / name).write_text(json.dumps(document))
+
+
+def compare(picture, *options):
+    """The picture has the bits of what `rtslc render` makes of the scene."""
+    run(rtslc, "render", "scene.json", "-o", "expected.exr", "-q", *options)
+    said = json.loads(run(rtslc, "compare", picture, "expected.exr", "--json"))
+    assert said["rmse"] == 0, (picture, said)
+
+
+with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
+    write_scenes(pathlib.Path(name))
+    os.chdir(name)
+    said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
+    for line, word in zip(said, WORDS, strict=True):
+        assert word in line, (word, said)
+    compare("first.exr", "--camera=side", "--frame=1")
+    compare("level.exr", "--camera=side", "--frame=1", "--set=materials.clay.level=0.25")
+    compare("second.exr", "--camera=front", "--frame=2")
+    compare("same.exr", "--camera=front", "--frame=2")
+    os.chdir(source)
 
 scene = {
     "rtsl": 1,

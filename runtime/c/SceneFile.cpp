@@ -1,0 +1,108 @@
+//===- SceneFile.cpp - scenes of scene files, for C -----------------------===//
+#include "scenefile/SceneFile.h"
+#include "runtime/c/Handle.h"
+#include "support/ErrorMessages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace runtime = rtsl::runtime;
+namespace scene = rtsl::scene;
+using rtsl::c::guarded;
+
+namespace {
+
+/// The errors of a file, each with its place, one a line.
+rtsl::Error inLines(const rtsl::Error &error) {
+  std::string lines;
+  const auto add = [&](const rtsl::Error &one) {
+    const bool hasLine = one.place && one.place->line != 0;
+    lines += lines.empty() ? "" : "\n";
+    lines += hasLine ? fmt::format("{}:{}:{}: {}", one.place->file, one.place->line,
+                                   one.place->column, one.what())
+                     : one.what();
+  };
+  add(error);
+  for (const rtsl::Error &further : error.further)
+    add(further);
+  return rtsl::Error(rtsl::Message{error.code, lines});
+}
+
+/// What a file gives with these settings.
+RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std::string &file,
+               const char *const *settings, std::size_t count) {
+  try {
+    const scene::SceneDescription description =
+        scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
+    if (scene::launchCount(description) != 1)
+      throw rtsl::Error(rtsl::message::passesInC());
+    const scene::RenderSettings &render = description.render;
+    RtslScene made(scene::buildScene(description, program));
+    made.file = file;
+    made.program = program;
+    made.ofFile = {render.width,
+                   render.height / render.slices,
+                   render.samplesPerPixel,
+                   render.depth,
+                   render.seed,
+                   0,
+                   render.slices};
+    return made;
+  } catch (const rtsl::Error &error) {
+    throw inLines(error);
+  }
+}
+
+} // namespace
+
+extern "C" {
+
+RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
+                         size_t count) {
+  return guarded<RtslScene *>(nullptr, [&] {
+    if (!shaders)
+      throw rtsl::Error(rtsl::message::noShaders());
+    return new RtslScene(load(rtsl::program(shaders), file, settings, count));
+  });
+}
+
+int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count) {
+  return guarded(0, [&] {
+    if (scene->file.empty())
+      throw rtsl::Error(rtsl::message::sceneHasNoFile());
+    RtslScene next = load(scene->program, scene->file, settings, count);
+    next.kept = scene->renderer ? scene->renderer->takeTrees() : scene->kept;
+    scene->renderer.reset(); // before the scene that it renders
+    *scene = std::move(next);
+    return 1;
+  });
+}
+
+RtslRenderSettings rtslSceneSettings(const RtslScene *scene) {
+  return scene->ofFile;
+}
+
+RtslObject rtslSceneFind(const RtslScene *scene, const char *name) {
+  return guarded<RtslObject>(0, [&] {
+    const RtslRef found = scene->scene.find(name);
+    if (found == 0)
+      throw rtsl::Error(rtsl::message::noObjectNamed(name));
+    return found;
+  });
+}
+
+void *rtslSceneOutput(RtslScene *scene, const char *member, uint32_t sizes[3]) {
+  return guarded<void *>(nullptr, [&]() -> void * {
+    for (const runtime::OutputBuffer &output : scene->scene.outputs()) {
+      if (output.member != member)
+        continue;
+      std::fill_n(sizes, 3, 1u);
+      std::copy(output.sizes.begin(), output.sizes.end(), sizes);
+      return output.elements;
+    }
+    throw rtsl::Error(rtsl::message::noOutputMember(member));
+  });
+}
+
+} // extern "C"
