@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace rtsl::runtime {
@@ -81,8 +82,20 @@ double costOf(const Bvh &bvh, const Part &part) {
   return whole > 0 && std::isfinite(sum / whole) ? sum / whole : 0;
 }
 
+/// The first of RtslLaunch::boxes of each object with several primitives.
+using FirstBoxes = std::map<std::uint32_t, std::uint32_t>; // by number in RtslLaunch::meshTrees
+
+FirstBoxes firstBoxesOf(const RtslLaunch &launch) {
+  FirstBoxes first;
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
+    if (const RtslInstance &instance = launch.instances[i]; instance.boxCount != 0)
+      first.emplace(device::treeNumber(launch, instance), instance.firstBox);
+  return first;
+}
+
 /// Updates an item, and returns its box.
-RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tree) {
+RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tree,
+                  const FirstBoxes &firstBoxes) {
   const RtslInstance *instance = tree == ofWorld ? &launch.instances[item.instance] : nullptr;
   if (instance && (instance->transform != 0 || (instance->primitive && !instance->boxCount))) {
     RtslBox box;
@@ -92,6 +105,8 @@ RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tr
   }
   if (instance && instance->primitive)
     return device::enlarged(launch.boxes[instance->firstBox + item.primitive]);
+  if (!instance && tree >= launch.meshCount)
+    return device::enlarged(launch.boxes[firstBoxes.at(tree) + item.primitive]);
   const RtslMesh &mesh = launch.meshes[instance ? instance->mesh : tree];
   if (item.hasVertices) {
     const device::TriangleVertices p = device::triangleVertices(mesh, item.primitive);
@@ -103,7 +118,7 @@ RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tr
 }
 
 /// From the leaves to the root: a child is behind its parent.
-void refitPart(Bvh &bvh, const Part &part, const RtslLaunch &launch) {
+void refitPart(Bvh &bvh, const Part &part, const RtslLaunch &launch, const FirstBoxes &firstBoxes) {
   std::vector<RtslBox> boxes(part.endNode - part.firstNode); // of nodes
   for (std::uint32_t i = part.endNode; i-- > part.firstNode;) {
     RtslBvhNode &node = bvh.nodes[i];
@@ -116,7 +131,8 @@ void refitPart(Bvh &bvh, const Part &part, const RtslLaunch &launch) {
       if (isInner(node, slot))
         box = boxes[childNode(node, slot) - part.firstNode];
       for (std::uint32_t k = 0; k < itemCount(node, slot); ++k)
-        extend(box, refitItem(bvh.items[firstItem(node, slot) + k], launch, part.number));
+        extend(box,
+               refitItem(bvh.items[firstItem(node, slot) + k], launch, part.number, firstBoxes));
       extend(all, box);
     }
     boxes[i - part.firstNode] = all;
@@ -147,9 +163,9 @@ std::vector<double> costsOfTrees(const Bvh &bvh) {
 }
 
 void refit(Bvh &bvh, const RtslLaunch &launch) {
+  const FirstBoxes firstBoxes = firstBoxesOf(launch);
   for (const Part &part : partsOf(bvh))
-    if (part.number == ofWorld || part.number < launch.meshCount) // boxes of primitives stay
-      refitPart(bvh, part, launch);
+    refitPart(bvh, part, launch, firstBoxes);
 }
 
 BoxOrder::BoxOrder(const std::vector<RtslBox> &boxes) : order(boxes.size()) {

@@ -24,8 +24,8 @@ constexpr double largestDegradation = 1.5;
 std::vector<double> costsOfTrees(const Bvh &bvh);
 
 /// Sets the boxes, and the vertices of triangles, of the trees of a scene to those of `launch`,
-/// which has the same meshes and instances as when they were built; their positions and transforms
-/// may be others.
+/// which has the same contents (TreeContents.h) as when they were built; positions, transforms and
+/// bounds of primitives may be others.
 void refit(Bvh &bvh, const RtslLaunch &launch);
 
 /// For trees whose nodes cannot be read, such as Embree's: the cost of a tree over boxes that joins

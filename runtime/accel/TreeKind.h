@@ -23,8 +23,9 @@ inline TreeKind treeKind(std::optional<TreeKind> requested, std::uint64_t items)
 struct TreeFigures {
   TreeKind kind = TreeKind::Good;
   std::uint32_t nodes = 0, items = 0;
-  float cost = 0;     // of the tree of the world (WideTree::cost)
-  double seconds = 0; // to build them; 0: they were there
+  float cost = 0;          // of the tree of the world (WideTree::cost)
+  double seconds = 0;      // to build them; 0: they were there
+  bool isRefitted = false; // they have followed what moved: `cost` is that of when they were built
 };
 
 } // namespace rtsl::runtime

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/accel/Refit.h"
+#include "runtime/accel/TreeContents.h"
 #include "runtime/accel/TriangleBlocks.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/traverse/Traverse.h"
@@ -35,11 +36,10 @@ struct EmbreeContext {
   const device::TriangleRay *ray; // in `space`; an InstanceRay if that is not the world
   const EmbreeSpace *space;
   const EmbreeVisitor *visitor; // null: candidates are tested, and committed if they win
+  bool seesAll;                 // the ray sees all instances
   float toEmbree;               // a power of two that turns our t into Embree's
   // for a ray that needs any hit only: the block in which one was found
-  mutable std::uint32_t occluder;
-
-  static constexpr std::uint32_t noBlock = ~0u;
+  mutable Occluder occluder;
 
   /// Where Embree's search may end, if hits beyond t do not matter.
   float end(float t) const { return t * toEmbree * device::cullSlack; }
@@ -77,17 +77,21 @@ struct EmbreeSpace {
   LargeArray<TriangleBlock> blocks;
   std::vector<EmbreePrimitive> primitives;
   std::vector<EmbreeInstance> instances; // of the world
+  RtslBox bounds;                        // of all that is tested in the space
   std::vector<MeshUse> meshes;           // in `blocks`
   BoxOrder boxesWhenBuilt;               // once something has moved
   bool follows = false;                  // since then
   std::uint64_t moves = 0;               // Scene::movesOfMesh, of a mesh's space
+  std::vector<RtslBox> boxes;            // EmbreeScene::rememberBoxes: of all but `blocks`
   // by largestOrigin; the first one is built
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
+  float firstLevelOrigin = 0; // of levels[0]
+  RTCScene firstLevel = nullptr;
 
   /// The tree for rays from this origin.
   RTCScene treeFor(device::Vec3 origin) const {
     float size = __builtin_fabsf(origin.x) + __builtin_fabsf(origin.y) + __builtin_fabsf(origin.z);
-    return size <= levels[0]->largestOrigin ? levels[0]->scene : treeForFar(size);
+    return size <= firstLevelOrigin ? firstLevel : treeForFar(size);
   }
   RTCScene treeForFar(float origin) const;
 };
@@ -99,6 +103,7 @@ struct EmbreeScene::Implementation {
   std::map<std::uint32_t, std::unique_ptr<EmbreeSpace>> spaces; // by device::treeNumber
   const Program::Slots *slots = nullptr;
   RtslLaunch launch{};
+  std::vector<InstanceContents> contents;
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
 
@@ -129,6 +134,9 @@ struct EmbreeScene::Implementation {
     fill(ray, state.RayOrigin, state.RayDirection, state.Epsilon, toEmbree, fromEmbree, end);
   }
 
+  /// Does the ray of the context hit anything in one of the world's instances?
+  static bool isInInstance(const EmbreeContext &context, std::uint32_t number);
+
   /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
   [[gnu::always_inline]] std::uint32_t query(RtslState &state, bool anyHit, float toEmbree,
                                              float fromEmbree) const {
@@ -141,20 +149,22 @@ struct EmbreeScene::Implementation {
     context.ray = &triangleRay;
     context.space = &world;
     context.visitor = nullptr;
+    context.seesAll = true;
     context.toEmbree = toEmbree;
     const RTCScene tree = world.treeFor(device::load(state.RayOrigin));
     if (anyHit) {
       LastOccluders &last = LastOccluders::towards(state.RayDirection);
-      const auto meets = [&](std::uint32_t block) {
-        return testBlock(state, triangleRay, world.blocks[block], true);
+      const auto meets = [&](const Occluder &occluder) {
+        return occluder.isInstance
+                   ? isInInstance(context, occluder.number)
+                   : testBlock(state, triangleRay, world.blocks[occluder.number], true);
       };
       if (last.isMet(number, meets))
         return device::endSearch(state);
-      context.occluder = EmbreeContext::noBlock;
       RTCRay ray;
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
-      if (context.occluder != EmbreeContext::noBlock)
+      if (context.occluder.number != Occluder::none)
         last.learn(number, context.occluder);
     } else {
       RTCRayHit rayHit;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -75,7 +76,7 @@ void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
                  true))
     return;
   reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
-  context.occluder = arguments->primID;
+  context.occluder = {arguments->primID, false};
 }
 
 template <typename Ray>
@@ -138,6 +139,16 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   return false;
 }
 
+/// Does the ray enter the box of the space before `limit`? It is that of a tree's root, tested
+/// before Embree begins, and turns with the instance, whose box in world space may be larger.
+bool entersSpace(const EmbreeSpace &space, const device::InstanceRay &ray, float epsilon,
+                 float limit) {
+  const device::Range range = device::rangeInBox(space.bounds.lower, space.bounds.upper, ray.origin,
+                                                 ray.inverse, 0, device::infinity);
+  return !range.isEmpty() && range.near <= limit * device::cullSlack &&
+         range.far >= epsilon * (1 - 2 * device::rangeShare);
+}
+
 /// Searches an instance that has a space of its own. True if the search is over.
 template <bool anyHit>
 bool searchInstance(const EmbreeContext &outer, unsigned number) {
@@ -145,9 +156,14 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   const Implementation &scene = *outer.space->scene;
   RtslState &state = *outer.state;
   device::InstanceRay ray;
-  if (!device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots}) ||
+  const auto isSeen = [&] {
+    return outer.seesAll ||
+           device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots});
+  };
+  if (!isSeen() ||
       !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Time, state.Epsilon,
-                             outer.limit(), ray))
+                             outer.limit(), ray) ||
+      !entersSpace(*one.inside, ray, state.Epsilon, outer.limit()))
     return false;
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);
@@ -155,7 +171,7 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   context.ray = &ray;
   context.space = one.inside;
   context.visitor = outer.visitor;
-  context.occluder = EmbreeContext::noBlock;
+  context.seesAll = true; // what is inside
   context.toEmbree = 1;
   int exponent = 0;
   if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
@@ -195,8 +211,10 @@ void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
 }
 
 void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
-  if (searchInstance<true>(contextOf(arguments), arguments->primID))
-    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+  if (!searchInstance<true>(contextOf(arguments), arguments->primID))
+    return;
+  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+  contextOf(arguments).occluder = {arguments->primID, true};
 }
 
 //===----------------------------------------------------------------------===//
@@ -375,34 +393,12 @@ void addLevels(EmbreeSpace &self) {
   }
 }
 
-void buildSpace(EmbreeSpace &space, unsigned threads) {
-  space.blocks = makeTriangleBlocks(space.scene->device, space.meshes, threads);
-  check(*space.scene);
-  addLevels(space);
-  buildLevel(*space.levels[0]);
-}
-
-//===----------------------------------------------------------------------===//
-// What moves
-//===----------------------------------------------------------------------===//
-
-/// Copies the vertices of all triangles to their blocks again.
-void updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
-  const RtslLaunch &launch = space.scene->launch;
-  constexpr std::size_t atOnce = 1024;
-  forEachOnThreads(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
-    const std::size_t end = std::min(space.blocks.size(), (part + 1) * atOnce);
-    for (std::size_t i = part * atOnce; i < end; ++i) {
-      TriangleBlock &block = space.blocks[i];
-      for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
-        const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
-        const std::uint32_t instance = block.instance[isEmpty ? 0 : lane];
-        const RtslMesh &of = launch.meshes[space.isWorld ? launch.instances[instance].mesh : mesh];
-        block.setLane(lane, device::triangleVertices(of, block.triangle[lane]),
-                      block.instance[lane], block.triangle[lane]);
-      }
-    }
-  });
+/// Adds the boxes of everything in the space but triangles in blocks.
+void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes) {
+  for (const EmbreePrimitive &primitive : space.primitives)
+    boxes.push_back(boxOf(space, primitive));
+  for (const EmbreeInstance &one : space.instances)
+    boxes.push_back(boxOf(space, one));
 }
 
 /// The boxes of everything in the space.
@@ -411,11 +407,57 @@ std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
   boxes.reserve(space.blocks.size() + space.primitives.size() + space.instances.size());
   for (const TriangleBlock &block : space.blocks)
     boxes.push_back(boxOf(block));
-  for (const EmbreePrimitive &primitive : space.primitives)
-    boxes.push_back(boxOf(space, primitive));
-  for (const EmbreeInstance &one : space.instances)
-    boxes.push_back(boxOf(space, one));
+  addBoxes(space, boxes);
   return boxes;
+}
+
+void setBounds(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
+  std::fill_n(space.bounds.lower, 3, device::infinity);
+  std::fill_n(space.bounds.upper, 3, -device::infinity);
+  for (const RtslBox &box : boxes)
+    for (int axis = 0; axis < 3; ++axis) {
+      space.bounds.lower[axis] = std::min(space.bounds.lower[axis], box.lower[axis]);
+      space.bounds.upper[axis] = std::max(space.bounds.upper[axis], box.upper[axis]);
+    }
+}
+
+void buildSpace(EmbreeSpace &space, unsigned threads) {
+  space.blocks = makeTriangleBlocks(space.scene->device, space.meshes, threads);
+  check(*space.scene);
+  if (!space.isWorld)
+    setBounds(space, boxesOf(space));
+  addLevels(space);
+  buildLevel(*space.levels[0]);
+  space.firstLevel = space.levels[0]->scene;
+  space.firstLevelOrigin = space.levels[0]->largestOrigin;
+}
+
+//===----------------------------------------------------------------------===//
+// What moves
+//===----------------------------------------------------------------------===//
+
+/// Copies the vertices of all triangles to their blocks again. True if some are elsewhere.
+bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  const RtslLaunch &launch = space.scene->launch;
+  std::atomic<bool> isChanged{false};
+  constexpr std::size_t atOnce = 1024;
+  forEachOnThreads(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
+    const std::size_t end = std::min(space.blocks.size(), (part + 1) * atOnce);
+    for (std::size_t i = part * atOnce; i < end; ++i) {
+      TriangleBlock &block = space.blocks[i];
+      const TriangleBlock before = block;
+      for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
+        const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
+        const std::uint32_t instance = block.instance[isEmpty ? 0 : lane];
+        const RtslMesh &of = launch.meshes[space.isWorld ? launch.instances[instance].mesh : mesh];
+        block.setLane(lane, device::triangleVertices(of, block.triangle[lane]),
+                      block.instance[lane], block.triangle[lane]);
+      }
+      if (std::memcmp(&before, &block, sizeof block) != 0)
+        isChanged = true;
+    }
+  });
+  return isChanged;
 }
 
 void releaseLevels(EmbreeSpace &space) {
@@ -438,10 +480,9 @@ void releaseDistantLevels(EmbreeSpace &space) {
   }
 }
 
-/// The first change builds a tree that can follow the next ones. `mesh`: of a space of its own.
-/// True if the tree was built anew.
-bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
-  updateBlocks(space, mesh, threads);
+/// After updateBlocks. The first change builds a tree that can follow the next ones. True if the
+/// tree was built anew.
+bool updateTree(EmbreeSpace &space, unsigned threads) {
   const std::vector<RtslBox> boxes = boxesOf(space);
   if (!space.follows || space.boxesWhenBuilt.degradation(boxes) > largestDegradation) {
     space.follows = true;
@@ -450,6 +491,7 @@ bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
     space.boxesWhenBuilt = BoxOrder(boxesOf(space));
     return true;
   }
+  setBounds(space, boxes);
   releaseDistantLevels(space);
   EmbreeLevel &level = *space.levels[0];
   for (const RTCGeometry geometry : level.geometries)
@@ -459,12 +501,59 @@ bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   return false;
 }
 
+bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  updateBlocks(space, mesh, threads);
+  return updateTree(space, threads);
+}
+
+/// The same for a space of another scene, where perhaps nothing is elsewhere.
+bool followSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  const bool isChanged = updateBlocks(space, mesh, threads);
+  std::vector<RtslBox> boxes;
+  addBoxes(space, boxes);
+  const auto isSame = [](const RtslBox &a, const RtslBox &b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+  };
+  return (isChanged || !std::equal(boxes.begin(), boxes.end(), space.boxes.begin(),
+                                   space.boxes.end(), isSame)) &&
+         updateTree(space, threads);
+}
+
+/// What tests a primitive.
+auto *intersectOf(const Scene &scene, const Program::Slots &slots, RtslRef primitive) {
+  auto *const ofClass = scene.classOf(primitive).intersect;
+  return ofClass ? ofClass : slots.rt_Primitive_intersect;
+}
+
+/// Makes a space that of another scene, whose launch is the current one. `mesh`: of a space of its
+/// own.
+void useScene(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
+              const Program::Slots &slots) {
+  const RtslLaunch &launch = space.scene->launch;
+  for (MeshUse &use : space.meshes)
+    use.mesh = &launch.meshes[space.isWorld ? launch.instances[use.instance].mesh : mesh];
+  const EmbreePrimitive *before = nullptr;
+  for (EmbreePrimitive &primitive : space.primitives) {
+    if (!primitive.intersect) // a triangle
+      continue;
+    primitive.intersect =
+        before && before->instance == primitive.instance
+            ? before->intersect
+            : intersectOf(scene, slots, launch.instances[primitive.instance].primitive);
+    before = &primitive;
+  }
+}
+
 std::uint64_t newNumber() {
   static std::atomic<std::uint64_t> scenes = 0;
   return ++scenes;
 }
 
 } // namespace
+
+bool EmbreeScene::Implementation::isInInstance(const EmbreeContext &context, std::uint32_t number) {
+  return searchInstance<true>(context, number);
+}
 
 EmbreeScene::Implementation::~Implementation() {
   releaseLevels(world);
@@ -501,13 +590,14 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
 
   self->launch = scene.launch();
+  self->contents = treeContents(self->launch);
   self->slots = &slots;
   self->world.scene = self.get();
   const RtslLaunch &launch = self->launch;
   const auto addPrimitives = [&](EmbreeSpace &space, std::uint32_t number) {
-    auto *intersect = scene.classOf(launch.instances[number].primitive).intersect;
+    auto *const intersect = intersectOf(scene, slots, launch.instances[number].primitive);
     for (std::uint32_t i = 0; i < scene.primitiveCount(number); ++i)
-      space.primitives.push_back({intersect ? intersect : slots.rt_Primitive_intersect, number, i});
+      space.primitives.push_back({intersect, number, i});
   };
   // Blocks hold vertices, so triangles that move are items of their own.
   const auto addMesh = [&](EmbreeSpace &space, std::uint32_t number, std::uint32_t asInstance) {
@@ -547,13 +637,41 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
 
 void EmbreeScene::update(const Scene &scene, unsigned threads) {
   self->launch = scene.launch();
+  bool isNew = false;
   for (const auto &[number, space] : self->spaces)
     if (number < self->launch.meshCount && space->moves != scene.movesOfMesh(number)) {
-      updateSpace(*space, number, threads);
+      isNew |= updateSpace(*space, number, threads);
       space->moves = scene.movesOfMesh(number);
     }
-  if (updateSpace(self->world, 0, threads))
+  isNew |= updateSpace(self->world, 0, threads);
+  if (isNew)
     self->number = newNumber(); // blocks that occluded a ray may be no more
+}
+
+void EmbreeScene::rememberBoxes() {
+  const auto remember = [](EmbreeSpace &space) {
+    space.boxes.clear();
+    addBoxes(space, space.boxes);
+  };
+  remember(self->world);
+  for (const auto &[number, space] : self->spaces)
+    remember(*space);
+}
+
+bool EmbreeScene::follow(const Scene &scene, const Program::Slots &slots, unsigned threads) {
+  self->launch = scene.launch();
+  self->slots = &slots;
+  if (treeContents(self->launch) != self->contents)
+    return false;
+  for (const auto &[number, space] : self->spaces) {
+    useScene(*space, number, scene, slots);
+    followSpace(*space, number, threads);
+    space->moves = number < self->launch.meshCount ? scene.movesOfMesh(number) : 0;
+  }
+  useScene(self->world, 0, scene, slots);
+  followSpace(self->world, 0, threads);
+  self->number = newNumber(); // blocks that occluded a ray may be no more, or elsewhere
+  return true;
 }
 
 EmbreeScene::~EmbreeScene() = default;
@@ -590,6 +708,7 @@ void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
   context.ray = &ray;
   context.space = &self->world;
   context.visitor = &visitor;
+  context.seesAll = false;
   context.toEmbree = device::powerOfTwo(exponent);
   RTCRayHit rayHit;
   Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),

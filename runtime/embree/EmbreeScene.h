@@ -64,6 +64,12 @@ public:
   /// the last call. Not while rays are traced.
   void update(const Scene &scene, unsigned threads);
 
+  /// Before the scene is gone: what tells whether something is elsewhere in the next one.
+  void rememberBoxes();
+  /// The same for another scene, after rememberBoxes(). False if it has other contents
+  /// (TreeContents.h): nothing may be traced then.
+  bool follow(const Scene &scene, const Program::Slots &slots, unsigned threads);
+
   struct Implementation;
 
   /// Is the ray of `state` good, and can Embree trace it unscaled? Nearly always true, and fast

@@ -1,7 +1,7 @@
 //===- HostScene.h - the scene for rtsl_traverse on the host --------------===//
 #pragma once
 
-#include "runtime/accel/BvhBuilder.h"
+#include "runtime/accel/OwnTrees.h"
 #include "runtime/embree/EmbreeScene.h"
 #include "runtime/program/ProgramHost.h"
 
@@ -20,11 +20,18 @@ struct RayCounters {
 /// This thread's counters.
 RayCounters &rayCounters();
 
+/// Trees of a scene that is gone, for another one that may have the same contents.
+struct KeptTrees {
+  std::unique_ptr<EmbreeScene> embree; // or null
+  OwnTrees own;                        // if they are built
+};
+
 /// RtslLaunch::host points to one of these.
 class HostScene : public ProgramHost {
 public:
-  HostScene(const Scene &scene, bool useEmbree, unsigned threads,
-            std::optional<TreeKind> tree = {});
+  /// `kept`: trees that follow to this scene if it has their contents.
+  HostScene(const Scene &scene, bool useEmbree, unsigned threads, std::optional<TreeKind> tree = {},
+            KeptTrees kept = {});
 
   /// The launch with our own tree. With Embree it is built on first use, such as for a ray that
   /// Embree cannot trace (EmbreeScene::canFollow).
@@ -39,7 +46,12 @@ public:
   bool hasOwnTree() const { return launch.host != nullptr; }
 
   /// Of our own tree, if it has been built.
-  const std::optional<TreeFigures> &treeFigures() const { return figures; }
+  const std::optional<TreeFigures> &treeFigures() const { return own.treeFigures(); }
+
+  /// Did the trees that it was given follow, or keep their places?
+  bool isRefitted() const { return refitted; }
+  /// Gives the trees away. Nothing can be traced any more.
+  KeptTrees takeTrees();
 
   /// rtsl_traverse.
   std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
@@ -47,7 +59,7 @@ public:
   std::uint32_t traverseFast(RtslState &state, std::uint32_t how) const;
 
 private:
-  void buildEmbree();
+  void buildEmbree(std::unique_ptr<EmbreeScene> kept = nullptr);
   void buildOwnTree() const;
   std::uint32_t traverseAny(RtslState &state, std::uint32_t how) const;
   template <typename Tree>
@@ -61,10 +73,9 @@ private:
   // the same, if rays with the usual mask and root see all instances
   const EmbreeScene *seenByAll = nullptr;
   std::uint64_t structure, moves; // of the scene, as the trees are
+  bool refitted = false;
   mutable std::once_flag built;
-  mutable Bvh bvh;
-  mutable std::vector<double> costsWhenBuilt; // of `bvh`
-  mutable std::optional<TreeFigures> figures;
+  mutable OwnTrees own;
   mutable RtslLaunch launch{};
 };
 

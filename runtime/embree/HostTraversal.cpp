@@ -1,13 +1,11 @@
 //===- HostTraversal.cpp - rtsl_traverse on the host ----------------------===//
 #include "runtime/embree/HostScene.h"
 
-#include "runtime/accel/Refit.h"
-#include "runtime/accel/TreeItems.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/embree/EmbreeRay.h"
 
 #include <algorithm>
-#include <chrono>
+#include <utility>
 
 namespace rtsl::runtime {
 
@@ -17,17 +15,22 @@ RayCounters &rayCounters() {
 }
 
 HostScene::HostScene(const Scene &scene, bool useEmbree, unsigned threads,
-                     std::optional<TreeKind> tree)
+                     std::optional<TreeKind> tree, KeptTrees kept)
     : ProgramHost{scene.program().slots}, scene(scene), threads(threads), tree(tree),
-      structure(scene.structure()), moves(scene.moves()) {
-  if (useEmbree)
-    buildEmbree();
-  else
+      structure(scene.structure()), moves(scene.moves()), own(std::move(kept.own)) {
+  if (useEmbree) {
+    buildEmbree(std::move(kept.embree));
+  } else {
     deviceLaunch();
+    refitted = own.treeFigures()->isRefitted;
+  }
 }
 
-void HostScene::buildEmbree() {
-  embree = std::make_unique<EmbreeScene>(scene, slots, threads);
+void HostScene::buildEmbree(std::unique_ptr<EmbreeScene> kept) {
+  embree = std::move(kept);
+  refitted = embree && embree->follow(scene, slots, threads);
+  if (!refitted)
+    embree = std::make_unique<EmbreeScene>(scene, slots, threads);
   seenByAll = nullptr;
   const RtslLaunch all = scene.launch();
   const bool isHidden =
@@ -39,15 +42,9 @@ void HostScene::buildEmbree() {
 
 void HostScene::buildOwnTree() const {
   launch = scene.launch();
-  const auto start = std::chrono::steady_clock::now();
-  const TreeKind kind = treeKind(tree, itemCount(treesOf(launch)));
-  bvh = buildBvh(launch, threads, kind);
-  costsWhenBuilt.clear();
-  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-  figures = TreeFigures{kind, std::uint32_t(bvh.nodes.size()), std::uint32_t(bvh.items.size()),
-                        bvh.cost, seconds.count()};
+  own.follow(launch, threads, tree);
   launch.host = this;
-  bvh.install(launch);
+  own.trees().install(launch);
 }
 
 const RtslLaunch &HostScene::deviceLaunch() const {
@@ -59,7 +56,7 @@ void HostScene::update() {
   if (hasOwnTree()) { // something else may have changed
     launch = scene.launch();
     launch.host = this;
-    bvh.install(launch);
+    own.trees().install(launch);
   }
   const bool isOther = structure != scene.structure();
   if (!isOther && moves == scene.moves())
@@ -72,17 +69,14 @@ void HostScene::update() {
     else
       embree->update(scene, threads);
   }
-  if (!hasOwnTree())
-    return;
-  if (isOther)
-    return buildOwnTree();
-  if (costsWhenBuilt.empty())
-    costsWhenBuilt = costsOfTrees(bvh);
-  refit(bvh, launch);
-  const std::vector<double> costs = costsOfTrees(bvh);
-  for (std::size_t i = 0; i < costs.size(); ++i)
-    if (costs[i] > largestDegradation * costsWhenBuilt[i])
-      return buildOwnTree();
+  if (hasOwnTree())
+    buildOwnTree();
+}
+
+KeptTrees HostScene::takeTrees() {
+  if (embree)
+    embree->rememberBoxes();
+  return {std::move(embree), std::move(own)};
 }
 
 /// With any tree.
@@ -100,7 +94,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
     return search(state, how, device::LaunchTree{false});
   deviceLaunch();
   RtslLaunch withNodes = *given;
-  bvh.install(withNodes);
+  own.trees().install(withNodes);
   state.launch = &withNodes;
   std::uint32_t answer = search(state, how, device::LaunchTree{false});
   state.launch = given;

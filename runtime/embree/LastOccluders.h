@@ -14,7 +14,19 @@
 
 namespace rtsl::runtime {
 
-/// The blocks that the last occluded rays in roughly the same direction have hit, the latest first.
+/// A block of triangles of the world, or an instance that has a space of its own.
+struct Occluder {
+  static constexpr std::uint32_t none = ~0u;
+
+  std::uint32_t number = none; // in EmbreeSpace::blocks or instances
+  bool isInstance = false;
+
+  bool operator==(const Occluder &other) const {
+    return number == other.number && isInstance == other.isInstance;
+  }
+};
+
+/// What the last occluded rays in roughly the same direction have hit, the latest first.
 class LastOccluders {
 public:
   /// Those of this thread, by the signs of the ray's direction, which separates lights.
@@ -24,32 +36,32 @@ public:
                unsigned(direction[2] < 0) << 2];
   }
 
-  /// Does a ray hit one of them? `test` tests a block of the scene with this number, which is not
-  /// 0. Blocks whose tests did not pay off recently are skipped.
+  /// Does a ray hit one of them? `test` tests an occluder in the scene with this number, which is
+  /// not 0. Those whose tests did not pay off recently are skipped.
   template <typename Test>
   bool isMet(std::uint64_t ofScene, Test test) {
     if (scene != ofScene)
       return false;
     for (unsigned i = 0; i < count && credit[i] != 0; ++i) {
-      if (test(blocks[i])) {
+      if (test(occluders[i])) {
         pay(i);
-        moveToFront(i, blocks[i]);
+        moveToFront(i, occluders[i]);
         return true;
       }
-      --credit[i];
+      credit[i] -= std::min(credit[i], occluders[i].isInstance ? instanceCost : 1u);
     }
     return false;
   }
 
-  /// Records the block that a search has found.
-  void learn(std::uint64_t ofScene, std::uint32_t found) {
+  /// Records what a search has found.
+  void learn(std::uint64_t ofScene, const Occluder &found) {
     if (scene != ofScene) {
       scene = ofScene;
       count = 0;
       credit.fill(0);
     }
     unsigned i = 0;
-    while (i < count && blocks[i] != found)
+    while (i < count && !(occluders[i] == found))
       ++i;
     if (i < count)
       pay(i); // it would have been hit
@@ -62,20 +74,20 @@ public:
 
 private:
   static constexpr unsigned length = 8;
-  /// The approximate cost of a search, in tests; the credit limits how many tests of an entry may
-  /// fail.
-  static constexpr unsigned searchCost = 8, mostCredit = 64;
+  /// The approximate costs of a search, and of one in an instance, in tests of a block; the credit
+  /// limits how many tests of an entry may fail.
+  static constexpr unsigned searchCost = 8, instanceCost = 4, mostCredit = 64;
 
   void pay(unsigned place) { credit[place] = std::min(credit[place] + searchCost, mostCredit); }
-  void moveToFront(unsigned from, std::uint32_t block) {
+  void moveToFront(unsigned from, Occluder occluder) {
     for (; from > 0; --from)
-      blocks[from] = blocks[from - 1];
-    blocks[0] = block;
+      occluders[from] = occluders[from - 1];
+    occluders[0] = occluder;
   }
 
-  std::uint64_t scene = 0; // whose blocks they are
-  std::array<std::uint32_t, length> blocks{};
-  std::array<unsigned, length> credit{}; // of an entry of the list, not of its block
+  std::uint64_t scene = 0; // whose they are
+  std::array<Occluder, length> occluders{};
+  std::array<unsigned, length> credit{}; // of an entry of the list, not of its occluder
   unsigned count = 0;
 };
 

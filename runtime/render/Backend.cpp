@@ -56,6 +56,7 @@ Image Backend::render(RenderStatistics *statistics) {
   }
   said.buildSeconds = buildSeconds;
   said.tree = trees;
+  said.isRefitted = isRefitted;
   said.isUnfinished = said.pixels < pixelCount();
   Image image = std::exchange(picture, Image());
   if (said.isUnfinished && !options.keepsUnfinished)

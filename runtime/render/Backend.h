@@ -14,10 +14,12 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 
 namespace rtsl::runtime {
 
 class Watch;
+struct KeptTrees;
 
 /// Adds the counts of rays and exceptions in a status to the statistics.
 void addEvents(const RtslStatus &status, RenderStatistics &statistics);
@@ -43,6 +45,10 @@ public:
                        const std::function<void(const PassState &)> &progress,
                        PartialRendering &rendering, RenderStatistics *statistics = nullptr);
 
+  /// The trees of a backend that renders no more, for the next one (Renderer's constructor). Null:
+  /// it has none to give.
+  virtual std::shared_ptr<KeptTrees> takeTrees() { return nullptr; }
+
 protected:
   /// Throws OutOfRange for invalid options.
   explicit Backend(const RenderOptions &options);
@@ -60,6 +66,7 @@ protected:
   PixelSums *sums = nullptr;        // run() goes on with them; null: pixels begin without samples
   double buildSeconds = 0;          // spent by constructors of backends
   std::optional<TreeFigures> trees; // RenderStatistics::tree
+  bool isRefitted = false;          // RenderStatistics::isRefitted
 
 private:
   virtual std::uint32_t channels() const = 0;

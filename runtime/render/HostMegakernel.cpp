@@ -30,6 +30,13 @@ HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
   prepare();
 }
 
+HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
+                               const TreeFigures &figures, const RenderOptions &options)
+    : HostMegakernel(code, std::move(scene), options) {
+  trees = figures;
+  isRefitted = figures.isRefitted;
+}
+
 std::uint64_t HostMegakernel::laneBytes(const RtslLaunch &launch) {
   return inLines(code.laneBytes(launch.maxDepth, launch.referenceChain)); // each thread has its own
 }

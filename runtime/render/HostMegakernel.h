@@ -22,6 +22,9 @@ public:
   /// `scene` is not relocated; the code at `code` must stay loaded. Throws OutOfRange,
   /// OutOfMemory.
   HostMegakernel(const MegakernelCode &code, FlatScene scene, const RenderOptions &options);
+  /// The same for a scene with trees, of which these are the figures.
+  HostMegakernel(const MegakernelCode &code, FlatScene scene, const TreeFigures &figures,
+                 const RenderOptions &options);
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &launch) override;

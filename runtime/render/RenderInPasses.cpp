@@ -194,6 +194,7 @@ Image Backend::renderInPasses(const PassOptions &passes,
   said.isUnfinished = counts.least < counts.most || counts.least == 0;
   said.renderSeconds = rendering.state.seconds;
   said.buildSeconds = buildSeconds;
+  said.isRefitted = isRefitted;
   if (statistics)
     *statistics = std::move(said);
   return std::exchange(picture, Image());

@@ -91,6 +91,7 @@ struct RenderStatistics {
   bool isUnfinished = false;             // it was stopped: RenderOptions::keepsUnfinished
   double buildSeconds = 0;               // acceleration structures
   std::optional<TreeFigures> tree;       // of the traversal of GPUs, if there is one
+  bool isRefitted = false;               // trees of an earlier scene have followed to this one
   double renderSeconds = 0;              // samples
   double kernelSeconds = 0;              // of these, on a GPU, by its own clock; otherwise 0
   std::uint64_t badRays = 0;             // not finite or without a direction: they saw color 0

@@ -122,6 +122,14 @@ struct Renderer::Implementation {
 
 Renderer::Renderer(const Scene &scene, const RenderOptions &options,
                    std::shared_ptr<HostScene> hostScene)
+    : Renderer(scene, options, std::move(hostScene), nullptr) {}
+
+Renderer::Renderer(const Scene &scene, const RenderOptions &options,
+                   std::shared_ptr<KeptTrees> kept)
+    : Renderer(scene, options, nullptr, std::move(kept)) {}
+
+Renderer::Renderer(const Scene &scene, const RenderOptions &options,
+                   std::shared_ptr<HostScene> hostScene, std::shared_ptr<KeptTrees> kept)
     : Backend(options), self(std::make_unique<Implementation>(scene, this->options)) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -133,7 +141,9 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options,
     self->host = std::move(hostScene);
     if (!self->host)
       self->host = std::make_shared<HostScene>(scene, options.traversal == Traversal::Embree,
-                                               threadCount(options), options.tree);
+                                               threadCount(options), options.tree,
+                                               kept ? std::move(*kept) : KeptTrees());
+    isRefitted = self->host->isRefitted();
     makePicture(complete.colorComponents);
     update();
   } catch (const std::bad_alloc &) {
@@ -157,6 +167,10 @@ void Renderer::update() {
 
 std::shared_ptr<HostScene> Renderer::hostScene() const {
   return self->host;
+}
+
+std::shared_ptr<KeptTrees> Renderer::takeTrees() {
+  return std::make_shared<KeptTrees>(self->host->takeTrees());
 }
 
 const RtslLaunch &Renderer::launch() const {

@@ -20,6 +20,10 @@ public:
   /// `hostScene`: that of another renderer of the same scene and traversal, or null.
   Renderer(const Scene &scene, const RenderOptions &options,
            std::shared_ptr<HostScene> hostScene = nullptr);
+  /// With the trees of a renderer of another scene, with the same traversal: if the scenes have the
+  /// same meshes and instances (runtime/accel/TreeContents.h), they follow what is elsewhere in
+  /// this one; otherwise new ones are built. Null: there are none.
+  Renderer(const Scene &scene, const RenderOptions &options, std::shared_ptr<KeptTrees> kept);
   ~Renderer() override;
 
   /// To be called before render() if the scene has changed: if something has moved
@@ -28,6 +32,7 @@ public:
   /// renderer.
   void update();
   std::shared_ptr<HostScene> hostScene() const;
+  std::shared_ptr<KeptTrees> takeTrees() override;
 
   /// The launch that is passed to the program, for tools that call the program themselves.
   const RtslLaunch &launch() const;
@@ -36,6 +41,8 @@ public:
   void onThread(const std::function<void()> &work) const;
 
 private:
+  Renderer(const Scene &scene, const RenderOptions &options, std::shared_ptr<HostScene> hostScene,
+           std::shared_ptr<KeptTrees> kept);
   std::uint32_t channels() const override;
   void begin() override;
   void run(Watch &watch) override;

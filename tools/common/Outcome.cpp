@@ -62,8 +62,9 @@ const char *nameOf(runtime::TreeKind kind) {
 
 std::string treeText(const runtime::TreeFigures &tree) {
   const std::string cost = tree.cost > 0 ? fmt::format(", cost {:.3g}", tree.cost) : "";
-  return fmt::format("{} tree: {} nodes for {} items{}, built in {:.0f} ms", nameOf(tree.kind),
-                     tree.nodes, tree.items, cost, tree.seconds * 1e3);
+  return fmt::format("{} tree: {} nodes for {} items{}, {} in {:.0f} ms", nameOf(tree.kind),
+                     tree.nodes, tree.items, cost, tree.isRefitted ? "refitted" : "built",
+                     tree.seconds * 1e3);
 }
 
 std::string gpuText(const runtime::GpuStatistics &gpu) {

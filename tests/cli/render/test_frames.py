@@ -232,7 +232,7 @@ class Frames(Parts):
         self.render("%d.exr", "--frames=10..10", "--checkpoint=%d.ckpt")
         self.assertTrue({"10.exr", "10.ckpt"} <= set(self.files()))
 
-    def test_frames_that_only_move_have_one_code(self):
+    def test_frames_that_only_move_have_one_code_and_trees_that_follow(self):
         """What moves is in tables: the second frame and those after it are not compiled."""
         scene = json.loads((self.folder / "scene.json").read_text())
         scene["background"] = [0.1, 0.2, 0.3]
@@ -245,6 +245,7 @@ class Frames(Parts):
             options = ("--frames=0..2", "-Wno-depth-limit", "--spp=3", *SMALL, *way)
             _, said = self.run_rtslc("render", "scene.json", "-o", "frame.%04d.exr", *options)
             self.assertEqual(said.count("machine code of the picture before: "), 2, said)
+            self.assertEqual(said.count("trees of the picture before: refitted"), 2, said)
             for frame in (0, 1, 2):
                 self.render("one.exr", f"--frame={frame}", *way)
                 self.assert_same_bits("one.exr", f"frame.000{frame}.exr")

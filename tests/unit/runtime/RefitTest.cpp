@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 using namespace rtsl;
 using namespace rtsl::runtime;
@@ -38,11 +39,18 @@ RtslRef begin(Scene &scene) {
   return scene.addObject("Normal", members({}));
 }
 
+/// Moves some of the instances and one of the meshes of randomScene(seed, 60).
+void moveSome(Scene &scene, float by, std::mt19937 &random) {
+  for (std::uint32_t i = 3; i < 63; i += 1 + random() % 8)
+    scene.moveInstance(i, random() % 3 ? MovingTransform(randomTransform(random))
+                                       : randomMotion(random));
+  const std::uint32_t mesh = random() % 3;
+  scene.moveMesh(mesh, shaken(scene, mesh, by, random));
+}
+
 /// Trees of both traversals find what new ones find, with any ray.
-void expectSameAsNew(const Scene &scene, HostScene &embree, HostScene &own, std::mt19937 &random,
-                     int &hits) {
-  embree.update();
-  own.update();
+void expectSameAsNew(const Scene &scene, const HostScene &embree, const HostScene &own,
+                     std::mt19937 &random, int &hits) {
   const HostScene newEmbree(scene, true, 1), newOwn(scene, false, 1);
   RtslLaunch ofEmbree = scene.launch(), ofNewEmbree = ofEmbree;
   ofEmbree.host = &embree;
@@ -85,17 +93,38 @@ TEST(Refit, FindsTheHitsOfNewTrees) {
     Scene scene = randomScene(seed, 60);
     HostScene embree(scene, true, 1), own(scene, false, 1);
     for (int step = 0; step < 6; ++step) {
-      for (std::uint32_t i = 3; i < 63; i += 1 + random() % 8)
-        scene.moveInstance(i, random() % 3 ? MovingTransform(randomTransform(random))
-                                           : randomMotion(random));
-      const std::uint32_t mesh = random() % 3;
-      scene.moveMesh(mesh, shaken(scene, mesh, step == 4 ? 50.0f : 0.2f, random));
+      moveSome(scene, step == 4 ? 50.0f : 0.2f, random);
       if (step == 3) // has no transform yet: that needs other trees
         scene.moveInstance(seed % 3, Transform::translate(1, 2, 3));
+      embree.update();
+      own.update();
       ASSERT_NO_FATAL_FAILURE(expectSameAsNew(scene, embree, own, random, hits));
     }
   }
   EXPECT_GT(hits, 10000);
+}
+
+// Scenes one after the other, as frames of a sequence.
+TEST(Refit, TreesOfOneSceneFollowToAnother) {
+  int hits = 0;
+  std::mt19937 random(24);
+  KeptTrees ofEmbree, ofOwn;
+  for (int frame = 0; frame < 8; ++frame) {
+    const bool isOther = frame == 6; // of other contents
+    Scene scene = randomScene(24, isOther ? 61 : 60);
+    if (frame > 1 && !isOther) // the first two are the same
+      moveSome(scene, frame == 4 ? 50.0f : 0.2f, random);
+    HostScene embree(scene, true, 1, {}, std::move(ofEmbree)),
+        own(scene, false, 1, {}, std::move(ofOwn));
+    const bool follows = frame != 0 && frame != 6 && frame != 7;
+    EXPECT_EQ(embree.isRefitted(), follows) << frame;
+    EXPECT_TRUE(follows || !own.isRefitted()) << frame;
+    EXPECT_TRUE(own.isRefitted() || frame != 1) << frame; // others may become too bad
+    ASSERT_NO_FATAL_FAILURE(expectSameAsNew(scene, embree, own, random, hits));
+    ofEmbree = embree.takeTrees();
+    ofOwn = own.takeTrees();
+  }
+  EXPECT_GT(hits, 3000);
 }
 
 TEST(Refit, NothingHasToMove) {
@@ -108,6 +137,8 @@ TEST(Refit, NothingHasToMove) {
   EXPECT_EQ(scene.moves(), 0u);
   scene.moveInstance(5, Transform::scale(2, 2, 2));
   EXPECT_EQ(scene.moves(), 1u);
+  embree.update();
+  own.update();
   expectSameAsNew(scene, embree, own, random, hits);
 }
 

@@ -1,4 +1,5 @@
 #include "FakeProgram.h"
+#include "InstanceScenes.h"
 #include "TraversalRays.h"
 
 #include "runtime/accel/BvhBuilder.h"
@@ -196,6 +197,25 @@ Scene tiedScene(unsigned seed) {
   return scene;
 }
 
+/// Instances with transforms of two meshes, of which one is in world space, too.
+Scene instancedScene(unsigned seed) {
+  std::mt19937 random(seed);
+  Scene scene(fakeProgram());
+  scene.setCamera(scene.addObject(
+      "Camera",
+      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  const RtslRef material = scene.addObject("Normal", members({}));
+  const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)),
+                                  scene.addMesh(clump(random, 200))};
+  scene.addMeshInstance(meshes[0], material);
+  for (unsigned i = 0; i < 60; ++i) {
+    Placement placement;
+    placement.transform = randomTransform(random);
+    scene.addMeshInstance(meshes[i % 2], material, placement);
+  }
+  return scene;
+}
+
 /// A ray towards a vertex, an edge or the middle of some triangle.
 Ray rayAtTriangle(std::mt19937 &random, const RtslLaunch &launch, Vec3 from) {
   std::uniform_real_distribution<float> unit(0, 1);
@@ -207,6 +227,8 @@ Ray rayAtTriangle(std::mt19937 &random, const RtslLaunch &launch, Vec3 from) {
   const auto p = rtsl::device::triangleVertices(mesh, random() % mesh.triangleCount);
   float u = random() % 2 ? unit(random) : 0, v = random() % 2 ? (1 - u) * unit(random) : 0;
   Vec3 target = p.v0 * (1 - u - v) + p.v1 * u + p.v2 * v;
+  if (instance->transform)
+    target = rtsl::device::pointToWorld(launch.transforms[instance->transform], target);
   return {from, target - from};
 }
 
@@ -254,20 +276,20 @@ TEST(EmbreeTraversal, MaskedRaysNeedNoSecondTree) {
   EXPECT_FALSE(embree.hasOwnTree());
 }
 
-// Bundles of shadow rays, as lights get them, in two scenes in turns: what was in the way of a ray
-// before is tested first (LastOccluders.h), and of the larger scene there are blocks that the
-// smaller one does not have.
+// Bundles of shadow rays, as lights get them, in several scenes in turns: what was in the way of a
+// ray before is tested first (LastOccluders.h), and of one scene there are blocks that another one
+// does not have.
 TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
-  Scene large = tiedScene(7), small = randomScene(8, 200, 3);
-  HostScene embree[] = {{large, true, 1}, {small, true, 1}},
-            own[] = {{large, false, 1}, {small, false, 1}};
-  const RtslLaunch launches[] = {large.launch(), small.launch()};
+  Scene large = tiedScene(7), small = randomScene(8, 200, 3), instances = instancedScene(9);
+  HostScene embree[] = {{large, true, 1}, {small, true, 1}, {instances, true, 1}},
+            own[] = {{large, false, 1}, {small, false, 1}, {instances, false, 1}};
+  const RtslLaunch launches[] = {large.launch(), small.launch(), instances.launch()};
   std::mt19937 random(9);
   std::uniform_real_distribution<float> near(-0.05f, 0.05f), share(0.2f, 1.5f);
-  int answers[2] = {};
-  for (int bundle = 0; bundle < 2000; ++bundle) {
-    const int which = bundle % 2;
-    const Ray first = bundle % 3 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o)
+  int answers[3][2] = {};
+  for (int bundle = 0; bundle < 2400; ++bundle) {
+    const int which = bundle % 3;
+    const Ray first = bundle % 4 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o)
                                  : randomRay(random, 1);
     for (int i = 0; i < 20; ++i) {
       const Vec3 o = first.o + Vec3{near(random), near(random), near(random)};
@@ -277,11 +299,13 @@ TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
                 b = makeState(own[which].deviceLaunch(), o, d, 1e-4f, end);
       const std::uint32_t found = embree[which].traverse(a, RTSL_FIRST_HIT);
       ASSERT_EQ(found, own[which].traverse(b, RTSL_FIRST_HIT)) << bundle << ", " << i;
-      ++answers[found == RTSL_HIT];
+      ++answers[which][found == RTSL_HIT];
     }
   }
-  EXPECT_GT(answers[0], 5000);
-  EXPECT_GT(answers[1], 5000);
+  for (const int (&ofScene)[2] : answers) {
+    EXPECT_GT(ofScene[0], 1000);
+    EXPECT_GT(ofScene[1], 1000);
+  }
 }
 
 TEST(HostTraversal, ExtremeDirections) {

@@ -86,6 +86,7 @@ int render(const RenderCommandOptions &options) {
   if (options.watches || options.frames) {
     RenderCommandOptions several = options;
     several.common.compile.codeCache = std::make_shared<CodeCache>();
+    several.keptTrees = std::make_shared<KeptTrees>();
     return options.watches ? watch(several) : renderFrames(several);
   }
   Rendering rendering;

@@ -12,6 +12,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,7 +53,8 @@ struct RenderCommandOptions {
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
   GpuOptions gpu;
-  bool countsSteps = false; // --lane-use
+  bool countsSteps = false;             // --lane-use
+  std::shared_ptr<KeptTrees> keptTrees; // null: there is one picture
 };
 
 /// Renders unless there are errors, and gives whether a picture was written. `files` gets those

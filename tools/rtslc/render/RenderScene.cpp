@@ -150,6 +150,11 @@ private:
       ofView.checkpoint = {};
       ofView.tev = {};
       ofView.prints = false;
+      if (options.keptTrees) {
+        ofView.keptTrees = options.keptTrees->ofViews[name];
+        if (!ofView.keptTrees)
+          ofView.keptTrees = options.keptTrees->ofViews[name] = std::make_shared<KeptTrees>();
+      }
       views.push_back(std::make_unique<View>(ofView, messages, stop));
       if (!views.back()->picture->read() || !views.back()->picture->compile())
         return false;
@@ -267,13 +272,16 @@ private:
     if (!options.quiet)
       render.progress = [&](double share) { progress.update(share); };
     const Clock::time_point begin = Clock::now();
-    const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, render);
+    const std::unique_ptr<runtime::Backend> backend =
+        target->prepare(*scene, render, options.keptTrees.get());
     const double seconds = secondsSince(begin);
     runtime::Image image = options.isInPasses() ? renderInPasses(*backend, progress)
                                                 : backend->render(&summary.statistics);
     if (summary.statistics.isUnfinished && summary.unfinished.empty())
       summary.unfinished = unfinishedText(summary.statistics, render);
     summary.statistics.buildSeconds = seconds;
+    if (options.keptTrees)
+      options.keptTrees->ofHost = backend->takeTrees();
     summary.gpus = target->gpus();
     return image;
   }

@@ -146,6 +146,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (const auto &cache = options.common.compile.codeCache; cache && cache->reused())
     fmt::print(stderr, "machine code of the picture before: {} modules\n", cache->reused());
+  if (statistics.isRefitted)
+    fmt::print(stderr, "trees of the picture before: refitted\n");
   if (summary.resumedAt)
     fmt::print(stderr, "resumed at {} spp\n", summary.resumedAt);
   if (std::isfinite(summary.error))

@@ -9,6 +9,8 @@
 #include "tools/rtslc/common/GpuArchitectures.h"
 #include "tools/rtslc/common/ScenePackage.h"
 
+#include <utility>
+
 namespace rtsl::tool {
 
 namespace {
@@ -23,8 +25,10 @@ public:
   }
 
   std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
-                                            const runtime::RenderOptions &options) override {
-    return std::make_unique<runtime::Renderer>(scene, options);
+                                            const runtime::RenderOptions &options,
+                                            KeptTrees *kept) override {
+    return std::make_unique<runtime::Renderer>(
+        scene, options, kept ? std::exchange(kept->ofHost, nullptr) : nullptr);
   }
 };
 
@@ -32,9 +36,15 @@ public:
 class HostMegakernel : public Host {
 public:
   std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
-                                            const runtime::RenderOptions &options) override {
-    return std::make_unique<runtime::HostMegakernel>(scene.program().megakernel,
-                                                     runtime::flatten(scene), options);
+                                            const runtime::RenderOptions &options,
+                                            KeptTrees *kept) override {
+    const runtime::MegakernelCode &code = scene.program().megakernel;
+    if (!kept)
+      return std::make_unique<runtime::HostMegakernel>(code, runtime::flatten(scene), options);
+    runtime::OwnTrees &trees = kept->ofMegakernel;
+    trees.follow(scene.launch(), options.threads, options.tree);
+    return std::make_unique<runtime::HostMegakernel>(code, runtime::flatten(scene, trees.trees()),
+                                                     *trees.treeFigures(), options);
   }
 };
 
@@ -52,8 +62,8 @@ public:
     return compileScenePackage(module, request, compile, diagnostics, build, package);
   }
 
-  std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
-                                            const runtime::RenderOptions &render) override {
+  std::unique_ptr<runtime::Backend>
+  prepare(const runtime::Scene &scene, const runtime::RenderOptions &render, KeptTrees *) override {
     const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
     const std::uint64_t laneBytes =
         host.entries().laneBytes(render.maxDepth, scene.launch().referenceChain);
@@ -83,6 +93,8 @@ nlohmann::ordered_json toJson(const runtime::TreeFigures &tree) {
                                      {"items", tree.items}};
   if (tree.cost > 0)
     document["cost"] = tree.cost;
+  if (tree.isRefitted)
+    document["refitted"] = true;
   return document;
 }
 

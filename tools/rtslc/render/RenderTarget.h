@@ -6,6 +6,7 @@
 #pragma once
 
 #include "codegen/driver/SceneProgram.h"
+#include "runtime/accel/OwnTrees.h"
 #include "runtime/gpu/Gpus.h"
 #include "runtime/render/Backend.h"
 #include "tools/common/GpuOptions.h"
@@ -13,11 +14,20 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace rtsl::tool {
+
+/// The trees of a picture, for the next one of the same command.
+struct KeptTrees {
+  std::shared_ptr<runtime::KeptTrees> ofHost;                // null: there are none
+  runtime::OwnTrees ofMegakernel;                            // of the host
+  std::map<std::string, std::shared_ptr<KeptTrees>> ofViews; // by name
+};
 
 class RenderTarget {
 public:
@@ -30,9 +40,10 @@ public:
           Diagnostics &diagnostics, const BuildScene &build) = 0;
 
   /// The backend for the scene that compile() returned. The target must outlive it, and the scene
-  /// must not change during its lifetime.
-  virtual std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
-                                                    const runtime::RenderOptions &options) = 0;
+  /// must not change during its lifetime. `kept`: trees that may follow to this scene; null: there
+  /// are no other pictures.
+  virtual std::unique_ptr<runtime::Backend>
+  prepare(const runtime::Scene &scene, const runtime::RenderOptions &options, KeptTrees *kept) = 0;
 
   /// Program::stateNames of what compile() has compiled.
   virtual std::vector<std::string> stateNames(const runtime::Scene &scene) const {

@@ -200,7 +200,8 @@ private:
     Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
     if (!options.quiet)
       launch.render.progress = [&](double share) { progress.update(share); };
-    const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, launch.render);
+    const std::unique_ptr<runtime::Backend> backend =
+        target->prepare(*scene, launch.render, nullptr);
     if (const auto gpus = target->gpus(); !gpus.empty())
       launch.gpu = gpus.front();
     picture = backend->render(&launch.statistics);
