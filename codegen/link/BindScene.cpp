@@ -224,6 +224,8 @@ constexpr GraphPart graphParts[] = {
      "no instance has one: rays stay in world space"},
     {Item::Transforms, RTSL_HAS_LINEAR, "linear parts of transforms",
      "some transform turns, scales or shears", "every transform is a translation"},
+    {Item::Transforms, RTSL_HAS_TURNS, "rotations and shears of transforms",
+     "some transform turns or shears", "linear parts are scales along the axes, or nothing"},
     {Item::Roots, RTSL_HAS_ROOTS, "roots", "the scene has several",
      "all instances are below root 0"},
     {Item::Counts, RTSL_HAS_COUNTS, "counts", "some object holds several primitives",

@@ -281,20 +281,38 @@ static bool isTranslation(Transform transform) {
   return transform.isIdentity();
 }
 
-static bool isTranslation(const MotionFactor &factor) {
+static bool isScale(const Transform &transform) {
+  for (std::size_t column = 0; column < 3; ++column)
+    for (std::size_t row = 0; row < 3; ++row)
+      if (row != column && transform.columns[column][row] != 0)
+        return false;
+  return true;
+}
+
+/// Are all maps of a transform, and of the keys of its factors, of this kind, and does it turn by
+/// no angle?
+template <typename IsOfKind>
+static bool areMaps(const MovingTransform &transform, IsOfKind isOfKind) {
   const auto rests = [](const Turn &turn) {
     return turn.from == Quaternion{1, 0, 0, 0} && turn.angle == 0;
   };
-  return factor.isRotation() ? std::all_of(factor.turns.begin(), factor.turns.end(), rests)
-                             : std::all_of(factor.maps.begin(), factor.maps.end(),
-                                           [](const Transform &map) { return isTranslation(map); });
+  const std::vector<MotionFactor> &factors = transform.factors();
+  return transform.moves()
+             ? std::all_of(
+                   factors.begin(), factors.end(),
+                   [&](const MotionFactor &factor) {
+                     return factor.isRotation()
+                                ? std::all_of(factor.turns.begin(), factor.turns.end(), rests)
+                                : std::all_of(factor.maps.begin(), factor.maps.end(), isOfKind);
+                   })
+             : isOfKind(transform.still());
 }
 
 bool isTranslation(const MovingTransform &transform) {
-  const std::vector<MotionFactor> &factors = transform.factors();
-  return transform.moves() ? std::all_of(factors.begin(), factors.end(),
-                                         [](const MotionFactor &one) { return isTranslation(one); })
-                           : isTranslation(transform.still());
+  return areMaps(transform, [](const Transform &map) { return isTranslation(map); });
+}
+bool isScale(const MovingTransform &transform) {
+  return areMaps(transform, [](const Transform &map) { return isScale(map); });
 }
 
 bool operator==(const MovingTransform &a, const MovingTransform &b) {

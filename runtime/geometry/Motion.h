@@ -72,6 +72,8 @@ private:
 
 /// Is it a translation at all times?
 bool isTranslation(const MovingTransform &transform);
+/// Is it a scale along the axes, and a translation, at all times?
+bool isScale(const MovingTransform &transform);
 
 bool operator==(const MovingTransform &a, const MovingTransform &b);
 /// An order of any kind, for sorted containers.

@@ -76,13 +76,20 @@ void Geometry::setShutter(float open, float close) {
   shutterClose = close;
 }
 
+/// RTSL_HAS_* of the linear part of a transform.
+static std::uint32_t linearNeeds(const MovingTransform &transform) {
+  if (isTranslation(transform))
+    return 0;
+  return isScale(transform) ? RTSL_HAS_LINEAR : RTSL_HAS_LINEAR | RTSL_HAS_TURNS;
+}
+
 /// Its index; 0 for the identity.
 std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std::string &name,
                                      const std::optional<rtsl::Place> &where) {
   if (!transform.moves() && transform.still().isIdentity())
     return 0;
   transforms.push_back(roundedTransform(transform, name, where));
-  needs |= RTSL_HAS_TRANSFORMS | (isTranslation(transform) ? 0 : RTSL_HAS_LINEAR);
+  needs |= RTSL_HAS_TRANSFORMS | linearNeeds(transform);
   const auto index = std::uint32_t(transforms.size() - 1);
   if (transform.moves()) {
     transforms.back().motion = addMotion(transform);
@@ -317,7 +324,7 @@ void Geometry::moveInstance(std::uint32_t number, const MovingTransform &transfo
       moving.erase(instance.transform);
     }
     transforms[instance.transform] = moved;
-    needs |= isTranslation(transform) ? 0 : RTSL_HAS_LINEAR;
+    needs |= linearNeeds(transform);
   }
   setBounds(instance, transform);
   ++moves;

@@ -422,10 +422,11 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_LIGHT_TREE 33554432u        // emitters are chosen by a light tree
 #define RTSL_HAS_MASKS 67108864u             // some instance is invisible to rays of some masks
 #define RTSL_HAS_LINEAR 134217728u           // some transform is more than a translation
+#define RTSL_HAS_TURNS 268435456u // some transform is more than a scale and a translation
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
    RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS |       \
-   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR)
+   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR | RTSL_HAS_TURNS)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u

@@ -57,6 +57,11 @@ inline Vec3 product(const double m[9], double x, double y, double z) {
           float(__builtin_fma(m[7], z, __builtin_fma(m[4], y, __builtin_fma(m[1], x, 0.0)))),
           float(__builtin_fma(m[8], z, __builtin_fma(m[5], y, __builtin_fma(m[2], x, 0.0))))};
 }
+/// The product with a diagonal matrix, to the bit.
+inline Vec3 scaled(const double m[9], double x, double y, double z) {
+  return {float(__builtin_fma(m[0], x, 0.0)), float(__builtin_fma(m[4], y, 0.0)),
+          float(__builtin_fma(m[8], z, 0.0))};
+}
 /// The product with the identity.
 inline Vec3 positive(Vec3 v) {
   return {v.x + 0.0f, v.y + 0.0f, v.z + 0.0f};
@@ -71,12 +76,20 @@ inline Vec3 vectorToObject(const RtslTransform &transform, Vec3 v) {
   return product(transform.inverse, double(v.x), double(v.y), double(v.z));
 }
 inline Vec3 pointToObject(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
+  if (hasTurns(launch))
+    return pointToObject(transform, p);
+  const float *t = transform.translation;
+  if (hasLinear(launch))
+    return scaled(transform.inverse, double(p.x) - double(t[0]), double(p.y) - double(t[1]),
+                  double(p.z) - double(t[2]));
   // The difference of two floats in double, rounded to float, is their difference in float.
-  return hasLinear(launch) ? pointToObject(transform, p)
-                           : positive(p - load(transform.translation));
+  return positive(p - load(t));
 }
 inline Vec3 vectorToObject(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
-  return hasLinear(launch) ? vectorToObject(transform, v) : positive(v);
+  if (hasTurns(launch))
+    return vectorToObject(transform, v);
+  return hasLinear(launch) ? scaled(transform.inverse, double(v.x), double(v.y), double(v.z))
+                           : positive(v);
 }
 
 /// Component `row` of the linear part times a vector, plus `offset`, rounded once.
@@ -97,11 +110,24 @@ inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
           rowToWorld(transform, 2, v, 0)};
 }
 
+/// Of a transform without turns. Translations are not -0, so no sum is.
+inline Vec3 scaledToWorld(const RtslTransform &transform, Vec3 v, Vec3 offset) {
+  const float *m = transform.linear;
+  return {float(__builtin_fma(double(m[0]), double(v.x), double(offset.x))),
+          float(__builtin_fma(double(m[4]), double(v.y), double(offset.y))),
+          float(__builtin_fma(double(m[8]), double(v.z), double(offset.z)))};
+}
+
 inline Vec3 pointToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
-  return hasLinear(launch) ? pointToWorld(transform, p) : positive(p + load(transform.translation));
+  if (hasTurns(launch))
+    return pointToWorld(transform, p);
+  const Vec3 translation = load(transform.translation);
+  return hasLinear(launch) ? scaledToWorld(transform, p, translation) : positive(p + translation);
 }
 inline Vec3 vectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
-  return hasLinear(launch) ? vectorToWorld(transform, v) : positive(v);
+  if (hasTurns(launch))
+    return vectorToWorld(transform, v);
+  return hasLinear(launch) ? scaledToWorld(transform, v, {0, 0, 0}) : positive(v);
 }
 
 /// The inverse transpose times a vector: not normalised.
@@ -113,7 +139,10 @@ inline Vec3 covectorToWorld(const RtslTransform &transform, Vec3 n) {
           float(__builtin_fma(m[8], z, __builtin_fma(m[7], y, __builtin_fma(m[6], x, 0.0))))};
 }
 inline Vec3 covectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 n) {
-  return hasLinear(launch) ? covectorToWorld(transform, n) : positive(n);
+  if (hasTurns(launch))
+    return covectorToWorld(transform, n);
+  return hasLinear(launch) ? scaled(transform.inverse, double(n.x), double(n.y), double(n.z))
+                           : positive(n);
 }
 /// A normal: of length 1, and on the same side of the surface.
 inline Vec3 normalToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 n) {
@@ -126,6 +155,8 @@ inline float errorToWorld(const RtslLaunch &launch, const RtslTransform &transfo
   if (!hasLinear(launch))
     return largest(error);
   const float *m = transform.linear;
+  if (!hasTurns(launch))
+    return largest({m[0] * error.x, m[4] * error.y, m[8] * error.z});
   const auto row = [&](int i) {
     return absolute(m[i]) * error.x + absolute(m[3 + i]) * error.y + absolute(m[6 + i]) * error.z;
   };

@@ -33,6 +33,11 @@ inline bool moves(const RtslLaunch &launch, const RtslTransform &transform) {
 inline bool hasLinear(const RtslLaunch &launch) {
   return (rtsl_needs(&launch) & RTSL_HAS_LINEAR) != 0;
 }
+/// Does some transform turn or shear? Otherwise linear parts are scales along the axes, equal or
+/// not, and only their diagonals are read: products with the zeros beside them would change no bit.
+inline bool hasTurns(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_TURNS) != 0;
+}
 
 /// Has the mesh several keys?
 inline bool moves(const RtslLaunch &launch, const RtslMesh &mesh) {

@@ -51,11 +51,40 @@ class EveryPath(GraphCase):
             self.assert_same_bits(f"{number}.exr", first, options)
 
     def test_what_a_scene_does_not_have_is_left_out(self):
-        parts = {"transforms", "linear parts of transforms", "counts", "selectors"}
+        parts = {
+            "transforms",
+            "linear parts of transforms",
+            "rotations and shears of transforms",
+            "counts",
+            "selectors",
+        }
         plain = scene({"one": balls([0, 0, 0, 1])}, root="one")
         for one, needed in ((scene(), parts), (plain, set())):
             path = self.write("scene.json", json.dumps(one))
             self.assertEqual(self.graph_parts(path), needed)
+
+    def test_scales_have_the_bits_of_all_matrices(self):
+        ball = {"child": "ball"}
+        scaled = scene(
+            {
+                "ball": balls([0, 0, 0, 1], [0, 1, 0, 0.5]),
+                "all": {
+                    "children": [
+                        {**ball, "transform": {"scale": 0.7, "translate": [-1, 0, 0]}},
+                        {**ball, "transform": {"scale": [0.3, -1.1, 0.6], "translate": [1, 0, 1]}},
+                    ]
+                },
+            },
+            root="all",
+        )
+        path = self.write("scene.json", json.dumps(scaled))
+        self.assertEqual(
+            self.graph_parts(path), {"transforms", "linear parts of transforms", "counts"}
+        )
+        expected, _ = self.render_scene(scaled, "--keep=transforms")
+        for options in ([], ["--traversal=device"], ["--target=host-megakernel"]):
+            picture, _ = self.render_scene(scaled, *options)
+            self.assert_same_bits(picture, expected, options)
 
     def test_each_thing_that_a_scene_does_not_have_can_be_kept(self):
         plain = scene({"one": {**balls([0, 0, 0, 1]), "count": 1}}, root="one", variables={})

@@ -215,7 +215,14 @@ class EveryPath(MotionCase):
             self.assert_same_bits(self.render(moving, *options), picture, options)
 
     def test_what_a_scene_does_not_have_is_left_out(self):
-        parts = {"transforms", "linear parts of transforms", "motion", "mesh keys", "shutter"}
+        parts = {
+            "transforms",
+            "linear parts of transforms",
+            "rotations and shears of transforms",
+            "motion",
+            "mesh keys",
+            "shutter",
+        }
         plain = scene({"one": {"mesh": "flat.obj", "material": "paint"}}, root="one")
         timed = scene(
             {"one": {"mesh": "flat.obj", "material": "paint"}},

@@ -204,9 +204,21 @@ TEST(Refit, RefusesWhatCannotMove) {
   EXPECT_EQ(scene.moves(), 0u);
 }
 
-// All transforms of a scene are translations: nothing reads their linear parts, and the bits are
-// those of the general form.
-TEST(Translations, HaveTheBitsOfTheGeneralForm) {
+namespace {
+
+/// A form of the transforms of a scene, cheaper than that of all matrices.
+struct CheapForm {
+  bool scales;          // along the axes; otherwise all are translations
+  std::uint32_t absent; // RTSL_HAS_*
+};
+
+class CheapForms : public testing::TestWithParam<CheapForm> {};
+
+} // namespace
+
+// What the transforms of a scene do not have is not read, and the bits are those of the general
+// form.
+TEST_P(CheapForms, HaveTheBitsOfTheGeneralForm) {
   std::mt19937 random(31);
   std::uniform_real_distribution<double> unit(-1, 1);
   Scene scene(fakeProgram());
@@ -216,8 +228,13 @@ TEST(Translations, HaveTheBitsOfTheGeneralForm) {
   for (int i = 0; i < 80; ++i) {
     const auto place = [&] {
       const double size = i % 7 == 0 ? 1e6 : i % 5 == 0 ? 0 : 8;
-      return Transform::translate(size * unit(random), i % 3 ? 8 * unit(random) : 0,
-                                  size * unit(random));
+      const Transform moved = Transform::translate(
+          size * unit(random), i % 3 ? 8 * unit(random) : 0, size * unit(random));
+      if (!GetParam().scales)
+        return moved;
+      const double uniform = std::exp(unit(random)); // and mirrored, and not uniform
+      return Transform::scale(i % 2 ? uniform : -uniform, i % 4 ? uniform : 0.3, uniform)
+          .then(moved);
     };
     Placement placement;
     placement.transform = place();
@@ -230,10 +247,11 @@ TEST(Translations, HaveTheBitsOfTheGeneralForm) {
   }
   const HostScene own(scene, false, 1);
   const RtslLaunch &cheap = own.deviceLaunch();
-  EXPECT_EQ(cheap.needs & RTSL_HAS_LINEAR, 0u);
+  EXPECT_EQ(cheap.needs & (RTSL_HAS_LINEAR | RTSL_HAS_TURNS),
+            (RTSL_HAS_LINEAR | RTSL_HAS_TURNS) & ~GetParam().absent);
   EXPECT_NE(cheap.needs & RTSL_HAS_TRANSFORMS, 0u);
   RtslLaunch general = cheap;
-  general.needs |= RTSL_HAS_LINEAR;
+  general.needs |= RTSL_HAS_LINEAR | RTSL_HAS_TURNS;
   int hits = 0;
   for (int i = 0; i < 20000; ++i) {
     const Ray ray = randomRay(random, 1);
@@ -265,3 +283,9 @@ TEST(Translations, HaveTheBitsOfTheGeneralForm) {
   }
   EXPECT_GT(hits, 500);
 }
+INSTANTIATE_TEST_SUITE_P(Transforms, CheapForms,
+                         testing::Values(CheapForm{false, RTSL_HAS_LINEAR | RTSL_HAS_TURNS},
+                                         CheapForm{true, RTSL_HAS_TURNS}),
+                         [](const auto &info) {
+                           return std::string(info.param.scales ? "Scales" : "Translations");
+                         });
