@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <unistd.h>
+#include <utility>
 
 namespace rtsl::tool {
 
@@ -44,6 +45,33 @@ void Progress::finish() {
   if (drawn)
     fmt::print(stderr, "\r\033[K");
   drawn = false;
+}
+
+PhaseProgress::PhaseProgress(std::string what) : what(std::move(what)) {
+  if (isatty(STDERR_FILENO))
+    thread = std::thread([this] { run(); });
+}
+
+PhaseProgress::~PhaseProgress() {
+  if (!thread.joinable())
+    return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    isOver = true;
+  }
+  changed.notify_one();
+  thread.join();
+  fmt::print(stderr, "\r\033[K");
+}
+
+void PhaseProgress::run() {
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock<std::mutex> lock(mutex);
+  do {
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    fmt::print(stderr, "\r\033[K{}: {:.1f} s", what, seconds.count());
+    std::fflush(stderr);
+  } while (!changed.wait_for(lock, std::chrono::milliseconds(100), [this] { return isOver; }));
 }
 
 } // namespace rtsl::tool

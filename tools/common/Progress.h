@@ -2,7 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace rtsl::tool {
 
@@ -25,6 +28,23 @@ private:
   std::string what;
   bool enabled, drawn = false;
   Clock::time_point start, last;
+};
+
+/// While it exists, the name of a phase whose end is not known, such as reading files, and the
+/// seconds that it takes.
+class PhaseProgress {
+public:
+  explicit PhaseProgress(std::string what);
+  ~PhaseProgress();
+
+private:
+  void run();
+
+  const std::string what;
+  std::mutex mutex; // for isOver
+  std::condition_variable changed;
+  bool isOver = false;
+  std::thread thread; // none unless standard error is a terminal
 };
 
 } // namespace rtsl::tool

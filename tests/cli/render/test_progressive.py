@@ -1,6 +1,8 @@
 """`rtslc render --time` and `--noise`: passes of samples, until the picture is good enough."""
 
 import json
+import os
+import pty
 import signal
 import subprocess
 import time
@@ -47,6 +49,31 @@ class Progressive(Case):
                     "pixelsWithoutSample",
                 ):
                     self.assertEqual(passes[count], whole[count], count)
+
+    def on_terminal(self, *options):
+        """What a rendering writes to a terminal."""
+        leader, follower = pty.openpty()
+        running = subprocess.Popen(
+            [RTSLC, "render", "scene.json", "-o", "a.exr", "-O0", "--spp=1", *SMALL, *options],
+            cwd=self.folder,
+            stderr=follower,
+        )
+        os.close(follower)
+        written = b""
+        try:
+            while part := os.read(leader, 4096):
+                written += part
+        except OSError:  # the rendering is over
+            pass
+        os.close(leader)
+        self.assertEqual(running.wait(timeout=SECONDS), 0)
+        return written.decode()
+
+    def test_reading_and_building_are_shown_on_a_terminal(self):
+        written = self.on_terminal("-Wno-depth-limit")
+        self.assertRegex(written, r"reading: \d+\.\d s")
+        self.assertRegex(written, r"building trees: \d+\.\d s")
+        self.assertEqual(self.on_terminal("-Wno-depth-limit", "-q"), "")
 
     def test_the_time_is_kept(self):
         start = time.monotonic()

@@ -247,6 +247,7 @@ private:
     scene = target->compile(*module, request, compileOptions, messages.diagnostics,
                             [&](const auto &program) {
                               const Clock::time_point begin = Clock::now();
+                              const auto shown = showPhase("reading");
                               runtime::Scene made = scene::buildScene(description, program);
                               summary.times.scene = secondsSince(begin);
                               return made;
@@ -257,6 +258,11 @@ private:
     for (const Warning &warning : scene->warnings())
       messages.report(warning);
     return true;
+  }
+
+  /// Null: nothing is shown.
+  std::unique_ptr<PhaseProgress> showPhase(const char *what) const {
+    return options.quiet ? nullptr : std::make_unique<PhaseProgress>(what);
   }
 
   runtime::Image render(const std::string &what) {
@@ -272,8 +278,10 @@ private:
     if (!options.quiet)
       render.progress = [&](double share) { progress.update(share); };
     const Clock::time_point begin = Clock::now();
+    auto building = showPhase("building trees");
     const std::unique_ptr<runtime::Backend> backend =
         target->prepare(*scene, render, options.keptTrees.get());
+    building.reset();
     const double seconds = secondsSince(begin);
     runtime::Image image = options.isInPasses() ? renderInPasses(*backend, progress)
                                                 : backend->render(&summary.statistics);
