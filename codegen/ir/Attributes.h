@@ -3,12 +3,7 @@
 //   ir::attr::frameSize.set(function, builder.getI32IntegerAttr(bytes));
 //   if (mlir::IntegerAttr size = ir::attr::frameSize.of(state)) ...
 //
-// Attributes.def explains each of them, and the verifier and these constants follow from it.
-// TableGen can declare such attributes, too (`discardableAttrs` of a dialect), but a declaration is
-// only a class and a name: it has no place for the operations that may have the attribute or for a
-// description, so the verifier and the documentation would need a second table with the same
-// names. What it generates is a class with a member for the interned name, which has to be made
-// from a context, or got from the dialect, wherever an attribute is read or set.
+// dialect/RtslDiscardableAttributes.td declares and explains them.
 //
 //===----------------------------------------------------------------------===//
 #ifndef RTSL_CODEGEN_IR_ATTRIBUTES_H // not `#pragma once`: see Precompiled.h
@@ -40,9 +35,9 @@ struct DiscardableAttribute {
 
 namespace attr {
 
-#define RTSL_ATTRIBUTE(Constant, Word, Kind, On, Meaning)                                          \
-  inline constexpr DiscardableAttribute<mlir::Kind##Attr> Constant = {"rtsl." Word};
-#include "codegen/ir/Attributes.def"
+#define RTSL_ATTRIBUTE(Constant, Word, Class, Rule, Operations)                                    \
+  inline constexpr DiscardableAttribute<mlir::Class> Constant = {"rtsl." Word};
+#include "codegen/ir/dialect/RtslDiscardableAttributes.inc"
 
 } // namespace attr
 

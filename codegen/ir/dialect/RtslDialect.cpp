@@ -13,7 +13,6 @@
 #include "mlir/IR/DialectImplementation.h"
 #include "mlir/Transforms/InliningUtils.h"
 #include "llvm/ADT/StringMap.h"
-#include "llvm/ADT/StringSwitch.h"
 #include "llvm/ADT/TypeSwitch.h"
 
 #include "codegen/ir/dialect/RtslDialect.cpp.inc"
@@ -59,10 +58,10 @@ mlir::Operation *RtslDialect::materializeConstant(mlir::OpBuilder &builder, mlir
 
 namespace {
 
-/// A row of Attributes.def.
+/// A record of RtslDiscardableAttributes.td.
 struct DeclaredAttribute {
-  llvm::StringRef kind;
   bool (*isOfKind)(mlir::Attribute);
+  llvm::StringRef rule;       // of its kind
   llvm::StringRef operations; // that may have it, separated by ", "
 };
 
@@ -73,9 +72,9 @@ bool isOfKind(mlir::Attribute attribute) {
 
 const llvm::StringMap<DeclaredAttribute> &declaredAttributes() {
   static const llvm::StringMap<DeclaredAttribute> attributes = {
-#define RTSL_ATTRIBUTE(Constant, Word, Kind, On, Meaning)                                          \
-  {attr::Constant.name, {#Kind, isOfKind<mlir::Kind##Attr>, On}},
-#include "codegen/ir/Attributes.def"
+#define RTSL_ATTRIBUTE(Constant, Word, Class, Rule, Operations)                                    \
+  {attr::Constant.name, {isOfKind<mlir::Class>, Rule, Operations}},
+#include "codegen/ir/dialect/RtslDiscardableAttributes.inc"
   };
   return attributes;
 }
@@ -101,20 +100,12 @@ mlir::LogicalResult RtslDialect::verifyOperationAttribute(mlir::Operation *op,
   if (declared == declaredAttributes().end())
     return op->emitOpError() << "has the attribute `" << name
                              << "`, which the dialect does not declare";
-  const auto &[kind, isOfKind, operations] = declared->second;
+  const auto &[isOfKind, rule, operations] = declared->second;
   if (!lists(operations, op->getName().getStringRef()))
     return op->emitOpError() << "may not have `" << name << "`, an attribute of " << operations;
-  if (isOfKind(attribute.getValue()))
-    return mlir::success();
-  if (kind == "Unit")
-    return op->emitOpError() << "`" << name << "` takes no value";
-  const llvm::StringRef shown = llvm::StringSwitch<llvm::StringRef>(kind)
-                                    .Case("String", "a string")
-                                    .Case("Integer", "an integer")
-                                    .Case("Array", "an array")
-                                    .Case("DenseI32Array", "an array of i32")
-                                    .Case("DenseF32Array", "an array of f32");
-  return op->emitOpError() << "`" << name << "` must be " << shown;
+  if (!isOfKind(attribute.getValue()))
+    return op->emitOpError() << "`" << name << "` " << rule;
+  return mlir::success();
 }
 
 } // namespace rtsl::ir

@@ -24,8 +24,8 @@ def Rtsl_Dialect : Dialect {
 
     Functions are `func.func`. The state of the ray is a parameter of each, which becomes explicit
     only in LLVM IR. Methods have the discardable attributes `rtsl.class = "Glass"` and `rtsl.method
-    = "shade"`; Attributes.def lists these and all others, on functions and other operations, and
-    the verifier rejects any that are not listed there.
+    = "shade"`; RtslDiscardableAttributes.td declares these and all others, on functions and other
+    operations, and the verifier rejects any that are not declared there.
   }];
   let useDefaultTypePrinterParser = 1;
   let useDefaultAttributePrinterParser = 1;

@@ -31,8 +31,8 @@ def Rtsl_EvaluateOp : Rtsl_Op<"evaluate"> {
   let description = [{
     The operands are the parts of it whose values may change: values, and addresses of variables
     that stay whole. `writes` names the state variables that it may change; without it, all.
-    Attributes.def explains `rtsl.into`, `rtsl.changes`, `rtsl.plain` and `rtsl.nested`, which
-    describe its other effects.
+    RtslDiscardableAttributes.td explains `rtsl.into`, `rtsl.changes`, `rtsl.plain` and
+    `rtsl.nested`, which describe its other effects.
 
     Example: `%f = rtsl.evaluate 4 (%x) writes ["LightColor"] : (f32) -> f32`
   }];
