@@ -7,11 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <deque>
 #include <exception>
 #include <pthread.h>
-#include <thread>
 #include <unistd.h>
 
 namespace rtsl {
@@ -105,18 +103,6 @@ void runOnThreads(unsigned count, std::uint64_t stackBytes,
   for (const Worker &worker : workers)
     if (worker.failure)
       std::rethrow_exception(worker.failure);
-}
-
-void forEachOnThreads(unsigned threads, std::size_t count,
-                      const std::function<void(std::size_t)> &work) {
-  if (count == 0) // no stack is needed
-    return;
-  const std::size_t most = threads ? threads : std::max(1u, std::thread::hardware_concurrency());
-  std::atomic<std::size_t> next{0};
-  runOnThreads(unsigned(std::min(count, most)), 0, [&](unsigned) {
-    for (std::size_t i = next++; i < count; i = next++)
-      work(i);
-  });
 }
 
 } // namespace rtsl

@@ -1,7 +1,11 @@
 //===- WorkerThreads.h - threads with a stack of the required size --------===//
+//
+// For rendering, which needs a stack for the frames of shaders, and for what must run at the same
+// time. All other parallel work is in Parallel.h.
+//
+//===----------------------------------------------------------------------===//
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 
@@ -17,10 +21,5 @@ constexpr std::uint64_t stackMargin = std::uint64_t(1) << 20;
 /// Exceptions of `work` are rethrown.
 void runOnThreads(unsigned count, std::uint64_t stackBytes,
                   const std::function<void(unsigned)> &work);
-
-/// Calls `work(0)` ... `work(count - 1)`, in any order, on up to this number of threads; 0: one per
-/// core. Exceptions of `work` are rethrown.
-void forEachOnThreads(unsigned threads, std::size_t count,
-                      const std::function<void(std::size_t)> &work);
 
 } // namespace rtsl

@@ -1,8 +1,8 @@
 //===- Flip.cpp -----------------------------------------------------------===//
 #include "report/measures/Flip.h"
 
-#include "report/measures/ParallelRows.h"
 #include "support/ErrorMessages.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -175,7 +175,7 @@ template <typename Read>
 Plane<float> convolveRows(std::uint32_t width, std::uint32_t height, const Kernel &kernel,
                           Read read) {
   Plane<float> output(width, height);
-  parallelRows(height, [&](std::uint32_t y) {
+  forEachInParallel(0, height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       float sum = 0;
       for (int i = -kernel.radius(); i <= kernel.radius(); ++i)
@@ -188,7 +188,7 @@ Plane<float> convolveRows(std::uint32_t width, std::uint32_t height, const Kerne
 
 Plane<float> convolveColumns(const Plane<float> &input, const Kernel &kernel) {
   Plane<float> output(input.width, input.height);
-  parallelRows(input.height, [&](std::uint32_t y) {
+  forEachInParallel(0, input.height, [&](std::uint32_t y) {
     float *row = &output.at(0, y);
     for (int i = -kernel.radius(); i <= kernel.radius(); ++i) {
       const float *from = &input.at(0, clampedStep(y, i, input.height));
@@ -214,7 +214,7 @@ Plane<Color> seenColors(const Plane<Color> &opponent, double pixelsPerDegree) {
       for (std::size_t i = 0; i < both.values.size(); ++i)
         seen.values[i][channel] += float(weight * both.values[i]);
     }
-  parallelRows(seen.height, [&](std::uint32_t y) {
+  forEachInParallel(0, seen.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < seen.width; ++x) {
       Color rgb = fromOpponent(seen.at(x, y));
       for (float &component : rgb)
@@ -288,7 +288,7 @@ FlipMap difference(const Seen &reference, const Seen &test) {
       hyabDistance(toHuntLab({0, 1, 0}), toHuntLab({0, 0, 1})); // green beside blue
   FlipMap map{reference.colors.width, reference.colors.height, {}};
   map.error.resize(reference.colors.values.size());
-  parallelRows(map.height, [&](std::uint32_t y) {
+  forEachInParallel(0, map.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < map.width; ++x) {
       const double color =
           colorError(hyabDistance(reference.colors.at(x, y), test.colors.at(x, y)), largest);
@@ -306,7 +306,7 @@ FlipMap difference(const Seen &reference, const Seen &test) {
 template <typename OnScreen>
 Plane<Color> opponentPlane(const runtime::Image &image, OnScreen onScreen) {
   Plane<Color> plane(image.width, image.height);
-  parallelRows(image.height, [&](std::uint32_t y) {
+  forEachInParallel(0, image.height, [&](std::uint32_t y) {
     for (std::uint32_t x = 0; x < image.width; ++x) {
       const float *pixel = image.at(x, y);
       plane.at(x, y) = toOpponent({onScreen(pixel[0]), onScreen(pixel[1]), onScreen(pixel[2])});

@@ -2,7 +2,7 @@
 
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/trees/Bounds.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ Sum collectAll(Iterator begin, Iterator end, unsigned threads, Collect collect) 
     return sum;
   }
   std::vector<Sum> sums((count + part - 1) / part);
-  forEachOnThreads(threads, sums.size(), [&](std::size_t i) {
+  forEachInParallel(threads, sums.size(), [&](std::size_t i) {
     collect(begin + std::ptrdiff_t(i * part),
             begin + std::ptrdiff_t(std::min(count, (i + 1) * part)), sums[i]);
   });
@@ -278,7 +278,7 @@ BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads) {
   top.node(tree.boxes.begin(), tree.boxes.end(), 0);
   tree.nodes = std::move(top.nodes);
   std::vector<Builder::Nodes> subtrees(top.later.size());
-  forEachOnThreads(threads, subtrees.size(), [&](std::size_t i) {
+  forEachInParallel(threads, subtrees.size(), [&](std::size_t i) {
     const BinaryTree::Node &root = tree.nodes[top.later[i].node];
     const Iterator first = tree.boxes.begin() + root.first;
     Builder builder(tree.boxes, 0, 1);

@@ -5,7 +5,7 @@
 #include "runtime/accel/TreeItems.h"
 #include "runtime/accel/WideTree.h"
 #include "runtime/device/traverse/Traverse.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 
@@ -53,7 +53,7 @@ namespace {
 template <typename Work>
 void forAll(unsigned threads, std::size_t count, Work work) {
   constexpr std::size_t atOnce = 1 << 14;
-  forEachOnThreads(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
+  forEachInParallel(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
     const std::size_t end = std::min(count, (part + 1) * atOnce);
     for (std::size_t i = part * atOnce; i < end; ++i)
       work(i);

@@ -3,15 +3,12 @@
 
 #include "runtime/accel/ClusterTree.h"
 
-#include <memory>
-
 namespace rtsl::runtime {
 
 class HostBuildDevice final : public BuildDevice {
 public:
   /// `threads` 0: one per core; the tree does not depend on their number.
-  explicit HostBuildDevice(unsigned threads);
-  ~HostBuildDevice() override;
+  explicit HostBuildDevice(unsigned threads) : threads(threads) {}
 
   Address allocate(std::size_t bytes, const char *what) override;
   void release(Address address) override;
@@ -24,8 +21,7 @@ public:
   void wait() override {}
 
 private:
-  struct Threads;
-  std::unique_ptr<Threads> threads;
+  unsigned threads;
 };
 
 } // namespace rtsl::runtime

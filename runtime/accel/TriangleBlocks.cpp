@@ -1,6 +1,6 @@
 #include "runtime/accel/TriangleBlocks.h"
 
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -38,7 +38,7 @@ LargeArray<RTCBuildPrimitive> triangleBoxes(const std::vector<MeshUse> &meshes, 
   if (pieces.empty())
     return {};
   LargeArray<RTCBuildPrimitive> boxes(pieces.back().to + pieces.back().count);
-  forEachOnThreads(threads, pieces.size(), [&](std::size_t number) {
+  forEachInParallel(threads, pieces.size(), [&](std::size_t number) {
     const Piece &piece = pieces[number];
     const RtslMesh &mesh = *meshes[piece.use].mesh;
     for (std::uint32_t i = 0; i < piece.count; ++i) {
@@ -111,7 +111,7 @@ LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const std::vector
   const std::vector<Run> runs = sortIntoRuns(device, boxes);
   LargeArray<TriangleBlock> blocks(runs.size());
   constexpr std::size_t atOnce = 1024;
-  forEachOnThreads(threads, (runs.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
+  forEachInParallel(threads, (runs.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
     const std::size_t end = std::min(runs.size(), (part + 1) * atOnce);
     for (std::size_t i = part * atOnce; i < end; ++i)
       for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {

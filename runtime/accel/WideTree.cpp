@@ -2,7 +2,7 @@
 
 #include "runtime/device/trees/Children.h"
 #include "runtime/device/trees/Grid.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <unordered_map>
 #include <utility>
@@ -29,8 +29,8 @@ public:
     std::vector<std::uint32_t> roots;
     findSubtrees(0, roots);
     std::vector<Costs> costs(roots.size());
-    forEachOnThreads(threads, roots.size(),
-                     [&](std::size_t i) { costs[i] = chooseBelow(roots[i]); });
+    forEachInParallel(threads, roots.size(),
+                      [&](std::size_t i) { costs[i] = chooseBelow(roots[i]); });
     for (std::size_t i = 0; i < roots.size(); ++i)
       known[roots[i]] = costs[i];
     const float cost = chooseBelow(0).of[1] / halfArea(tree.nodes[0].bounds);
@@ -177,7 +177,7 @@ WideTree widen(const BinaryTree &tree, unsigned threads) {
   Widening top(tree, choices, true);
   top.run();
   std::vector<WideTree> subtrees(top.later.size());
-  forEachOnThreads(threads, subtrees.size(), [&](std::size_t i) {
+  forEachInParallel(threads, subtrees.size(), [&](std::size_t i) {
     Widening below(tree, choices, false);
     below.fillFrom(0, top.later[i].second);
     subtrees[i] = std::move(below.wide);

@@ -4,7 +4,7 @@
 #include "runtime/embree/HostScene.h"
 #include "runtime/program/ProgramHost.h"
 #include "support/ErrorMessages.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <fmt/format.h>
 
@@ -441,7 +441,7 @@ bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   const RtslLaunch &launch = space.scene->launch;
   std::atomic<bool> isChanged{false};
   constexpr std::size_t atOnce = 1024;
-  forEachOnThreads(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
+  forEachInParallel(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
     const std::size_t end = std::min(space.blocks.size(), (part + 1) * atOnce);
     for (std::size_t i = part * atOnce; i < end; ++i) {
       TriangleBlock &block = space.blocks[i];

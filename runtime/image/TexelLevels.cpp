@@ -2,7 +2,7 @@
 #include "runtime/image/Texels.h"
 
 #include "support/ErrorMessages.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +52,7 @@ void shrink(const Level &from, const Level &to, std::uint32_t channels, std::uin
   const auto isAlpha = [&](std::uint32_t channel) {
     return channels != 1 && channel + 1 == channels;
   };
-  forEachOnThreads(0, std::size_t(to.height) * to.depth, [&](std::size_t row) {
+  forEachInParallel(0, std::size_t(to.height) * to.depth, [&](std::size_t row) {
     const Cover &slice = slices[row / to.height], &line = rows[row % to.height];
     std::uint8_t *target = to.bytes + row * to.width * texelBytes;
     for (const Cover &column : columns)

@@ -2,7 +2,7 @@
 
 #include "runtime/embree/HostScene.h"
 #include "runtime/scene/Scene.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <cstring>
@@ -61,7 +61,7 @@ struct MeshQuery::Implementation {
   template <typename Take>
   void trace(const QueryRay *rays, std::size_t count, std::uint32_t how, Take take) const {
     constexpr std::size_t atOnce = 1024;
-    forEachOnThreads(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
+    forEachInParallel(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
       RtslState state{};
       state.launch = &launch;
       state.rayMask = ~0u;

@@ -1,6 +1,7 @@
 #include "runtime/render/SeveralDevices.h"
 
 #include "runtime/render/Watch.h"
+#include "support/Parallel.h"
 #include "support/WorkerThreads.h"
 
 #include <algorithm>
@@ -49,8 +50,8 @@ RenderOptions SeveralDevices::optionsOfPart(const RenderOptions &options, std::s
 SeveralDevices::SeveralDevices(std::size_t count, const Make &make, const RenderOptions &options)
     : Backend(options), devices(count), rowsLeft(windowOf(options), count, 0) {
   const RenderOptions ofPart = optionsOfPart(options, count);
-  forEachOnThreads(unsigned(count), count,
-                   [&](std::size_t i) { devices[i].backend = make(i, ofPart); });
+  forEachInParallel(unsigned(count), count,
+                    [&](std::size_t i) { devices[i].backend = make(i, ofPart); });
   for (const Device &device : devices)
     buildSeconds = std::max(buildSeconds, device.backend->secondsToPrepare());
   trees = devices.front().backend->builtTrees();

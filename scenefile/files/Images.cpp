@@ -7,7 +7,7 @@
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -318,7 +318,7 @@ ImageFiles::ImageFiles(const SceneDescription &description,
     numbers[json] = found->second;
   }
   results.resize(images.size());
-  forEachOnThreads(0, images.size(), [&](std::size_t i) {
+  forEachInParallel(0, images.size(), [&](std::size_t i) {
     Result &result = results[i];
     try {
       result.texels = load(*images[i].description, description);

@@ -3,7 +3,7 @@
 #include "scenefile/Models.h"
 #include "scenefile/gltf/Mesh.h"
 #include "support/ErrorMessages.h"
-#include "support/WorkerThreads.h"
+#include "support/Parallel.h"
 
 #include <fmt/format.h>
 
@@ -77,7 +77,7 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
     }
   }
 
-  forEachOnThreads(0, files.size(), [&](std::size_t i) {
+  forEachInParallel(0, files.size(), [&](std::size_t i) {
     File &file = files[i];
     runtime::MeshRequest wanted = request;
     wanted.keepsOrder = file.keepsOrder;
@@ -90,7 +90,7 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
     }
   });
   results.resize(uses.size());
-  forEachOnThreads(0, results.size(), [&](std::size_t i) {
+  forEachInParallel(0, results.size(), [&](std::size_t i) {
     const GeometryDescription &geometry = *uses[i].geometry;
     Result &result = results[i];
     try {

@@ -1,0 +1,19 @@
+//===- Parallel.h - the same work for many numbers, on all cores ----------===//
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace rtsl {
+
+/// Calls `work(0)` ... `work(count - 1)`, in any order, on up to this number of threads of TBB; 0:
+/// one per core. Each call computes with the floating-point settings of the caller. While this
+/// thread waits it runs no other work, so the caller may hold a lock. If calls of `work` throw, one
+/// of their exceptions is rethrown.
+///
+/// Calls of `work` must not wait for each other: they may run one after the other. What must run at
+/// the same time, or needs a large stack, runs on WorkerThreads.h.
+void forEachInParallel(unsigned threads, std::size_t count,
+                       const std::function<void(std::size_t)> &work);
+
+} // namespace rtsl
