@@ -2,9 +2,9 @@
 #include "codegen/driver/Stages.h"
 
 #include "codegen/driver/Compilation.h"
-#include "codegen/driver/CppOutput.h"
 #include "codegen/driver/HostCode.h"
-#include "codegen/driver/Reflection.h"
+#include "codegen/driver/outputs/CppOutput.h"
+#include "codegen/driver/outputs/Reflection.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"

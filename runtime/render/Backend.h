@@ -9,8 +9,8 @@
 #pragma once
 
 #include "runtime/image/Image.h"
-#include "runtime/render/Passes.h"
 #include "runtime/render/RenderOptions.h"
+#include "runtime/render/passes/Passes.h"
 
 #include <chrono>
 #include <functional>

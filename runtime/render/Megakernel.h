@@ -10,7 +10,7 @@
 #include "runtime/accel/DeviceTrees.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/render/Backend.h"
-#include "runtime/render/PixelSums.h"
+#include "runtime/render/passes/PixelSums.h"
 
 #include <cstdint>
 #include <functional>

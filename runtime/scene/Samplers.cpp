@@ -1,6 +1,6 @@
 #include "runtime/scene/Samplers.h"
 
-#include "runtime/scene/DirectionChances.h"
+#include "runtime/scene/lights/DirectionChances.h"
 
 #include <cstring>
 #include <memory>

@@ -1,9 +1,9 @@
 #include "runtime/scene/Scene.h"
 
-#include "runtime/scene/CameraAndLights.h"
-#include "runtime/scene/Emitters.h"
 #include "runtime/scene/Geometry.h"
 #include "runtime/scene/Objects.h"
+#include "runtime/scene/lights/CameraAndLights.h"
+#include "runtime/scene/lights/Emitters.h"
 
 #include <algorithm>
 #include <optional>

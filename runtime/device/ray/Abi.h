@@ -270,9 +270,9 @@ typedef struct RtslStatus {
 #define RTSL_PROBLEM_STACK 1u // laneBytes is less than rtsl_lane_bytes: no lane was started
 
 /// The sums of the samples of each pixel, row by row, to which slices are added. The samples of an
-/// adaptive rendering (runtime/render/Adaptive.h) are in two halves: there each pixel has two of
-/// everything but `taken` and `closed`, for its first half and for its second. Otherwise the last
-/// three are null.
+/// adaptive rendering (runtime/render/passes/Adaptive.h) are in two halves: there each pixel has
+/// two of everything but `taken` and `closed`, for its first half and for its second. Otherwise the
+/// last three are null.
 typedef struct RtslPixelSums {
   double *colors;     // colorComponents per pixel
   double *squares;    // of the values of samples, the means of their components; null: not wanted

@@ -6,7 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/driver/Compiler.h"
-#include "codegen/driver/SourceLoader.h"
+#include "codegen/driver/sources/SourceLoader.h"
 #include "language/ColorBasis.h"
 #include "runtime/render/Renderer.h"
 #include "scenefile/SceneFile.h"

@@ -1,8 +1,8 @@
 //===- CompiledShaders.cpp ------------------------------------------------===//
 #include "CompiledShaders.h"
 
-#include "codegen/driver/SourceLoader.h"
 #include "codegen/driver/Stages.h"
+#include "codegen/driver/sources/SourceLoader.h"
 #include "rtsl/program.h"
 #include "sema/Sema.h"
 #include "support/Error.h"

@@ -1,6 +1,6 @@
 // Adaptive renderings are right on average, have less noise where they take as many samples, and
 // can be interrupted anywhere. The host's megakernel runs a program whose samples have known laws.
-#include "runtime/render/Adaptive.h"
+#include "runtime/render/passes/Adaptive.h"
 
 #include "runtime/device/engines/Slice.h"
 #include "runtime/device/ray/Random.h"

@@ -1,6 +1,6 @@
 // A checkpoint is read as it was written, or refused: whatever byte of it changes, wherever it
 // ends, and for any rendering but its own.
-#include "runtime/render/Checkpoint.h"
+#include "runtime/render/passes/Checkpoint.h"
 #include "runtime/render/Crc64.h"
 #include "support/AtomicFile.h"
 #include "support/Error.h"

@@ -1,7 +1,7 @@
-// The light tree: its construction (runtime/scene/LightTree.h), and how lamps are chosen from it
-// (runtime/device/engines/LightTree.h).
+// The light tree: its construction (runtime/scene/lights/LightTree.h), and how lamps are chosen
+// from it (runtime/device/engines/LightTree.h).
 #include "runtime/device/engines/LightTree.h"
-#include "runtime/scene/LightTree.h"
+#include "runtime/scene/lights/LightTree.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include "SceneShaders.h"
 
 #include "Shaders.h"
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "frontend/preprocessor/FileSearch.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/SceneParts.h"

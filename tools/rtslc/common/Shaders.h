@@ -2,8 +2,8 @@
 #pragma once
 
 #include "Messages.h"
-#include "codegen/driver/LibraryNames.h"
-#include "codegen/driver/SourceLoader.h"
+#include "codegen/driver/sources/LibraryNames.h"
+#include "codegen/driver/sources/SourceLoader.h"
 #include "sema/Sema.h"
 
 #include <memory>

@@ -4,7 +4,7 @@
 // the name.
 //
 //===----------------------------------------------------------------------===//
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "frontend/preprocessor/Preprocessor.h"
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"

@@ -1,7 +1,7 @@
 //===- CheckpointFile.h - rtslc render --checkpoint ------------------------===//
 #pragma once
 
-#include "runtime/render/Checkpoint.h"
+#include "runtime/render/passes/Checkpoint.h"
 #include "tools/rtslc/common/Messages.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 //===- Preview.cpp - a standard scene that shows one class ----------------===//
 #include "Preview.h"
 
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "RenderTarget.h"
-#include "runtime/render/Checkpoint.h"
+#include "runtime/render/passes/Checkpoint.h"
 #include "scenefile/SceneFile.h"
 #include "tools/rtslc/common/Messages.h"
 

@@ -4,7 +4,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "runtime/buffers/NumberFiles.h"
 #include "runtime/buffers/PlyColumns.h"
 #include "support/Error.h"

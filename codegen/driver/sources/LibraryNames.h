@@ -1,7 +1,7 @@
 //===- LibraryNames.h - which module of the library defines a name --------===//
 #pragma once
 
-#include "codegen/driver/SourceLoader.h"
+#include "codegen/driver/sources/SourceLoader.h"
 
 #include <string>
 #include <unordered_set>

@@ -1,4 +1,4 @@
-#include "runtime/render/Checkpoint.h"
+#include "runtime/render/passes/Checkpoint.h"
 
 #include "runtime/render/Crc64.h"
 #include "support/AtomicFile.h"

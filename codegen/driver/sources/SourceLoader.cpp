@@ -1,7 +1,7 @@
 //===- SourceLoader.cpp - files and their imports -------------------------===//
-#include "codegen/driver/SourceLoader.h"
+#include "codegen/driver/sources/SourceLoader.h"
 
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "frontend/preprocessor/FileSearch.h"
 #include "frontend/source/Expansion.h"
 #include "frontend/syntax/Parser.h"

@@ -1,8 +1,8 @@
 //===- Passes.h - renderings that go on until the picture is good enough ---===//
 #pragma once
 
-#include "runtime/render/PixelSums.h"
 #include "runtime/render/RenderOptions.h"
+#include "runtime/render/passes/PixelSums.h"
 
 #include <cstdint>
 #include <functional>

@@ -1,7 +1,7 @@
 //===- LibraryNames.cpp - which module of the library defines a name ------===//
-#include "codegen/driver/LibraryNames.h"
+#include "codegen/driver/sources/LibraryNames.h"
 
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 
 #include <algorithm>
 #include <fstream>

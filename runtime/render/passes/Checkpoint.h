@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/render/Passes.h"
+#include "runtime/render/passes/Passes.h"
 
 #include <string>
 #include <string_view>

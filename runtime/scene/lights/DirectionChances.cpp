@@ -1,4 +1,4 @@
-#include "runtime/scene/DirectionChances.h"
+#include "runtime/scene/lights/DirectionChances.h"
 
 #include <algorithm>
 #include <cmath>

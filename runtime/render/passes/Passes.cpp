@@ -1,4 +1,4 @@
-#include "runtime/render/Passes.h"
+#include "runtime/render/passes/Passes.h"
 
 #include <algorithm>
 #include <cmath>

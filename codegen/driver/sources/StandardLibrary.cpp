@@ -1,5 +1,5 @@
 //===- StandardLibrary.cpp - the files of installed modules ---------------===//
-#include "codegen/driver/StandardLibrary.h"
+#include "codegen/driver/sources/StandardLibrary.h"
 
 #include "support/ClosestName.h"
 #include "support/ProgramFolder.h"

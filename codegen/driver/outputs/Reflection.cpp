@@ -1,5 +1,5 @@
 //===- Reflection.cpp - the description of a module as JSON ---------------===//
-#include "codegen/driver/Reflection.h"
+#include "codegen/driver/outputs/Reflection.h"
 
 #include "codegen/cpp/Names.h"
 #include "codegen/explain/ReportJson.h"

@@ -18,7 +18,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/render/PixelSums.h"
+#include "runtime/render/passes/PixelSums.h"
 
 #include <cstdint>
 

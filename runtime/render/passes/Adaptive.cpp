@@ -1,4 +1,4 @@
-#include "runtime/render/Adaptive.h"
+#include "runtime/render/passes/Adaptive.h"
 
 #include <algorithm>
 #include <cmath>

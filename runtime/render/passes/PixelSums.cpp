@@ -1,4 +1,4 @@
-#include "runtime/render/PixelSums.h"
+#include "runtime/render/passes/PixelSums.h"
 
 #include "support/Error.h"
 #include "support/ErrorMessages.h"

@@ -1,7 +1,7 @@
 //===- RenderInPasses.cpp - passes of samples, and checkpoints between them ===//
-#include "runtime/render/Adaptive.h"
 #include "runtime/render/Backend.h"
 #include "runtime/render/Watch.h"
+#include "runtime/render/passes/Adaptive.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 

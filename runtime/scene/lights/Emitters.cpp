@@ -1,4 +1,4 @@
-#include "runtime/scene/Emitters.h"
+#include "runtime/scene/lights/Emitters.h"
 
 #include "runtime/program/ProgramHost.h"
 

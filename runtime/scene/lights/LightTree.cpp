@@ -1,4 +1,4 @@
-#include "runtime/scene/LightTree.h"
+#include "runtime/scene/lights/LightTree.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/scene/LightTree.h"
 #include "runtime/scene/Objects.h"
 #include "runtime/scene/SceneData.h"
+#include "runtime/scene/lights/LightTree.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "runtime/scene/CameraAndLights.h"
+#include "runtime/scene/lights/CameraAndLights.h"
 
 #include "runtime/scene/ValueStore.h"
 #include "support/ErrorMessages.h"

@@ -1,4 +1,4 @@
-#include "codegen/driver/CppOutput.h"
+#include "codegen/driver/outputs/CppOutput.h"
 
 #include "codegen/cpp/EmitCpp.h"
 #include "codegen/cpp/HitErrors.h"
