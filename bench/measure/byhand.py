@@ -17,12 +17,12 @@ import tempfile
 from pathlib import Path
 
 from . import process
-from .gpu import ROOT, measure_picture
+from .gpu import ROOT, command_of_picture, measure_picture
 
 PROGRAMS = ("paths", "crystal", "noise", "ggx")
 ARITHMETIC = {"strict": [], "fast": ["--use_fast_math"]}
 COUNTER = "smsp__thread_inst_executed.sum"
-SAMPLES, COUNTED_SAMPLES = 64, 4
+SIZE, SAMPLES, COUNTED_SAMPLES = 1024, 64, 4
 
 
 def find_tool(name):
@@ -48,14 +48,15 @@ def lane_instructions(command):
 
 def measure_ours(options, name, arithmetic):
     scene = ROOT / "bench" / "gpu" / name / "scene.json"
-    figures = measure_picture(options, scene, SAMPLES, "1024x1024", f"--fp={arithmetic}")
+    how = [f"{SIZE}x{SIZE}", f"--fp={arithmetic}"]
+    figures = measure_picture(options, scene, SAMPLES, *how)
     with tempfile.TemporaryDirectory() as folder:
-        command = [str(options.build / "bin" / "rtslc"), "render", str(scene), "-q"]
-        command += ["-o", f"{folder}/a.exr", "--target=gpu", f"--fp={arithmetic}"]
-        command += ["--size=1024x1024", f"--spp={COUNTED_SAMPLES}", "-Wno-depth-limit"]
-        count = lane_instructions(command)
+        picture = f"{folder}/picture.exr"
+        count = lane_instructions(
+            command_of_picture(options, scene, picture, COUNTED_SAMPLES, *how)
+        )
     if count is not None:
-        figures["instructionsPerSample"] = count / (1024 * 1024 * COUNTED_SAMPLES)
+        figures["instructionsPerSample"] = count / (SIZE * SIZE * COUNTED_SAMPLES)
     return figures
 
 

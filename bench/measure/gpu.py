@@ -137,10 +137,12 @@ def write_bounce(grid, folder):
     (folder / "bounce.json").write_text(json.dumps(scene))
 
 
+def command_of_rtslc(options, command, *arguments):
+    return [str(options.build / "bin" / "rtslc"), command, *arguments, f"--target={options.target}"]
+
+
 def rtslc(options, command, *arguments):
-    return process.run(
-        [str(options.build / "bin" / "rtslc"), command, *arguments, f"--target={options.target}"]
-    ).output
+    return process.run(command_of_rtslc(options, command, *arguments)).output
 
 
 def measure_hall(options, name, mesh, grid):
@@ -195,23 +197,17 @@ def measure_tree(options, folder, tree, triangles):
     return figures
 
 
-def measure_picture(options, scene, samples, size="1024x1024", *arguments):
-    with tempfile.TemporaryDirectory() as temporary:
-        figures = json.loads(
-            rtslc(
-                options,
-                "render",
-                str(scene),
-                "-o",
-                str(Path(temporary) / "picture.exr"),
-                f"--size={size}",
-                *arguments,
-                f"--spp={samples}",
-                "--json",
-                "-q",
-                "-Wno-depth-limit",
-            )
-        )
+def command_of_picture(options, scene, picture, samples, size="1024x1024", *arguments):
+    size, samples = f"--size={size}", f"--spp={samples}"
+    options_of_picture = ["-q", "-Wno-depth-limit", size, samples, *arguments]
+    return command_of_rtslc(options, "render", str(scene), "-o", picture, *options_of_picture)
+
+
+def measure_picture(options, scene, *arguments):
+    """The arguments are those of command_of_picture from `samples` on."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = command_of_picture(options, scene, f"{folder}/picture.exr", *arguments)
+        figures = json.loads(process.run([*command, "--json"]).output)
     gpu = figures.get("gpu", {})
     seconds = gpu.get("kernelSeconds") or figures["seconds"]["render"]
     return {

@@ -1,10 +1,10 @@
 //===- PackRecords.cpp - where the words of a sample in flight are --------===//
 #include "codegen/emit/rewrites/PackRecords.h"
 
+#include "codegen/emit/rewrites/ChosenValues.h"
 #include "codegen/emit/rewrites/FoldDistances.h"
 
 #include "llvm/ADT/STLExtras.h"
-#include "llvm/ADT/SmallPtrSet.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/Module.h"
@@ -65,32 +65,23 @@ bool storesWhatWasThere(const llvm::CallInst &store) {
          });
 }
 
-/// The constant that all stores of the word write, unless they write what was there, or nothing in
-/// particular; null: there is none.
+/// The constant that all stores of the word write, except those of what was there and of undefined
+/// values; null: there is none.
 llvm::Constant *onlyValue(const Word &word) {
-  llvm::Constant *only = nullptr;
-  llvm::SmallPtrSet<llvm::Value *, 16> seen;
-  llvm::SmallVector<llvm::Value *> pending;
+  llvm::SmallVector<llvm::Value *> stored;
   for (const llvm::CallInst *store : word.stores)
-    pending.push_back(store->getArgOperand(wordArgument));
-  while (!pending.empty()) {
-    llvm::Value *value = pending.pop_back_val();
-    if (!seen.insert(value).second || llvm::isa<llvm::UndefValue>(value) ||
-        llvm::is_contained(word.loads, value))
-      continue;
-    if (auto *phi = llvm::dyn_cast<llvm::PHINode>(value)) {
-      llvm::append_range(pending, phi->incoming_values());
-    } else if (auto *choice = llvm::dyn_cast<llvm::SelectInst>(value)) {
-      pending.push_back(choice->getTrueValue());
-      pending.push_back(choice->getFalseValue());
-    } else {
-      auto *constant = llvm::dyn_cast<llvm::ConstantInt>(value);
-      if (!constant || (only && only != constant))
-        return nullptr;
-      only = constant;
-    }
-  }
-  return only;
+    stored.push_back(store->getArgOperand(wordArgument));
+  llvm::Constant *only = nullptr;
+  const bool isOne = visitChosenValues(std::move(stored), [&](llvm::Value *value) {
+    if (llvm::is_contained(word.loads, value))
+      return true;
+    auto *constant = llvm::dyn_cast<llvm::ConstantInt>(value);
+    if (!constant || (only && only != constant))
+      return false;
+    only = constant;
+    return true;
+  });
+  return isOne ? only : nullptr;
 }
 
 /// Removes accesses without which no step computes anything else. Returns whether there were any.

@@ -1,7 +1,8 @@
 //===- UniteAddresses.cpp - the same address on all paths -----------------===//
 #include "codegen/emit/rewrites/UniteAddresses.h"
 
-#include "llvm/ADT/SmallPtrSet.h"
+#include "codegen/emit/rewrites/ChosenValues.h"
+
 #include "llvm/IR/DataLayout.h"
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/InstIterator.h"
@@ -32,27 +33,15 @@ std::optional<VariableOffset> offsetInVariable(llvm::Value *pointer,
 
 /// The one address that a phi node may have, through other phi nodes and selects.
 std::optional<VariableOffset> onlyAddress(llvm::PHINode &phi, const llvm::DataLayout &layout) {
-  std::optional<VariableOffset> address;
-  llvm::SmallPtrSet<llvm::Value *, 16> seen;
-  llvm::SmallVector<llvm::Value *> pending = {&phi};
-  while (!pending.empty()) {
-    llvm::Value *value = pending.pop_back_val();
-    if (!seen.insert(value).second || llvm::isa<llvm::UndefValue>(value))
-      continue;
-    if (auto *other = llvm::dyn_cast<llvm::PHINode>(value)) {
-      llvm::append_range(pending, other->incoming_values());
-    } else if (auto *select = llvm::dyn_cast<llvm::SelectInst>(value)) {
-      pending.push_back(select->getTrueValue());
-      pending.push_back(select->getFalseValue());
-    } else {
-      const auto found = offsetInVariable(value, layout);
-      if (!found ||
-          (address && (address->variable != found->variable || address->offset != found->offset)))
-        return std::nullopt;
-      address = found;
-    }
-  }
-  return address;
+  std::optional<VariableOffset> only;
+  const bool isOne = visitChosenValues({&phi}, [&](llvm::Value *value) {
+    const auto found = offsetInVariable(value, layout);
+    if (!found || (only && (only->variable != found->variable || only->offset != found->offset)))
+      return false;
+    only = found;
+    return true;
+  });
+  return isOne ? only : std::nullopt;
 }
 
 } // namespace
