@@ -1,0 +1,5 @@
+func.func private @f()
+func.func @g() {
+  call @f() {rtsl.cheap} : () -> ()
+  return
+}
