@@ -11,7 +11,7 @@ namespace rtsl::device {
 
 namespace detail {
 
-/// Relative error of fastAngle(). roundsSafely() would bear 2^-53.
+/// Relative error of fastAngle(). roundsSafely() permits 2^-53.
 inline constexpr double arcTangent2Bound = 0x1p-60;
 
 /// The angle of (x, y), or of (-x, y) if `isLeft`, for finite x, y >= 0 that are not both zero.

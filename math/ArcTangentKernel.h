@@ -1,7 +1,7 @@
-// The angle of a point (x, y): the common ground of asin, acos, atan and atan2.
+// The angle of a point (x, y): what asin, acos, atan and atan2 have in common.
 //
-//     y/x = c + a small rest, c = i/16,      atan(y/x) = atan(c) + atan(t),  t = (y - c x)/(x + c
-//     y),  |t| < 0.032
+//     y/x = c + a small rest,  c = i/16
+//     atan(y/x) = atan(c) + atan(t),  t = (y - c x)/(x + c y),  |t| < 0.032
 //
 // One table of 17 angles and a short series; no separate polynomials for asin and acos, which are
 // angles of the points (sqrt(1 - x^2), x) and (x, sqrt(1 - x^2)).
@@ -21,7 +21,7 @@ struct ArcTangentReduction {
 
 /// For 0 <= y <= x, 0 < x. Numerator and denominator are exact if y and x are floats.
 inline ArcTangentReduction reduceArcTangent(Double2 y, Double2 x) {
-  // Single precision is enough to choose c. The quotient is at most 1 (rounding is monotonous).
+  // Single precision is enough to choose c. The quotient is at most 1 (rounding is monotonic).
   int index = int(float(y.hi) / float(x.hi) * 16.0f + 0.5f);
   double c = index * 0.0625;
   return {

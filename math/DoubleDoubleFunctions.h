@@ -15,9 +15,9 @@ inline Double2 multiplyByParts(double integer, const double (&parts)[3]) {
   return add(add(high, middle), {integer * parts[2], 0.0});
 }
 
-/// ln(x) for a positive float x, relative error below 2^-98: with x = 2^k m and s = (m - 1)/(m +
-/// 1), ln(m) = 2 (s + s^3/3 + s^5/5 + ...). |s| <= 5/27, so that 24 terms leave less than 2^-119
-/// |s|.
+/// ln(x) for a positive float x, relative error below 2^-98: with x = 2^k m and
+/// s = (m - 1)/(m + 1), ln(m) = 2 (s + s^3/3 + s^5/5 + ...). |s| <= 5/27, so that the error of 24
+/// terms is below 2^-119 |s|.
 inline Double2 accurateLogarithm(double x) {
   uint64_t distance = bitsOf(x) - bitsOf(0.6875);
   int exponent = int(int64_t(distance) >> 52);

@@ -1,10 +1,11 @@
-// ln(x) in double with a low part: the common ground of the logarithms and the inverse hyperbolic
-// functions.
+// ln(x) in double with a low part: what the logarithms and the inverse hyperbolic functions have in
+// common.
 //
 // Table-driven as in Tang, "Table-driven implementation of the logarithm function", ACM TOMS 16(4),
 // 1990, with the table's reciprocals so short that the reduced argument is exact:
-//     x = 2^k m,  11/16 <= m < 11/8,      m * inverse = 1 + r,  |r| < 2^-7,      ln x = k ln 2 -
-//     ln(inverse) + ln(1 + r).
+//     x = 2^k m,  11/16 <= m < 11/8
+//     m * inverse = 1 + r,  |r| < 2^-7
+//     ln x = k ln 2 - ln(inverse) + ln(1 + r)
 #pragma once
 
 #include "math/DoubleDouble.h"

@@ -27,12 +27,13 @@ inline double exponentOfPower(float x, double y) {
 /// Whether x^y has 53 bits or fewer, for finite x > 0 and y != 0; `result` is then x^y. Needs no
 /// more: every midpoint between floats has 25 bits or fewer.
 ///
-/// A power with a finite binary expansion needs an x that is a square as often as y has binary
-/// places (unless y < 0, when x is also a power of two); after that it is a product.
+/// x^y has a finite binary expansion only if an exact square root can be taken of x, and again of
+/// the result, once for each binary place of y; if y < 0, x must also be a power of two. What
+/// remains is an integer power, which is a product.
 inline bool exactPower(double x, double y, double &result) {
   while (y != double(int64_t(y))) {
     double root = squareRoot(x);
-    if (root * root != x || root == 1.0) // x has 24 bits, so that a rounded root cannot pass
+    if (root * root != x || root == 1.0) // the square of a rounded root is not x, which has 24 bits
       return false;
     x = root;
     y *= 2.0;

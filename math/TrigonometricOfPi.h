@@ -59,8 +59,7 @@ inline SineAndCosine sineAndCosineOfPiUpToZeros(float x) {
 } // namespace detail
 
 /// Both of pi x. As in IEEE 754-2019 the sine of an integer is a zero with its sign, and the cosine
-/// is
-/// +0 halfway between integers.
+/// halfway between integers is +0.
 inline SineAndCosine sineAndCosineOfPi(float x) {
   SineAndCosine both = detail::sineAndCosineOfPiUpToZeros(x);
   if (both.sine == 0.0f)

@@ -2,7 +2,7 @@
 //
 // A background that has `sampleDirection` and `directionPDF` is one of the emitters that
 // `illuminate(P)` chooses from (Emitters.h): half of the choices are directions of the background
-// if surfaces shine, too, and otherwise all.
+// if there are emitting surfaces, otherwise all of them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

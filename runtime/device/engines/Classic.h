@@ -2,8 +2,8 @@
 //
 // A ray's color is what `shade` of the material that it hits writes to SampleColor, or the
 // background's. A shader traces other rays with `trace` and gathers lights with `illuminance`. Each
-// ray has an RtslState of its own on the stack, of which only what can be read is written: clearing
-// it would cost more than many a shader.
+// ray has an RtslState of its own on the stack. Only the fields that can be read are written:
+// clearing all of it would take longer than many shaders do.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -101,7 +101,7 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   });
 }
 
-/// `trace(origin, direction)`. Deeper than the launch allows nothing is seen: color 0.
+/// `trace(origin, direction)`. A ray deeper than the launch allows has color 0.
 inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) {
   uint32_t components = rtsl_color_components(parent.launch);
   uint32_t dimension;
@@ -142,7 +142,7 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   setVector(state.LightDirection, 0, 0, 0);
   state.LightDistance = infinity;
   setColor(state.LightColor, components, 0);
-  // The light sees the given point, the shader keeps its hit point.
+  // The light's method reads the given point as HitPoint, which is restored afterwards.
   Vec3 hitPoint = load(state.HitPoint);
   store(state.HitPoint, point);
   rtsl_rt_Light_illumination(&state, launch.lights[index]);

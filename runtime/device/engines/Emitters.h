@@ -1,13 +1,13 @@
-//===- Emitters.h - surfaces that shine, as lights ------------------------===//
+//===- Emitters.h - surfaces that emit light, as lights -------------------===//
 //
 // `illuminate(P)` chooses the background (Background.h), or one of the launch's emitters: with the
 // probability that the table gives, or, where there are many, by a light tree (LightTree.h). Then
 // it chooses a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of
-// an object with several primitives one of them, likewise. A ray
-// towards the point finds what is seen there; only if that is the point itself does its light
-// count, so that each direction has the density of one point. A ray that meets an emitter by chance
-// finds the same density in rt_PDF: an engine weighs the two against one another (Veach and Guibas,
-// "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
+// an object with several primitives one of them, likewise. A ray towards the point finds what is
+// visible there; the light counts only if that is the point itself, so that each direction has the
+// density of one point. A ray that meets an emitter by chance finds the same density in rt_PDF: an
+// engine weighs the two against one another (Veach and Guibas, "Optimally Combining Sampling
+// Techniques for Monte Carlo Rendering", 1995).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -198,7 +198,7 @@ struct EmitterChoice {
 
 /// An emitter and a part of it; of one that is a single primitive: 0.
 struct ChosenPart {
-  uint32_t emitter; // RTSL_NO_LIGHT_LEAF: none shines at the point
+  uint32_t emitter; // RTSL_NO_LIGHT_LEAF: no light reaches the point
   uint32_t part;
 };
 

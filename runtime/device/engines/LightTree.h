@@ -1,15 +1,15 @@
 //===- LightTree.h - choosing among many lamps ----------------------------===//
 //
-// The lamps of a scene are the leaves of a tree, whose nodes bound where they are, where they
-// shine, and how much they send out. A lamp is chosen from the root down: at each node one of the
-// children, with probabilities in the ratio of the light that they may send to the point (Conty
-// Estevez and Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018; this
-// bound for cosines without angles: Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th
-// edition, 2023, section 12.6.3). From a leaf up, the same probabilities give the chance of the
-// lamp.
+// The lamps of a scene, emitters or parts of them, are the leaves of a tree. Its nodes bound their
+// positions, the directions into which they emit light, and their power. A lamp is chosen from the
+// root down: at each node one of the children, with probabilities in the ratio of the light that
+// they may send to the point (Conty Estevez and Kulla, "Importance Sampling of Many Lights with
+// Adaptive Tree Splitting", 2018; this bound for cosines without angles: Pharr, Jakob and
+// Humphreys, "Physically Based Rendering", 4th edition, 2023, section 12.6.3). From a leaf up, the
+// same probabilities give the chance of the lamp.
 //
-// The surface at the point has no part in it: a ray that meets a lamp by chance must find the same
-// chance, and carries only the point where it began.
+// The chance does not depend on the surface at the point: a ray that meets a lamp by chance must
+// find the same one, and carries only the point where it began.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -37,7 +37,7 @@ inline Angle difference(Angle a, Angle b) {
 }
 
 /// The largest cosine, at a lamp of the node, of the angle between its normal and the direction to
-/// the point; at most 0 if all shine away from it. `to` leads from the middle of the node, and
+/// the point; at most 0 if all face away from it. `to` leads from the middle of the node, and
 /// `square` is its square.
 inline float cosineAtLamps(const RtslLightNode &node, Vec3 to, float square) {
   if (node.cosine == -1 || !(square > node.squareRadius))
@@ -51,7 +51,7 @@ inline float cosineAtLamps(const RtslLightNode &node, Vec3 to, float square) {
   return difference(difference(toPoint, angleOfCosine(node.cosine)), ofBall).cosine;
 }
 
-/// How much light the lamps of the node may send to the point. It is 0 only if they all shine away
+/// How much light the lamps of the node may send to the point. It is 0 only if they all face away
 /// from it, not because the point is extremely far away. The mean of 1 / distance^2 in the middle
 /// of lamps that fill a box is about four times that at its corners.
 inline float importance(const RtslLightNode &node, Vec3 point) {

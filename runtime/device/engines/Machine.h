@@ -8,7 +8,7 @@
 //   level 0: the camera ray      resume, object | frame | what it reads later of its state
 //   level 1: a ray it sent       resume, object | ...
 //   ...
-//   the ray whose turn it is                    | frame
+//   the current ray                             | frame
 //
 // A method that is called with a frame of its own has it above that of the caller, on the same
 // level: it belongs to the same ray.

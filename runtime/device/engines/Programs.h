@@ -25,8 +25,8 @@ struct PayloadRay {
   uint32_t rayType;
 };
 
-/// Makes `child` the ray that `parent` sends; they may be the same. Below the rounding error of its
-/// origin it sees nothing, whatever tmin is.
+/// Makes `child` the ray that `parent` sends; they may be the same. It ignores hits nearer than the
+/// rounding error of its origin, whatever tmin is.
 inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
                   const PayloadRay &ray) {
   beginChild(child, parent, [&](const RtslState &from) {

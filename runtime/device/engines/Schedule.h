@@ -1,7 +1,8 @@
 //===- Schedule.h - which step a warp takes next --------------------------===//
 //
-// The lanes of a warp want different steps, and the warp takes one of them; lanes that want another
-// one wait. The choice affects only the time. docs/gpu.md compares the schedules.
+// The lanes of a warp need different steps, and the warp takes one of them; lanes that need another
+// one wait. The choice affects only the time. docs/gpu.md compares the schedules. In all functions
+// `next` is the next step of the lane that calls.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -20,79 +21,79 @@ struct Step {
 
 #ifdef __NVPTX__
 
-/// The step that most of these lanes want; the first such one on a tie.
-inline int32_t mostWanted(int32_t wish, uint32_t lanes) {
-  int32_t winner = Step::nothing;
-  int votes = 0;
+/// The step that most of these lanes need; on a tie that of the first lane.
+inline int32_t mostFrequent(int32_t next, uint32_t lanes) {
+  int32_t found = Step::nothing;
+  int most = 0;
   while (lanes) {
-    const int32_t candidate = warp::valueOf(wish, __builtin_ctz(lanes));
-    const uint32_t supporters = warp::lanesWhere(wish == candidate);
-    const int count = __builtin_popcount(supporters);
-    if (count > votes) {
-      winner = candidate;
-      votes = count;
+    const int32_t step = warp::valueOf(next, __builtin_ctz(lanes));
+    const uint32_t lanesOfStep = warp::lanesWhere(next == step);
+    const int count = __builtin_popcount(lanesOfStep);
+    if (count > most) {
+      found = step;
+      most = count;
     }
-    lanes &= ~supporters;
+    lanes &= ~lanesOfStep;
   }
-  return winner;
+  return found;
 }
 
-/// Most votes; but samples begin when half of the lanes wait for one.
-inline int32_t chooseByMajority(int32_t wish) {
-  const uint32_t active = warp::lanesWhere(wish != Step::nothing);
-  const uint32_t waiting = warp::lanesWhere(wish == Step::sample);
+/// The most frequent step; but samples begin when half of the lanes wait for one.
+inline int32_t chooseByMajority(int32_t next) {
+  const uint32_t active = warp::lanesWhere(next != Step::nothing);
+  const uint32_t waiting = warp::lanesWhere(next == Step::sample);
   const uint32_t others = active & ~waiting;
   if (waiting && 2 * __builtin_popcount(waiting) >= __builtin_popcount(active))
     return Step::sample;
-  return mostWanted(wish, others);
+  return mostFrequent(next, others);
 }
 
 /// States before traversal, so that all lanes traverse together; and samples when all lanes wait
 /// for one, so that their rays stay similar.
-inline int32_t chooseByPriority(int32_t wish) {
-  if (const uint32_t states = warp::lanesWhere(wish > 0))
-    return mostWanted(wish, states);
-  if (warp::lanesWhere(wish == Step::trace))
+inline int32_t chooseByPriority(int32_t next) {
+  if (const uint32_t states = warp::lanesWhere(next > 0))
+    return mostFrequent(next, states);
+  if (warp::lanesWhere(next == Step::trace))
     return Step::trace;
-  return warp::lanesWhere(wish == Step::sample) ? Step::sample : Step::nothing;
+  return warp::lanesWhere(next == Step::sample) ? Step::sample : Step::nothing;
 }
 
 /// Each step in its turn.
-inline int32_t chooseInTurn(int32_t wish, int32_t &last) {
+inline int32_t chooseInTurn(int32_t next, int32_t &last) {
   for (int round = 0; round < 2; ++round) {
-    const uint32_t later = warp::lanesWhere(wish > last);
+    const uint32_t later = warp::lanesWhere(next > last);
     if (later)
-      return last = warp::smallest(later, wish);
+      return last = warp::smallest(later, next);
     last = Step::nothing;
   }
   return Step::nothing;
 }
 
-/// What the first lane wants.
-inline int32_t chooseNaively(int32_t wish) {
-  const uint32_t active = warp::lanesWhere(wish != Step::nothing);
-  return active ? warp::valueOf(wish, __builtin_ctz(active)) : Step::nothing;
+/// The step of the first lane.
+inline int32_t chooseNaively(int32_t next) {
+  const uint32_t active = warp::lanesWhere(next != Step::nothing);
+  return active ? warp::valueOf(next, __builtin_ctz(active)) : Step::nothing;
 }
 
-/// The next step of the warp; Step::nothing if no lane wants any other. All lanes call together.
+/// The next step of the warp; Step::nothing if no lane needs any other. All lanes call together.
 /// `last` is the last choice.
-inline int32_t chooseStep(uint32_t schedule, int32_t wish, int32_t last) {
+inline int32_t chooseStep(uint32_t schedule, int32_t next, int32_t last) {
   switch (schedule) {
   case RTSL_SCHEDULE_PRIORITIZED:
-    return chooseByPriority(wish);
+    return chooseByPriority(next);
   case RTSL_SCHEDULE_ROUND_ROBIN:
-    return chooseInTurn(wish, last);
+    return chooseInTurn(next, last);
   case RTSL_SCHEDULE_NAIVE:
-    return chooseNaively(wish);
+    return chooseNaively(next);
   default:
-    return chooseByMajority(wish);
+    return chooseByMajority(next);
   }
 }
 
 #else
 
-inline int32_t chooseStep(uint32_t, int32_t wish, int32_t) {
-  return wish;
+inline int32_t chooseStep(uint32_t, int32_t next, int32_t) {
+  return next;
 }
 
 #endif

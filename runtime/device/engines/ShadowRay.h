@@ -75,7 +75,7 @@ inline uint32_t traverseShadow(ShadowRay ray, Vec3 direction, RayStart start, fl
 inline bool inShadow(const RtslState &shading, Vec3 point) {
   const Vec3 direction = load(shading.LightDirection);
   const RayStart start = startOf(shading, point, direction);
-  // The light's own surface, if it has one, is at the end: keep as clear of it as of the start.
+  // The light's own surface, if it has one, is at the end: stay as far from it as from the start.
   float distance = shading.LightDistance;
   if (distance < infinity)
     distance -= minimum(start.epsilon, distance * 0x1p-10f);

@@ -63,25 +63,25 @@ struct TakenSamples {
 
 #ifdef __NVPTX__
 
-/// The next sample for each lane of the warp that wants one; all lanes call together. The number is
+/// The next sample for each lane of the warp that needs one; all lanes call together. The number is
 /// not below samplesOfSlice(job) if none is left.
-inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool wants) {
+inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOne) {
   constexpr uint32_t atOnce = 32;
-  const uint32_t wanting = warp::lanesWhere(wants);
-  const auto count = uint32_t(__builtin_popcount(wanting));
-  const auto before = uint32_t(__builtin_popcount(wanting & __nvvm_read_ptx_sreg_lanemask_lt()));
+  const uint32_t waiting = warp::lanesWhere(needsOne);
+  const auto count = uint32_t(__builtin_popcount(waiting));
+  const auto before = uint32_t(__builtin_popcount(waiting & __nvvm_read_ptx_sreg_lanemask_lt()));
   const uint32_t left = taken.end - taken.next;
   uint32_t sample = taken.next + before;
   taken.next += count;
   if (count <= left)
     return sample;
   uint32_t first = TakenSamples::none, stops = 0;
-  if (wants && before == 0 && !taken.areLast) { // a GPU does both at the same time
+  if (needsOne && before == 0 && !taken.areLast) { // a GPU does both at the same time
     first =
         uint32_t(__atomic_fetch_add(&job.status->nextSample, uint64_t(atOnce), __ATOMIC_RELAXED));
     stops = isToStop(job);
   }
-  const int leader = __builtin_ctz(wanting);
+  const int leader = __builtin_ctz(waiting);
   first = uint32_t(warp::valueOf(int32_t(first), leader));
   taken.areLast |= warp::lanesWhere(stops) != 0;
   if (first == TakenSamples::none) {
@@ -93,19 +93,19 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool wants) 
   return before < left ? sample : first + (before - left);
 }
 
-/// The next sample for each lane of the warp that wants one, without any in reserve; all lanes call
-/// together, and at least one wants one. TakenSamples::none if the slice has stopped.
-inline uint32_t takeOneSample(const RtslJob &job, bool wants) {
-  const uint32_t wanting = warp::lanesWhere(wants);
-  const int leader = __builtin_ctz(wanting);
+/// The next sample for each lane of the warp that needs one, without any in reserve; all lanes call
+/// together, and at least one needs one. TakenSamples::none if the slice has stopped.
+inline uint32_t takeOneSample(const RtslJob &job, bool needsOne) {
+  const uint32_t waiting = warp::lanesWhere(needsOne);
+  const int leader = __builtin_ctz(waiting);
   uint32_t first = TakenSamples::none;
   if (int(__nvvm_read_ptx_sreg_laneid()) == leader && !isToStop(job))
     first = uint32_t(__atomic_fetch_add(&job.status->nextSample,
-                                        uint64_t(__builtin_popcount(wanting)), __ATOMIC_RELAXED));
+                                        uint64_t(__builtin_popcount(waiting)), __ATOMIC_RELAXED));
   first = uint32_t(warp::valueOf(int32_t(first), leader));
   if (first == TakenSamples::none)
     return first;
-  return first + uint32_t(__builtin_popcount(wanting & __nvvm_read_ptx_sreg_lanemask_lt()));
+  return first + uint32_t(__builtin_popcount(waiting & __nvvm_read_ptx_sreg_lanemask_lt()));
 }
 
 #else

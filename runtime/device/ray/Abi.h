@@ -53,8 +53,8 @@ typedef struct RtslBox {
   float lower[3], upper[3];
 } RtslBox;
 
-/// The way through a selector to one of its children. Rays take it if `visit` calls visitChild with
-/// the number of the child, and if they take the way to the selector.
+/// The path through a selector to one of its children. A ray follows it if it has reached the
+/// selector and `visit` calls visitChild with the number of the child.
 typedef struct RtslSelection {
   RtslRef selector;
   int32_t child;
@@ -161,8 +161,7 @@ typedef struct RtslTreeItem {
   uint32_t hasVertices;         // 1: it is a triangle. 0: the instance tells what it is
 } RtslTreeItem;
 
-/// An instance that shines, as a light: its material has `emission`, and points on it can be
-/// chosen.
+/// An instance that emits light: its material has `emission`, and points on it can be chosen.
 typedef struct RtslEmitter {
   uint32_t instance;
   // for a mesh or an object with several primitives: of the first of these parts in
@@ -175,7 +174,8 @@ typedef struct RtslEmitter {
   uint32_t firstLeaf, isDivided;
 } RtslEmitter;
 
-/// A node of the light tree: what shines below it. The first node is the root.
+/// A node of the light tree: the emitters below it. A lamp is an emitter, or one of its parts. The
+/// first node is the root.
 typedef struct RtslLightNode {
   float middle[3], squareRadius; // a ball around the boxes of its lamps
   float axis[3], cosine;         // a cone of the normals of its lamps; -1: all directions
@@ -262,8 +262,8 @@ typedef struct RtslStatus {
   uint64_t pixelsWithoutSample; // black, because none of their samples was finite
   uint64_t firstNotFinite[RTSL_FIRST_NOT_FINITE]; // ~(sample + pixel * 2^32), descending; 0: none
   uint64_t exceptions[RTSL_EXCEPTIONS];           // samples that ended with each exception
-  uint32_t stop;                                  // set by anyone: no lane takes samples any more
-  uint32_t problem;                               // RTSL_PROBLEM_*
+  uint32_t stop;    // set by the host or a lane: no lane takes samples any more
+  uint32_t problem; // RTSL_PROBLEM_*
 } RtslStatus;
 
 #define RTSL_PROBLEM_NONE 0u
@@ -621,9 +621,9 @@ void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float
 
 /// Defined by the compiled program, for the bound of the stack
 /// (runtime/device/engines/StackBound.h): the number of kinds of rays, at most RTSL_MAX_RAY_KINDS.
-/// Kind 0 are those without a payload, kind n those of payload type n; `generate`, if the program
-/// has it, is the last. And, as bits, the kinds that the programs of one kind may send and wait
-/// for, or send by a tail trace.
+/// Rays without a payload are kind 0, those of payload type n kind n; `generate`, if the program
+/// has it, is the last kind. The other two functions return sets of kinds, as bits: those that the
+/// programs of a kind may send and wait for, and those that they may send by a tail trace.
 #define RTSL_MAX_RAY_KINDS 32
 int32_t rtsl_ray_kinds(RtslState *state);
 int32_t rtsl_rays_sent(RtslState *state, int32_t kind);

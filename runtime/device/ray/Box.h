@@ -6,8 +6,7 @@
 
 namespace rtsl::device {
 
-/// Boxes must be multiplied with each other without overflow; an infinite primitive gets the
-/// largest box.
+/// Products of sides must not overflow; an infinite primitive gets the largest box.
 constexpr float largestSide = 1e18f;
 constexpr float smallestNormal = 0x1p-126f;
 

@@ -1,10 +1,10 @@
 //===- ListedBox.h - the boxes of a scene without a tree ------------------===//
 //
 // A scene of a few primitives has no tree: a ray tests the boxes of all of them (Traverse.h), and
-// then the primitives whose boxes it may enter. This first test only must not leave out a box in
-// which rangeInBox finds a range; the primitive's own test decides. So a box is stored as its
-// middle and half of its size, enlarged by what roundings can amount to: three fused operations an
-// axis, and no choice between lower and upper sides. docs/gpu.md has the proof.
+// then the primitives whose boxes it may enter. This first test must find every box in which
+// rangeInBox finds a range; it may find others, because the primitive's own test decides. So a box
+// is stored as its middle and half of its size, enlarged by a bound of all roundings: three fused
+// operations an axis, and no choice between lower and upper sides. docs/gpu.md has the proof.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -35,8 +35,8 @@ struct ListedBoxAxis {
   float toOrigin; // the distance at which the axis has the coordinate 0
   float size;     // of toOrigin
 
-  /// An axis along which the distances are too large, or not numbers, leaves out no box: with an
-  /// infinite inverse, sides are at infinite distances, or at none.
+  /// An axis along which distances are too large, or NaN, excludes no box: with an infinite inverse
+  /// the sides are at infinite or undefined distances.
   ListedBoxAxis(float origin, float inverse) : inverse(inverse), toOrigin(-origin * inverse) {
     if (!(absolute(inverse) < 0x1p60f && absolute(toOrigin) < 0x1p100f)) {
       this->inverse = infinity;

@@ -132,9 +132,9 @@ inline void pixelSample(uint32_t index, uint32_t shiftX, uint32_t shiftY, float 
   *y = unitFloat(shiftY + index * 2447445414u); // 2^32 / 1.32471795724^2
 }
 
-/// Of the numbers from 0 on, a sequence of fractions of 2^32 of which any 2^n consecutive ones from
-/// a multiple of 2^n lie in different intervals of 2^32 / 2^n (van der Corput, 1935). Exclusive or
-/// with a constant keeps that property.
+/// Element x of van der Corput's sequence (1935), as a fraction of 2^32: any 2^n consecutive
+/// elements that begin at a multiple of 2^n lie in different intervals of length 2^32 / 2^n. An
+/// exclusive or with a constant preserves this.
 inline uint32_t reverseBits(uint32_t x) {
 #ifdef __clang__
   return __builtin_bitreverse32(x); // one instruction on a GPU

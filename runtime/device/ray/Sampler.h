@@ -3,15 +3,15 @@
 // What `rand()` draws, where in its pixel a sample lies, and what else is random about it, for the
 // samplers that a program may be compiled with:
 //
-//   independent   Random.h: numbers of different samples have nothing to do with each other; only
-//                 the positions in the pixel and the times in the shutter are spread evenly
+//   independent   Random.h: the numbers of different samples are independent; only the positions in
+//                 the pixel and the times in the shutter are spread evenly
 //   r2, sobol     the numbers of a pixel's samples are spread evenly, too
 //
 // An evenly spread sequence has a point for each sample of a pixel. Pairs of draws (0 and 1, 2 and
 // 3, ...) are its coordinates. Each pair has an order of the points and a randomisation of its own,
-// drawn by a hash of the pixel, the seed, the ray's place in the tree of rays, and the pair: two
-// pairs have nothing to do with each other, but among the samples each is spread evenly (padding:
-// Kollig and Keller, "Efficient Multidimensional Sampling", 2002). The order is a nested uniform
+// drawn by a hash of the pixel, the seed, the ray's place in the tree of rays, and the pair:
+// different pairs are independent, but each is spread evenly over the samples (padding: Kollig and
+// Keller, "Efficient Multidimensional Sampling", 2002). The order is a nested uniform
 // permutation of the sample numbers, which maps the first 2^n of them to 2^n successive points, up
 // to their order (Burley, "Practical Hash-based Owen Scrambling", Journal of Computer Graphics
 // Techniques 9(4), 2020).

@@ -1,6 +1,6 @@
 //===- Undefined.h - making uninitialised state visible -------------------===//
 //
-// Of a ray's state only what can be read is written. Tests check this: a program with
+// Only those fields of a ray's state are written that can be read. Tests check this: a program with
 // RTSL_FEATURE_UNDEFINED_BYTES or _NAN fills all the rest with a pattern, and its images must not
 // depend on the pattern. Other programs contain none of this code, because rtsl_features is a
 // constant.

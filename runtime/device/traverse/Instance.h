@@ -50,8 +50,8 @@ private:
   RtslTransform moved;
 };
 
-/// A 3x3 matrix of doubles, stored as columns, times a vector. A component that is 0 is not -0, as
-/// with the identity (positive below) whatever the signs of the other components are.
+/// A 3x3 matrix of doubles, stored as columns, times a vector. A component that is 0 is +0, as in a
+/// product with the identity (positive() below).
 inline Vec3 product(const double m[9], double x, double y, double z) {
   return {float(__builtin_fma(m[6], z, __builtin_fma(m[3], y, __builtin_fma(m[0], x, 0.0)))),
           float(__builtin_fma(m[7], z, __builtin_fma(m[4], y, __builtin_fma(m[1], x, 0.0)))),

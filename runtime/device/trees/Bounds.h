@@ -6,7 +6,7 @@
 
 namespace rtsl::device::build {
 
-/// The box of nothing, to be extended.
+/// An empty box, to be extended.
 inline RtslBox emptyBox() {
   return {{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
 }

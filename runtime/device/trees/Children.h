@@ -112,8 +112,9 @@ Children childrenOf(const Tree &tree, uint32_t root) {
 
 /// The slot of each child, four bits each. Slot s is for the child furthest in the direction
 /// (x, y, z), where bit 0, 1, 2 of s tells whether x, y, z is 1 or -1. So for rays of any octant
-/// the order of slots, with the bits of the octant flipped, is from front to back on the whole. By
-/// the largest gain first. `boxOf(i)` is the box of child i, and `all` that of the node.
+/// the order of slots, with the bits of the octant flipped, is mostly from front to back. Greedy:
+/// the child and slot with the largest gain come first. `boxOf(i)` is the box of child i, and `all`
+/// that of the node.
 template <typename BoxOf>
 uint32_t slotsOf(const RtslBox &all, uint32_t count, BoxOf boxOf) {
   float gain[width][width]; // by child and slot

@@ -27,10 +27,10 @@ struct Round {
 
   uint32_t from() const { return number & 1; }
   uint32_t to() const { return from() ^ 1; }
-  /// No cluster is higher, before the round and after it, by which it may have gained one. Halving
-  /// then needs no more levels than mostHeight.
+  /// The largest height that a cluster may have in this round: if all are joined in pairs from here
+  /// on, the tree is not higher than mostHeight.
   uint32_t heightLimit() const {
-    uint32_t levels = 0; // that halving needs
+    uint32_t levels = 0; // of joining in pairs
     while ((uint64_t(1) << levels) < clusters)
       ++levels;
     return mostHeight - levels;
@@ -43,8 +43,8 @@ inline void makeLeaf(const TreeBuild &build, uint32_t i) {
   build.heights[i] = 0;
 }
 
-/// Of equal ones, the neighbour whose number differs in lower bits: so that in a row of equal boxes
-/// all find each other in pairs. Some always do.
+/// Of several neighbours that are equally near, the one whose number differs in the lowest bits: so
+/// in a row of equal boxes all find each other in pairs. In any row, some do.
 inline void findNearest(const TreeBuild &build, uint32_t i, Round round) {
   if (round.isInPairs) {
     build.nearest[i] = (i ^ 1) < round.clusters ? i ^ 1 : i;

@@ -9,9 +9,8 @@
 
 namespace rtsl::continuation {
 
-/// The name of an address or a value: the variable that it was, the member or state
-/// variable that it was loaded from, or the operation ("mulf"). Never empty, and the same on every
-/// run.
+/// The name of an address or a value: the variable that it was, the member or state variable that
+/// it was loaded from, or the operation ("mulf"). Never empty, and the same on every run.
 std::string sourceName(mlir::Value value);
 
 /// The variable that the value was in the source; empty if there is none.

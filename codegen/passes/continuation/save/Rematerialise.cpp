@@ -5,8 +5,7 @@
 //
 //     %eta = rtsl.load %member                   %eta = rtsl.load %member
 //     %w = arith.mulf %x, %eta                   %w = arith.mulf %x, %eta
-//     rtsl.suspend ..., ^resume          ==>     rtsl.suspend ..., ^resume        // %x is live
-//     across
+//     rtsl.suspend ..., ^resume          ==>     rtsl.suspend ..., ^resume   // only %x is live
 //   ^resume:                                   ^resume:
 //     use %w                                     %eta' = rtsl.load %member
 //                                                %w' = arith.mulf %x, %eta'
