@@ -23,9 +23,9 @@ SECONDS = 300  # far beyond what any of these takes: only a hang ends there
 # cannot be used, and of faults while a program runs.
 UNUSABLE_DEVICES = {
     "no-device": "there is a CUDA driver, but no device",
-    "old-driver": "the CUDA driver is too old: it is of version 9.2; install 10.0 or newer",
+    "old-driver": "the CUDA driver is too old: it has version 9.2; install 10.0 or newer",
     "old-ptx": "the CUDA driver is too old for the program's PTX",
-    "other-gpu": "Fake 1000 (sm_75) does not take the program's code: SM version 120 is needed",
+    "other-gpu": "Fake 1000 (sm_75) rejects the program's code: SM version 120 is needed",
 }
 LITTLE_MEMORY = ("little-memory", "not enough GPU memory for")
 FAULTS_OF_DEVICES = {

@@ -167,7 +167,7 @@ TEST(BuildScene, ConstructorArguments) {
                 declared);
   EXPECT_EQ(
       sphere("{\"center\": [0, 0, 0]}"),
-      "s.json:3:43+6: badArguments: the constructor of `Sphere` misses an argument for `radius`" +
+      "s.json:3:43+6: badArguments: the constructor of `Sphere` requires an argument for `radius`" +
           declared);
   EXPECT_EQ(sphere("{\"center\": [0, 0, 0], \"radus\": 1}"),
             "s.json:3:90+5: badArguments: the constructor of `Sphere` has no parameter `radus` "

@@ -13,7 +13,7 @@ namespace rtsl::tool {
 void addCheckpointOptions(CLI::App &command, CheckpointOptions &options) {
   command
       .add_option("--checkpoint", options.file,
-                  "keep the rendering in this file, and go on with what is in it if it exists")
+                  "save the rendering in this file, and resume from it if it exists")
       ->type_name("FILE");
   command
       .add_option_function<std::string>(

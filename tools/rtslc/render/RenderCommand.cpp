@@ -238,11 +238,11 @@ void addRenderCommand(CLI::App &app, Action &action) {
       ->add_option_function<std::string>(
           "--time",
           [options](const std::string &text) { options->seconds = parseDuration("--time", text); },
-          "render samples until this time is over (30s, 2m, 500ms); at most --spp")
+          "render samples for this time (30s, 2m, 500ms); at most --spp")
       ->type_name("TIME");
   addNotNegative(*command, "--noise", options->noise,
-                 "render samples until the estimated relative error of the picture is below; at "
-                 "most --spp");
+                 "render samples until the estimated relative error of the picture is at most X, "
+                 "like 0.01; at most --spp");
   command->add_flag("--adaptive", options->isAdaptive,
                     "with --noise: more samples for pixels that need them, and fewer for others");
   addCheckpointOptions(*command, options->checkpoint);

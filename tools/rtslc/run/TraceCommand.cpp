@@ -87,7 +87,7 @@ void addTraceCommand(CLI::App &app, Action &action) {
   command->add_option("MESH", options->mesh, "a mesh: OBJ, PLY or glTF")->required();
   command
       ->add_option("--rays", options->rays,
-                   "a ray a row, .npy, .csv or .ply: origin and direction, or origin, tmin, "
+                   "one ray per row, .npy, .csv or .ply: origin and direction, or origin, tmin, "
                    "direction and tmax")
       ->type_name("FILE")
       ->required();
@@ -106,7 +106,7 @@ void addTraceCommand(CLI::App &app, Action &action) {
                    "t, triangle, u, v of the nearest hit of each ray, -1 where there is none: "
                    ".npy, or the elements as they lie in memory")
       ->type_name("FILE");
-  command->add_flag("--any", options->isAny, "only whether a ray hits anything: a bool a ray");
+  command->add_flag("--any", options->isAny, "only whether a ray hits anything: one bool per ray");
   addRunOptions(*command, options->run);
   command->footer("examples:\n  rtslc trace bunny.ply --rays rays.npy --out hits.npy\n"
                   "  rtslc trace bunny.ply --rays rays.csv --any --out seen.csv --target=gpu\n"
