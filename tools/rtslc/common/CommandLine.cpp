@@ -186,6 +186,14 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             "For tests");
 }
 
+void addProgramOptions(CLI::App &command, CommonOptions &options) {
+  addPreprocessorOptions(command, options.preprocessor);
+  addDependencyOptions(command, options.dependencies);
+  addCompileOptions(command, options);
+  addKeepOption(command, options);
+  addMessageOptions(command, options);
+}
+
 namespace {
 
 /// A first argument that is no command.

@@ -49,6 +49,9 @@ void addMessageOptions(CLI::App &command, CommonOptions &options);
 void addKeepOption(CLI::App &command, CommonOptions &options);
 /// Adds --color, --fp, --unchecked, --trace, --gpu-arch and -O.
 void addCompileOptions(CLI::App &command, CommonOptions &options);
+/// Adds all of these, and those of PreprocessorCommandLine.h: for a command that compiles one
+/// program of files or of a scene.
+void addProgramOptions(CLI::App &command, CommonOptions &options);
 
 /// A command's name and its description in `rtslc --help`.
 struct Summary {

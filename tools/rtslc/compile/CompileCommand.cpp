@@ -153,11 +153,7 @@ void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   command->add_flag("--exceptions", options->exceptions,
                     "for C++ or a scene: end samples that send an invalid ray, exceed the depth "
                     "limit, or use an index out of range");
-  addPreprocessorOptions(*command, options->common.preprocessor);
-  addDependencyOptions(*command, options->common.dependencies);
-  addCompileOptions(*command, options->common);
-  addKeepOption(*command, options->common);
-  addMessageOptions(*command, options->common);
+  addProgramOptions(*command, options->common);
   command->footer("examples:\n"
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
                   "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"

@@ -143,11 +143,7 @@ void addPackCommand(CLI::App &app, Action &action) {
   addTreeOption(*command, options->tree);
   addMaxRegistersOption(*command, options->gpu);
   command->add_flag("-q,--quiet", options->quiet, "no summary");
-  addPreprocessorOptions(*command, options->common.preprocessor);
-  addDependencyOptions(*command, options->common.dependencies);
-  addCompileOptions(*command, options->common);
-  addKeepOption(*command, options->common);
-  addMessageOptions(*command, options->common);
+  addProgramOptions(*command, options->common);
   command->footer("example:\n  rtslc pack examples/glass/scene.json -o glass.rtslpkg\n  rtsl-run "
                   "glass.rtslpkg -o glass.png --target=gpu");
   command->callback([options, &action] {

@@ -232,11 +232,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
   command->add_option("-o,--output", options->output, "the file to write; - is standard output")
       ->type_name("OUT");
   addSetOption(*command, options->overrides);
-  addPreprocessorOptions(*command, options->common.preprocessor);
-  addDependencyOptions(*command, options->common.dependencies);
-  addCompileOptions(*command, options->common);
-  addKeepOption(*command, options->common);
-  addMessageOptions(*command, options->common);
+  addProgramOptions(*command, options->common);
   command->footer("examples:\n  rtslc explain scene.json\n  rtslc explain scene.json --measure\n  "
                   "rtslc explain scene.json --gpu --gpu-arch=sm_90\n  "
                   "rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc "

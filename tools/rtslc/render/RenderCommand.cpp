@@ -281,11 +281,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   command->add_flag("--watch", options->watches,
                     "render again whenever a file of the scene is saved, until Ctrl-C");
   command->add_flag("-q,--quiet", options->quiet, "no progress and no summary");
-  addPreprocessorOptions(*command, options->common.preprocessor);
-  addDependencyOptions(*command, options->common.dependencies);
-  addCompileOptions(*command, options->common);
-  addKeepOption(*command, options->common);
-  addMessageOptions(*command, options->common);
+  addProgramOptions(*command, options->common);
   command->footer("examples:\n  rtslc render examples/glass/scene.json -o glass.png --spp 64 "
                   "--size 1920x1080\n"
                   "  rtslc render examples/cornell/room.json -o normals.png --engine normals\n"
