@@ -4,8 +4,8 @@
 // the rounding, the angle is computed again in double-double.
 #pragma once
 
-#include "math/DoubleDoubleFunctions.h"
-#include "math/Rounding.h"
+#include "math/kernels/DoubleDoubleFunctions.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

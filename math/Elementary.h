@@ -8,6 +8,8 @@
 // NaN results are always 0x7fc00000. Signed zeros and infinities are as in C99; domain errors give
 // NaN. There is no global state: no errno, no rounding mode but round-to-nearest, no flush to zero.
 //
+// The files, their functions, and what these use of kernels/:
+//
 //     Trigonometric.h         sin cos tan            ArgumentReduction.h
 //     TrigonometricOfPi.h     sinpi cospi            Trigonometric.h
 //     InverseTrigonometric.h  asin acos atan         ArcTangentKernel.h

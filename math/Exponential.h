@@ -1,8 +1,8 @@
 // exp, exp2 and expm1.
 #pragma once
 
-#include "math/ExponentialKernel.h"
-#include "math/Rounding.h"
+#include "math/kernels/ExponentialKernel.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

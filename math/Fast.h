@@ -8,8 +8,8 @@
 #pragma once
 
 #include "math/ArcTangent2.h"
-#include "math/ArgumentReduction.h"
 #include "math/Power.h"
+#include "math/kernels/ArgumentReduction.h"
 #include "math/tables/ArcTangentTable.h"
 
 namespace rtsl::device::fast {

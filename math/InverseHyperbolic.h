@@ -2,8 +2,8 @@
 // for complex elementary functions", in: The State of the Art in Numerical Analysis, 1987).
 #pragma once
 
-#include "math/LogarithmKernel.h"
-#include "math/Rounding.h"
+#include "math/kernels/LogarithmKernel.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

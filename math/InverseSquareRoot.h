@@ -1,7 +1,7 @@
 // sqrt and inversesqrt.
 #pragma once
 
-#include "math/Rounding.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

@@ -1,8 +1,8 @@
 // asin, acos and atan.
 #pragma once
 
-#include "math/ArcTangentKernel.h"
-#include "math/Rounding.h"
+#include "math/kernels/ArcTangentKernel.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

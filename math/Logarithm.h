@@ -1,8 +1,8 @@
 // log, log2 and log1p.
 #pragma once
 
-#include "math/LogarithmKernel.h"
-#include "math/Rounding.h"
+#include "math/kernels/LogarithmKernel.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

@@ -8,10 +8,10 @@
 // exactPower() finds out, or it is computed again in double-double.
 #pragma once
 
-#include "math/DoubleDoubleFunctions.h"
-#include "math/ExponentialKernel.h"
-#include "math/LogarithmKernel.h"
-#include "math/Rounding.h"
+#include "math/kernels/DoubleDoubleFunctions.h"
+#include "math/kernels/ExponentialKernel.h"
+#include "math/kernels/LogarithmKernel.h"
+#include "math/kernels/Rounding.h"
 
 namespace rtsl::device {
 

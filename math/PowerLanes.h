@@ -2,8 +2,8 @@
 // component. For the host.
 #pragma once
 
-#include "math/DoubleLanes.h"
 #include "math/Power.h"
+#include "math/kernels/DoubleLanes.h"
 
 namespace rtsl::device {
 

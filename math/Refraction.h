@@ -8,7 +8,7 @@
 // whether k is negative, k is computed again in double-double.
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 
 namespace rtsl::device {
 

@@ -1,9 +1,9 @@
 // sin, cos and tan.
 #pragma once
 
-#include "math/ArgumentReduction.h"
-#include "math/Rounding.h"
-#include "math/SineSeries.h"
+#include "math/kernels/ArgumentReduction.h"
+#include "math/kernels/Rounding.h"
+#include "math/kernels/SineSeries.h"
 
 namespace rtsl::device {
 

@@ -195,7 +195,7 @@ def constants():
     ln2 = split(LN2, 3, Fraction(1, 2**42))
     write(
         "Constants.h",
-        '#include "math/DoubleDouble.h"\n\nnamespace rtsl::device::detail {\n\n'
+        '#include "math/kernels/DoubleDouble.h"\n\nnamespace rtsl::device::detail {\n\n'
         + pair("pi", PI, "pi.")
         + pair("halfPi", quarter, "pi/2.")
         + pair("ln2", LN2, "ln(2).")

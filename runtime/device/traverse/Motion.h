@@ -9,7 +9,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "math/SineSeries.h"
+#include "math/kernels/SineSeries.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Vector.h"
 

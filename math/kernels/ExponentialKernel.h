@@ -5,7 +5,7 @@
 //     x = (64 k + j) ln(2)/64 + r,  |r| <= ln(2)/128,      e^x = 2^k * 2^(j/64) * e^r.
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 #include "math/tables/Constants.h"
 #include "math/tables/ExponentialTable.h"
 

@@ -1,7 +1,7 @@
 // The last step of every function: from a double, or a sum of two, to the nearest float.
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 
 namespace rtsl::device::detail {
 

@@ -1,7 +1,7 @@
 // Sines and cosines of small angles in plain double.
 #pragma once
 
-#include "math/Bits.h"
+#include "math/kernels/Bits.h"
 
 namespace rtsl::device::detail {
 

@@ -8,7 +8,7 @@
 //     ln x = k ln 2 - ln(inverse) + ln(1 + r)
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 #include "math/tables/Constants.h"
 #include "math/tables/LogarithmTable.h"
 

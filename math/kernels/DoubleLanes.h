@@ -2,7 +2,7 @@
 // operations as on one double, so the same bits. For the host, with AVX2 and FMA.
 #pragma once
 
-#include "math/Bits.h"
+#include "math/kernels/Bits.h"
 
 #include <immintrin.h>
 

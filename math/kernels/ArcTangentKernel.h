@@ -7,7 +7,7 @@
 // angles of the points (sqrt(1 - x^2), x) and (x, sqrt(1 - x^2)).
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 #include "math/tables/ArcTangentTable.h"
 #include "math/tables/Constants.h"
 

@@ -1,7 +1,7 @@
 // x = q pi/2 + r, |r| <= pi/4, for every float x >= 0: the first half of sin, cos and tan.
 #pragma once
 
-#include "math/DoubleDouble.h"
+#include "math/kernels/DoubleDouble.h"
 #include "math/tables/Constants.h"
 
 namespace rtsl::device::detail {

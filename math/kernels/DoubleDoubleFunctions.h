@@ -2,9 +2,9 @@
 // calls. Short, not fast.
 #pragma once
 
-#include "math/ArcTangentKernel.h"
-#include "math/ExponentialKernel.h"
-#include "math/LogarithmKernel.h"
+#include "math/kernels/ArcTangentKernel.h"
+#include "math/kernels/ExponentialKernel.h"
+#include "math/kernels/LogarithmKernel.h"
 
 namespace rtsl::device::detail {
 

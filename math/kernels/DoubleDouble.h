@@ -6,7 +6,7 @@
 // below 4 u^2, multiply() below 6 u^2, divide() below 16 u^2.
 #pragma once
 
-#include "math/Bits.h"
+#include "math/kernels/Bits.h"
 
 namespace rtsl::device::detail {
 
