@@ -51,6 +51,13 @@ GRAPH_ITEMS = (
 )
 
 
+def example_scenes(half=None):
+    """The scenes of the examples; with a half, 0 or 1, every second one, but for `make deep`, which
+    sets RTSL_DEEP. A scene takes seconds, and tests of the same code take different halves."""
+    scenes = sorted(EXAMPLES.glob("*/scene.json"))
+    return scenes if half is None or "RTSL_DEEP" in os.environ else scenes[half::2]
+
+
 def bounded():
     resource.setrlimit(resource.RLIMIT_CPU, (BOUNDED_SECONDS, BOUNDED_SECONDS))
     resource.setrlimit(resource.RLIMIT_AS, (BOUNDED_BYTES, BOUNDED_BYTES))

@@ -8,7 +8,6 @@ import unittest
 
 from harness import (
     DIAGNOSED,
-    EXAMPLES,
     FAULTS_OF_DEVICES,
     FINE,
     INTERNAL,
@@ -17,6 +16,7 @@ from harness import (
     UNUSABLE_DEVICES,
     USAGE,
     Case,
+    example_scenes,
 )
 from numpy_files import npy
 
@@ -57,7 +57,7 @@ class Packages(Case):
         self.assertIn("pixels differ from `a.exr`", error)
 
     def test_every_example_can_be_packed(self):
-        scenes = sorted(EXAMPLES.glob("*/scene.json"))
+        scenes = example_scenes(half=1)
         self.assertGreaterEqual(len(scenes), 2)
         for scene in scenes:
             self.run_rtslc(

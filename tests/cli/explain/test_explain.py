@@ -7,7 +7,7 @@ import re
 import shutil
 import unittest
 
-from harness import EXAMPLES, USAGE, Case
+from harness import USAGE, Case, example_scenes
 
 SMALL = ("--size", "32x18", "--spp", "2", "-q")
 
@@ -266,7 +266,7 @@ class Explain(Case):
         ]
         rows += [
             (scene, f"--trace={traces[number % 2]}")
-            for number, scene in enumerate(sorted(EXAMPLES.glob("*/scene.json")))
+            for number, scene in enumerate(example_scenes(half=1))
         ]
         for scene, *options in rows:
             for picture, kept in (("a.exr", []), ("b.exr", ["--keep=all"])):
@@ -352,7 +352,7 @@ class Explain(Case):
 
     def test_what_is_left_out_can_change_without_changing_the_program(self):
         changed = 0
-        for example in sorted(EXAMPLES.glob("*/scene.json")):
+        for example in example_scenes(half=0):
             for old in self.folder.iterdir():
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
             shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)

@@ -18,6 +18,7 @@ from harness import (
     UNUSABLE_DEVICES,
     USAGE,
     Case,
+    example_scenes,
 )
 
 SMALL = ("--size", "32x18", "--spp", "2", "-Wno-depth-limit")
@@ -187,7 +188,7 @@ class Gpu(Case):
         self.assertIn("the scene writes buffers, which several GPUs cannot share", error)
 
     def test_every_example_goes_there(self):
-        for scene in sorted(EXAMPLES.glob("*/scene.json")):
+        for scene in example_scenes(half=1):
             with self.subTest(scene=scene):
                 self.render(*SMALL, "-q", "-O0", program=(RTSLC, "render", str(scene)))
 
@@ -237,7 +238,7 @@ class Gpu(Case):
 
     @unittest.skipUnless(has_gpu(), "this machine has no GPU")
     def test_the_bits_of_the_host_megakernel(self):
-        for scene in sorted(EXAMPLES.glob("*/scene.json")):
+        for scene in example_scenes():
             for arguments in ((), ("--exceptions",), ("--gpu-arch=sm_75",)):
                 with self.subTest(scene=scene, arguments=arguments):
                     for target in ("gpu", "host-megakernel"):

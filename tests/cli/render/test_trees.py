@@ -4,7 +4,7 @@ is said."""
 import json
 import unittest
 
-from harness import EXAMPLES, Case
+from harness import Case, example_scenes
 
 SMALL = ("--size", "32x18", "--spp", "2")
 
@@ -40,7 +40,7 @@ class Trees(Case):
         self.write("scene.json", json.dumps(scene))
 
     def test_the_examples_have_the_same_bits(self):
-        for scene in sorted(EXAMPLES.glob("*/scene.json")):
+        for scene in example_scenes(half=0):
             with self.subTest(scene=scene):
                 self.run_rtslc("pack", str(scene), "-o", "x.rtslpkg", "-q", "-O0")
                 self.render("--target=host", "--tree=good")

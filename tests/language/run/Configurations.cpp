@@ -69,7 +69,7 @@ const std::vector<Configuration> &doubleConfigurations() {
       {"double_recurse_O0_nan", undefined(inDouble(options(TraceMode::Recurse, 0)), asNan)},
       {"double_recurse_O2_bound", inDouble(options(TraceMode::Recurse, 2)),
        runtime::Traversal::Embree, true},
-      {"double_split_O2", inDouble(options(TraceMode::Split, 2))},
+      {"double_split_O0", inDouble(options(TraceMode::Split, 0))},
   };
   return table;
 }
