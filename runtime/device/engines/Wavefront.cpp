@@ -57,9 +57,11 @@ extern "C" {
 
 __attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob *job) {
   const RtslLaunch &launch = *job->launch;
-  if (threadNumber() == 0 && rtsl_wave_has_stacks() &&
-      device::stackSize(&launch, launch.maxDepth, launch.referenceChain) > job->laneBytes)
+  if (rtsl_wave_has_stacks() &&
+      device::stackSize(&launch, launch.maxDepth, launch.referenceChain) > job->laneBytes) {
     job->status->problem = RTSL_PROBLEM_STACK;
+    return; // no slot is in flight, and the wave is over
+  }
   device::beginWave(waveOf(*job), threadNumber(), threadCount());
 }
 

@@ -125,17 +125,25 @@ inline LeftHit leftHit(const RtslState &parent) {
           load(parent.GeometricNormal), parent.hitPointError};
 }
 
+/// The rounding of an origin of which nothing is known but its size.
+inline float foreignError(Vec3 origin) {
+  return foreignPointUnits * roundingUnit * largest(origin);
+}
+
+/// startOf for rays that leave no surface, as those of cameras.
+inline RayStart startInSpace(uint32_t primitive, Vec3 origin, Vec3 direction) {
+  float length = largest(direction);
+  return {length > 0 && length < infinity ? foreignError(origin) / length : 0.0f, 0, RTSL_NO_HIT,
+          primitive};
+}
+
 /// startOf for origins that are not the hit point. It is passed values, so that a state in
 /// registers stays there.
 __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
                                                                Vec3 direction) {
-  RayStart start = {0, 0, RTSL_NO_HIT, hit.primitive};
-  float foreign = foreignPointUnits * roundingUnit * largest(origin);
-  float length = largest(direction);
-  if (!(length > 0 && length < infinity))
-    return start;
-  start.epsilon = foreign / length;
-  if (hit.instance == RTSL_NO_HIT)
+  RayStart start = startInSpace(hit.primitive, origin, direction);
+  float foreign = foreignError(origin), length = largest(direction);
+  if (hit.instance == RTSL_NO_HIT || !(length > 0 && length < infinity))
     return start;
   // Only near the hit point are the surface and its normal known.
   float error = hit.error, away = largest(origin - hit.point);
@@ -158,6 +166,8 @@ __attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, 
   if (isEasySpawn(parent, origin, direction))
     return {epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction), 1,
             parent.instance, leftPrimitive(parent)};
+  if (parent.instance == RTSL_NO_HIT)
+    return startInSpace(leftPrimitive(parent), origin, direction);
   return startElsewhere(leftHit(parent), origin, direction);
 }
 
