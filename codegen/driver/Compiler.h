@@ -39,6 +39,7 @@ enum class Schedule : std::uint32_t {
   Prioritized = RTSL_SCHEDULE_PRIORITIZED,
   RoundRobin = RTSL_SCHEDULE_ROUND_ROBIN,
   Naive = RTSL_SCHEDULE_NAIVE,
+  LeastWaste = RTSL_SCHEDULE_LEAST_WASTE,
 };
 
 /// How the steps of samples are organised on a GPU: all in one kernel, each lane with a sample of
@@ -68,10 +69,10 @@ struct CompileOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
-  /// Of PTX for a scene. None: Majority for Paths::Random, otherwise Prioritized.
+  /// Of PTX for a scene. None: by the kind of program, as for the organisation (docs/gpu.md).
   std::optional<Schedule> schedule;
-  /// Of programs for GPUs and for Target::HostMegakernel.
-  Organisation organisation = Organisation::Megakernel;
+  /// Of programs for GPUs and for Target::HostMegakernel; there, none is Megakernel.
+  std::optional<Organisation> organisation;
   /// Megakernels count the steps of warps (runtime/device/engines/StepCounts.h).
   bool countsSteps = false;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.

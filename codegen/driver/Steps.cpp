@@ -2,6 +2,7 @@
 #include "codegen/driver/Steps.h"
 
 #include "codegen/emit/Ptx.h"
+#include "codegen/emit/StepCosts.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/emit/rewrites/CheckNumbers.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
@@ -17,6 +18,7 @@
 #include "llvm/Support/raw_ostream.h"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <new>
 
@@ -151,9 +153,59 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   return forGpu ? gpu : host;
 }
 
-Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program) {
-  return options.schedule.value_or(program.paths == runtime::Paths::Random ? Schedule::Majority
-                                                                           : Schedule::Prioritized);
+/// The number of "sm_80" and the like.
+static unsigned architecture(const std::string &gpu) {
+  return unsigned(std::strtoul(gpu.c_str() + std::strlen("sm_"), nullptr, 10));
+}
+
+/// Whether rays are chosen at random, and only `generate` waits for them.
+static bool followsPaths(const runtime::Program &program, const llvm::Module &module) {
+  return program.paths == runtime::Paths::Random &&
+         codegen::knownConstant(module, "rtsl_rays_wait_once").value_or(0) != 0;
+}
+
+static bool hasTree(const llvm::Module &module) {
+  return codegen::knownConstant(module, "rtsl_listed_instances").value_or(0) == 0;
+}
+
+/// docs/gpu.md compares the schedules.
+static Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program,
+                            const llvm::Module &module) {
+  if (options.schedule)
+    return *options.schedule;
+  if (program.paths != runtime::Paths::Random)
+    return Schedule::Prioritized;
+  const bool replace = codegen::knownConstant(module, "rtsl_rays_replace").value_or(0) != 0;
+  const bool isLit = program.needs & (RTSL_NEEDS_EMITTERS | RTSL_NEEDS_SAMPLING);
+  return followsPaths(program, module) && replace && !isLit && !hasTree(module)
+             ? Schedule::LeastWaste
+             : Schedule::Majority;
+}
+
+/// docs/gpu.md compares the organisations.
+static Organisation organisationFor(const CompileOptions &options, const runtime::Program &program,
+                                    const llvm::Module &module) {
+  if (options.organisation)
+    return *options.organisation;
+  if (options.countsSteps)
+    return Organisation::Megakernel;
+  return followsPaths(program, module) && hasTree(module) ? Organisation::Wavefront
+                                                          : Organisation::Megakernel;
+}
+
+/// How the lanes of a warp choose their steps.
+static void defineSchedule(llvm::Module &module, const CompileOptions &options,
+                           const runtime::Program &program) {
+  const Schedule schedule = scheduleFor(options, program, module);
+  codegen::defineConstant(module, "rtsl_schedule", std::uint32_t(schedule));
+  if (schedule == Schedule::LeastWaste) {
+    const std::uint64_t costs = codegen::stepCosts(module);
+    codegen::defineConstant(module, "rtsl_step_costs_low", std::uint32_t(costs));
+    codegen::defineConstant(module, "rtsl_step_costs_high", std::uint32_t(costs >> 32));
+  }
+  codegen::defineForward(module, "rtsl_least_of_warp",
+                         architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"
+                                                         : "rtsl_least_by_exchange");
 }
 
 /// What a program exports on a GPU.
@@ -169,13 +221,15 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, options, program);
-  codegen::defineConstant(*code.module, "rtsl_schedule",
-                          std::uint32_t(scheduleFor(options, program)));
-  const bool isWavefront = options.organisation == Organisation::Wavefront;
+  if (forGpu)
+    defineSchedule(*code.module, options, program);
+  code.organisation = forGpu ? organisationFor(options, program, *code.module)
+                             : options.organisation.value_or(Organisation::Megakernel);
+  const bool isWavefront = code.organisation == Organisation::Wavefront;
   if (isWavefront)
     beginWavefront(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
-                 forGpu ? kernels(options.organisation) : hostEntries(options.organisation));
+                 forGpu ? kernels(code.organisation) : hostEntries(code.organisation));
   if (isWavefront)
     endWavefront(code, program);
   code.options.isMegakernel = true;
@@ -193,7 +247,7 @@ void endWavefront(LlvmCode &code, const runtime::Program &program) {
   codegen::declareRecords(*code.module);
 }
 
-const std::vector<std::string> &hostEntries(Organisation organisation) {
+const std::vector<std::string> &hostEntries(std::optional<Organisation> organisation) {
   static const std::vector<std::string> lanes = {"rtsl_lane_bytes", "rtsl_run_lane"};
   static const std::vector<std::string> waves = {"rtsl_wave_bytes", "rtsl_run_wave",
                                                  "rtsl_wave_state"};

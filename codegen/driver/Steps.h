@@ -71,6 +71,7 @@ struct LlvmCode {
   std::unique_ptr<llvm::Module> module;
   codegen::MachineOptions options;
   std::vector<std::string> kept; // functions that are kept although nothing calls them
+  Organisation organisation = Organisation::Megakernel; // of a self-contained program
 };
 
 /// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
@@ -84,16 +85,14 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
-/// CompileOptions::schedule, or the one for this program.
-Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program);
-
 /// The states of a linked program as a self-contained program
 /// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 
 /// The functions that such a program exports on the CPU: the size of a lane, and what runs it.
-const std::vector<std::string> &hostEntries(Organisation organisation = Organisation::Megakernel);
+const std::vector<std::string> &
+hostEntries(std::optional<Organisation> organisation = std::nullopt);
 
 /// Before linking with the device code of a wavefront, and after it.
 void beginWavefront(LlvmCode &code, const runtime::Program &program);

@@ -174,12 +174,28 @@ void defineConstant(llvm::Module &module, const std::string &name, uint32_t valu
   builder.CreateRet(builder.getInt32(value));
 }
 
-std::optional<uint32_t> takeConstant(llvm::Module &module, const std::string &name) {
-  llvm::Function *function = module.getFunction(name);
+void defineForward(llvm::Module &module, const std::string &name, const std::string &target) {
+  llvm::LLVMContext &context = module.getContext();
+  llvm::Type *i32 = llvm::Type::getInt32Ty(context);
+  auto *type = llvm::FunctionType::get(i32, {llvm::PointerType::getUnqual(context), i32}, false);
+  auto *function = llvm::Function::Create(type, llvm::Function::ExternalLinkage, name, module);
+  llvm::IRBuilder<> builder(llvm::BasicBlock::Create(context, "", function));
+  builder.CreateRet(builder.CreateCall(module.getOrInsertFunction(target, type),
+                                       {function->getArg(0), function->getArg(1)}));
+}
+
+std::optional<uint32_t> knownConstant(const llvm::Module &module, const std::string &name) {
+  const llvm::Function *function = module.getFunction(name);
+  if (!function || function->isDeclaration())
+    return std::nullopt;
   const auto *end = llvm::dyn_cast<llvm::ReturnInst>(function->getEntryBlock().getTerminator());
   const auto *value = end ? llvm::dyn_cast<llvm::ConstantInt>(end->getReturnValue()) : nullptr;
-  const std::optional<uint32_t> result =
-      value ? std::optional(uint32_t(value->getZExtValue())) : std::nullopt;
+  return value ? std::optional(uint32_t(value->getZExtValue())) : std::nullopt;
+}
+
+std::optional<uint32_t> takeConstant(llvm::Module &module, const std::string &name) {
+  llvm::Function *function = module.getFunction(name);
+  const std::optional<uint32_t> result = knownConstant(module, name);
   if (function->use_empty())
     function->eraseFromParent();
   else

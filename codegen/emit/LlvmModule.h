@@ -65,6 +65,12 @@ llvm::Expected<std::unique_ptr<llvm::Module>> translateToLlvm(mlir::ModuleOp mod
 /// linkDeviceCode, it replaces a weak definition there.
 void defineConstant(llvm::Module &module, const std::string &name, uint32_t value);
 
+/// Defines `uint32_t name(const RtslLaunch *, uint32_t)`, which returns the result of `target`.
+void defineForward(llvm::Module &module, const std::string &name, const std::string &target);
+
+/// The result of a function that always returns the same; nothing if it is unknown here.
+std::optional<uint32_t> knownConstant(const llvm::Module &module, const std::string &name);
+
 /// The result of a function without arguments, if it is a constant once it is optimised; afterwards
 /// it is internal, or removed if nothing calls it.
 std::optional<uint32_t> takeConstant(llvm::Module &module, const std::string &name);

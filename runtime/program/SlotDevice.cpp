@@ -69,6 +69,9 @@ uint32_t rtsl_features(RtslState *state) {
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
   return slotsOf(state).states.run(state, number, object, frame);
 }
+int32_t rtsl_first_state(RtslState *, int32_t number, RtslRef) {
+  return number;
+}
 int32_t rtsl_frame_size(RtslState *state, int32_t) {
   return int32_t(frameBytes(state->launch));
 }

@@ -31,6 +31,7 @@ enum Status {
   NoDevice = 100,
   NoBinaryForGpu = 209,
   UnsupportedPtxVersion = 222,
+  NotFound = 500,
   IllegalAddress = 700,
 };
 
@@ -49,7 +50,8 @@ struct Device {
   std::mutex mutex;
   std::map<std::uintptr_t, std::size_t> allocations;
   std::size_t allocated = 0;
-  std::size_t waveStates = 0;          // of the program
+  std::string code;                    // of all programs
+  std::size_t waveStates = 0;          // of the last one
   RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
 };
 Device devices[mostDevices];
@@ -386,6 +388,7 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
                    "    16 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads\n");
   const char *code = static_cast<const char *>(image);
   *module = current;
+  current->code += code;
   if (!hasKernel(code, "rtsl_build_")) {
     current->waveStates = 0;
     const std::string state = std::string(entry) + "rtsl_wave_state_";
@@ -405,6 +408,8 @@ int cuModuleUnload(void *) {
   return Success;
 }
 int cuModuleGetFunction(void **function, void *, const char *name) {
+  if (!hasKernel(current->code.c_str(), (std::string(name) + "(").c_str()))
+    return NotFound;
   for (const char *const &kernel : kernels)
     if (std::strcmp(name, kernel) == 0 ||
         (kernel[std::strlen(kernel) - 1] == '_' && std::strstr(name, kernel) == name)) {

@@ -46,11 +46,12 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   package.frameBytes = compilation.report.frameSize();
   package.stateCount = compilation.report.stateCount();
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
-  package.ptx =
-      toPtx(megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true), &package.wave);
-  if (options.organisation == Organisation::Wavefront)
-    package.wave.states = package.stateCount;
-  package.registers = registersFor(options.organisation, compilation.program->paths);
+  LlvmCode code = megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true);
+  const Organisation organisation = code.organisation;
+  package.ptx = toPtx(std::move(code), &package.wave);
+  if (organisation == Organisation::Wavefront)
+    package.wave.states = std::uint32_t(compilation.program->stateNames.size());
+  package.registers = registersFor(organisation, compilation.program->paths);
   package.stateNames = compilation.program->stateNames;
   package.host = hostImage(compilation);
   return true;

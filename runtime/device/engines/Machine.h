@@ -213,7 +213,7 @@ inline void goOn(Rays &rays) {
 // Steps
 //===----------------------------------------------------------------------===//
 
-/// The first state of the method for what the ray has met; 0 if the ray is over.
+/// The state of the entry point for what the ray has met; 0 if the ray is over.
 inline int32_t firstState(RtslState *state, bool carries, Arrival::Kind kind) {
   if (kind == Arrival::Surface)
     return carries ? rtsl_rt_Material_closestHit_payload_first(state)
@@ -233,7 +233,7 @@ inline int32_t begin(Rays &rays) {
   const uint32_t found = rtsl_traverse(&state, how);
   const Arrival arrival = carries ? arriveWithPayloadAt(state, how, found) : arriveAt(state, found);
   beginOn(rays, arrival.object);
-  return firstState(&state, carries, arrival.kind);
+  return rtsl_first_state(&state, firstState(&state, carries, arrival.kind), arrival.object);
 }
 
 /// Starts a sample, on a stack of stackSize(...) bytes: with `generate` if the program has it,

@@ -33,6 +33,24 @@ void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
 }
 
 #ifdef __NVPTX__
+/// clang's own function for it is of programs for one kind of GPU.
+uint32_t leastOf(uint32_t number, uint32_t lanes) __asm__("llvm.nvvm.redux.sync.umin");
+
+/// rtsl_least_of_warp of GPUs from sm_80 on.
+uint32_t rtsl_least_by_instruction(const RtslLaunch *, uint32_t number) {
+  return leastOf(number, device::warp::all);
+}
+/// rtsl_least_of_warp of older GPUs: each lane compares its number with those of lanes at distances
+/// of 16, 8, ..., 1.
+uint32_t rtsl_least_by_exchange(const RtslLaunch *, uint32_t number) {
+  for (int distance = 16; distance > 0; distance /= 2) {
+    const auto other =
+        uint32_t(__nvvm_shfl_sync_bfly_i32(device::warp::all, int32_t(number), distance, 31));
+    number = other < number ? other : number;
+  }
+  return number;
+}
+
 static uint32_t threadNumber() {
   return __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
          __nvvm_read_ptx_sreg_tid_x();

@@ -74,7 +74,7 @@ inline void runLane(const RtslJob &job, uint32_t number) {
   int32_t choice = Step::nothing;
   rays.next = Step::sample;
   for (;;) {
-    choice = chooseStep(rtsl_schedule(job.launch), rays.next, choice);
+    choice = chooseStep(job.launch, rays.next, choice);
     if (choice == Step::nothing)
       return;
     const bool takesPart = rays.next == choice;

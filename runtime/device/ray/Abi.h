@@ -493,7 +493,16 @@ const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
 #define RTSL_SCHEDULE_PRIORITIZED 1u
 #define RTSL_SCHEDULE_ROUND_ROBIN 2u
 #define RTSL_SCHEDULE_NAIVE 3u
+#define RTSL_SCHEDULE_LEAST_WASTE 4u
 uint32_t rtsl_schedule(const RtslLaunch *launch);
+/// What the steps of the megakernel cost, as powers of two: 4 bits for each of traversal, the
+/// beginning of samples, and the states in the order of their numbers; the last for all that
+/// follow. Of RTSL_SCHEDULE_LEAST_WASTE only.
+uint32_t rtsl_step_costs_low(const RtslLaunch *launch);
+uint32_t rtsl_step_costs_high(const RtslLaunch *launch);
+/// The least number of the lanes of a warp, which call together. Of GPUs only: by the instruction
+/// for it, or without (runtime/device/ray/Warp.h).
+uint32_t rtsl_least_of_warp(const RtslLaunch *launch, uint32_t number);
 /// Whether RtslJob::stepCounts is written. For a measurement: it takes time.
 uint32_t rtsl_counts_steps(const RtslLaunch *launch);
 
@@ -603,6 +612,9 @@ int32_t rtsl_rt_Miss_miss_first(RtslState *state);
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state);
 int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state);
+/// The state to begin with instead of `number`, one of those: that of the object's method, where
+/// the first one would only go on with it.
+int32_t rtsl_first_state(RtslState *state, int32_t number, RtslRef object);
 
 /// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state
 /// returns.

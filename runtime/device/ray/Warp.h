@@ -6,6 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/ray/Abi.h"
+
 #include <stdint.h>
 
 namespace rtsl::device {
@@ -23,12 +25,13 @@ inline uint32_t lanesWhere(bool condition) {
 inline int32_t valueOf(int32_t value, int lane) {
   return __nvvm_shfl_sync_idx_i32(all, value, lane, 31);
 }
-/// The smallest value of the given lanes, of which there is at least one.
-inline int32_t smallest(uint32_t lanes, int32_t value) {
-  int32_t least = valueOf(value, __builtin_ctz(lanes));
-  for (uint32_t less; (less = lanesWhere(value < least) & lanes) != 0;)
-    least = valueOf(value, __builtin_ctz(less));
-  return least;
+/// The lanes with the same value.
+inline uint32_t lanesWith(int32_t value) {
+  return __nvvm_match_any_sync_i32(all, uint32_t(value));
+}
+/// The least number of all lanes.
+inline uint32_t least(uint32_t number) {
+  return rtsl_least_of_warp(nullptr, number);
 }
 } // namespace warp
 

@@ -158,18 +158,22 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       Choices<std::optional<Schedule>>{{"auto", std::nullopt},
                                        {"majority", Schedule::Majority},
                                        {"prioritized", Schedule::Prioritized},
+                                       {"least-waste", Schedule::LeastWaste},
                                        {"round-robin", Schedule::RoundRobin},
                                        {"naive", Schedule::Naive}},
       "how the lanes of a GPU's warp choose the next step: the one that most wait for; states "
-      "before traversal, new samples last; each step in its turn; or that of the first lane. "
-      "auto: majority where shaders choose rays at random, otherwise prioritized. The picture "
-      "is the same");
+      "before traversal, new samples last; the one that wastes the least time of lanes that wait; "
+      "each step in its turn; or that of the first lane. auto: prioritized, but where shaders "
+      "choose rays at random majority, or least-waste where each of these rays takes the place of "
+      "the one that sent it, in a scene without a tree. The picture is the same");
   addChoice(command, "--organisation", options.compile.organisation,
-            Choices<Organisation>{{"megakernel", Organisation::Megakernel},
-                                  {"wavefront", Organisation::Wavefront}},
+            Choices<std::optional<Organisation>>{{"auto", std::nullopt},
+                                                 {"megakernel", Organisation::Megakernel},
+                                                 {"wavefront", Organisation::Wavefront}},
             "how the steps of samples are organised on a GPU: megakernel, all in one kernel; "
-            "wavefront, a kernel for each step and queues of samples between them. The picture is "
-            "the same");
+            "wavefront, a kernel for each step and queues of samples between them; auto: wavefront "
+            "where rays are chosen at random in a scene with a tree, and only `generate` waits for "
+            "them. The picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,

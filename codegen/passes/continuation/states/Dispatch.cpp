@@ -7,6 +7,7 @@
 //   func @rtsl_frame_size(%chain: i32) -> i32                  bytes of the largest frame
 //   func @rtsl_calls() -> i32                                  whether a state calls a function
 //   func @rtsl_rt_Material_shade_first() -> i32                the first state of an entry point
+//   func @rtsl_first_state(%state: i32, %object) -> i32        that it jumps to (FirstStates.h)
 //   func @rtsl_rays_sent(%kind: i32) -> i32                    what bounds the stack (RayGraph.h)
 //   func @rtsl_rays_kept(%part: i32) -> i32                    what waiting rays read (KeptState.h)
 //
@@ -16,6 +17,7 @@
 #include "codegen/ir/Separate.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
+#include "codegen/passes/continuation/states/FirstStates.h"
 #include "codegen/passes/continuation/states/KeptState.h"
 #include "codegen/passes/continuation/states/PassFrame.h"
 #include "codegen/passes/continuation/states/RayGraph.h"
@@ -43,6 +45,26 @@ std::uint32_t payloadsOf(const RayGraph &rays) {
   if (rays.kinds.size() == 1 || generate == 0) // only rays without payloads, or unknown ones
     return rays.kinds.front().name == "color" ? 1 : 3;
   return (sent & 1 ? 1u : 0u) | (sent & ~1u ? 2u : 0u);
+}
+
+/// States with a smaller number run first, so that those of rays that end come before those that
+/// wait for them: the entry points, then the beginnings of methods, and so on.
+std::int64_t turnOf(FuncOp state) {
+  return ir::attr::entry.isOn(state) ? -1 : ir::attr::state.of(state).getInt();
+}
+
+bool sendsRay(FuncOp state) {
+  return ir::anyOperation(state, [](mlir::Operation *op) {
+    auto next = llvm::dyn_cast<ir::NextOp>(op);
+    return next && (next.getTransition() == ir::Transition::Trace ||
+                    next.getTransition() == ir::Transition::Last);
+  });
+}
+
+/// Whether rays only replace each other, until one ends: no state that follows a trace sends one.
+bool raysReplace(const RayGraph &rays, llvm::ArrayRef<FuncOp> states) {
+  return llvm::any_of(rays.kinds, [](const RayGraph::Kind &kind) { return kind.sentLast != 0; }) &&
+         llvm::none_of(states, [](FuncOp state) { return turnOf(state) > 0 && sendsRay(state); });
 }
 
 class Dispatcher {
@@ -224,9 +246,13 @@ mlir::LogicalResult Dispatcher::run() {
   dropUncalled();
   const RayGraph rays = findRays(module);
   const KeptState kept = findKeptState(module);
-  std::map<std::string, std::int32_t> entries;
+  std::map<std::string, std::string> entries; // the states that they begin with
   for (llvm::StringRef slot : machineSlots())
-    entries[ir::slotSymbol(slot) + "_first"] = 0;
+    entries[ir::slotSymbol(slot)];
+  for (FuncOp state : module.getOps<FuncOp>())
+    if (auto entry = ir::attr::entry.of(state); entry && ir::attr::state.isOn(state))
+      entries[entry.getValue().str()] = state.getSymName().str();
+  const llvm::StringMap<std::string> replacements = eraseJumpingEntries(module);
   for (FuncOp state : module.getOps<FuncOp>()) {
     if (!ir::attr::state.isOn(state))
       continue;
@@ -236,11 +262,14 @@ mlir::LogicalResult Dispatcher::run() {
              << "`" << state.getSymName()
              << "` has parameters besides its object, which the machine cannot pass";
     states.push_back(state);
-    std::int32_t number = states.size();
-    numbers[state.getSymName()] = number;
-    if (auto entry = ir::attr::entry.of(state))
-      entries[(entry.getValue() + "_first").str()] = number;
   }
+  llvm::stable_sort(states, [](FuncOp left, FuncOp right) { return turnOf(left) < turnOf(right); });
+  for (auto [index, state] : llvm::enumerate(states))
+    numbers[state.getSymName()] = static_cast<std::int32_t>(index) + 1;
+  FuncOp firstState = makeFirstState(module, states, numbers);
+  ir::insertForRuntime(symbols, firstState);
+  ir::attr::exported.set(firstState);
+  const bool replace = raysReplace(rays, states);
   areas = frameAreas(module);
   for (FuncOp state : states) {
     state.walk([&](ir::EnterOp) { hasCalls = true; });
@@ -257,8 +286,11 @@ mlir::LogicalResult Dispatcher::run() {
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);
   const auto markAsFact = [&](FuncOp function) { ir::attr::factOfScene.set(function); };
-  for (const auto &[name, number] : entries)
-    markAsFact(makeConstant(name, number));
+  for (const auto &[entry, state] : entries) {
+    const auto replacement = replacements.find(state);
+    const llvm::StringRef first = replacement == replacements.end() ? state : replacement->second;
+    markAsFact(makeConstant(entry + "_first", numbers.lookup(first)));
+  }
   llvm::SmallVector<std::uint32_t> sent, sentLast;
   for (const RayGraph::Kind &kind : rays.kinds) {
     sent.push_back(kind.sent);
@@ -271,6 +303,7 @@ mlir::LogicalResult Dispatcher::run() {
              high = static_cast<std::uint32_t>(kept.fields >> 32);
   markAsFact(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
   markAsFact(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
+  markAsFact(makeConstant("rtsl_rays_replace", replace));
   return mlir::success();
 }
 

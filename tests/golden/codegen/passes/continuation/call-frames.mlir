@@ -59,14 +59,14 @@ rtsl.class @Tint root "rt_Texture" {
   rtsl.member_decl @inner : !rtsl.ref<"Tint"> access "public"
 }
 
-// The frame of who calls takes no bytes; 52 of `follow` become 56, for addresses have eight. State 2 is where to go on,
-// state 3 begins the call.
+// The frame of who calls takes no bytes; 52 of `follow` become 56, for addresses have eight. State 3 is where to go on,
+// state 2 begins the call.
 // MACHINE-LABEL: func.func private @rtsl_rt_Material_shade.state0(
 // MACHINE-SAME:    %[[SELF:.*]]: !rtsl.ref<"Mirror">, %[[FRAME:.*]]: !rtsl.ptr<i32>) -> i32
 // MACHINE:         rtsl.store %{{.*}}, %{{.*}} : !rtsl.ptr<i32>
 // MACHINE:         rtsl.store %[[SELF]], %{{.*}} : !rtsl.ptr<!rtsl.ref<"Mirror">>
 // MACHINE:         rtsl.move_frame %{{.*}} to %{{.*}} : !rtsl.ref<"Tint">
-// MACHINE-NEXT:    %[[N:.*]] = arith.constant -3 : i32
+// MACHINE-NEXT:    %[[N:.*]] = arith.constant -2 : i32
 // MACHINE-NEXT:    return %[[N]]
 // MACHINE-LABEL: func.func private @follow.state2(
 // MACHINE-NEXT:    rtsl.frame_slot %arg1[84]

@@ -1,10 +1,15 @@
 // RUN: rtsl-opt %s --rtsl-dispatch | FileCheck %s
 
-// The frame becomes a parameter and states become numbers, from 1 in their order; a jump is negative.
+// The frame becomes a parameter and states become numbers: entry points first, then the beginnings of
+// methods, and so on; a jump is negative.
 // CHECK-LABEL: func.func private @e.state0(%arg0: !rtsl.ref<"rt_Material">, %arg1: !rtsl.ptr<i32>) -> i32
+// CHECK:         rtsl.store
 // CHECK-NEXT:    %[[JUMP:.*]] = arith.constant -2 : i32
 // CHECK-NEXT:    return %[[JUMP]]
 func.func private @e.state0(%o: !rtsl.ref<"rt_Material">) -> i32 attributes {rtsl.entry = "rtsl_rt_Material_shade", rtsl.state = 0 : i32} {
+  %a = rtsl.state "Time" : !rtsl.ptr<f32>
+  %t = arith.constant 1.0 : f32
+  rtsl.store %t, %a : !rtsl.ptr<f32>
   %n = rtsl.next jump @f.state0
   rtsl.end %n
 }

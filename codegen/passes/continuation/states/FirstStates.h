@@ -1,0 +1,27 @@
+//===- FirstStates.h - the states in which entry points begin -------------===//
+//
+// An entry point of the machine, such as `shade`, is a function that looks at the class of its
+// object and goes on with the method of that class. Split, it is a state. Where it only jumps to
+// the state of a method, the machine goes there directly: one step less for each ray.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/passes/continuation/states/PassFrame.h"
+
+#include "llvm/ADT/StringMap.h"
+
+#include <string>
+
+namespace rtsl::continuation {
+
+/// Erases the states of entry points that jump to another state whatever the object is. Returns the
+/// names of the states that take their place, by the names of the erased ones.
+llvm::StringMap<std::string> eraseJumpingEntries(mlir::ModuleOp module);
+
+/// Appends `@rtsl_first_state(%state: i32, %object) -> i32`: where the state of an entry point only
+/// jumps for this object, the number of the state that it jumps to, otherwise `%state`.
+FuncOp makeFirstState(mlir::ModuleOp module, llvm::ArrayRef<FuncOp> states,
+                      const StateNumbers &numbers);
+
+} // namespace rtsl::continuation
