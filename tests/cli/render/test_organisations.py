@@ -97,13 +97,20 @@ class Organisations(Case):
         )
         self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
+    def test_paths_through_a_tree_are_a_wavefront(self):
+        for scene, kernel in (("room.json", "rtsl_wave_begin"), ("scene.json", "rtsl_render")):
+            ptx, _ = self.run_rtslc(
+                "compile", EXAMPLES / "cornell" / scene, "--emit=ptx", "-O0", "-Wno-depth-limit"
+            )
+            self.assertIn(f".entry {kernel}(", ptx)
+
     def test_the_name_is_one_of_those_listed(self):
         _, error = self.run_rtslc(
             *("render", EXAMPLES / "metal" / "scene.json", "-o", "a.exr", HOST),
             "--organisation=waves",
             status=USAGE,
         )
-        self.assertIn("`waves` is none of megakernel, wavefront", error)
+        self.assertIn("`waves` is none of auto, megakernel, wavefront", error)
 
 
 class OnTheStandIn(Case):
