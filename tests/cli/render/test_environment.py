@@ -72,7 +72,7 @@ class EnvironmentCase(PathCase):
             pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
         ).read_text()
         plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace(
-            "pathShare(path.density, rt_PDF)", "1.0"
+            "pathShare(path, path.density, rt_PDF)", "1.0"
         )
         self.assertEqual(len(plain.split("if (false)")), 2)
         self.write("PathTracer.rtsl", plain)

@@ -4,8 +4,11 @@ authors."""
 import json
 import math
 import pathlib
+import statistics
+import struct
 import unittest
 
+from exr_files import channels
 from harness import EXAMPLES, RTSLC
 from path_case import BALL, FLOOR, SHADERS, WAYS, PathCase
 
@@ -211,7 +214,7 @@ class ClosedForms(PathCase):
             pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
         ).read_text()
         plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace(
-            "pathShare(path.density, rt_PDF)", "1.0"
+            "pathShare(path, path.density, rt_PDF)", "1.0"
         )
         self.assertEqual(len(plain.split("if (false)")), 2)
         self.write("PathTracer.rtsl", plain)
@@ -440,6 +443,27 @@ class Paths(PathCase):
             rayGeneration={"class": "PathTracer", "bounces": 0},
         )
         self.assert_gray(1.0, 1e-6)
+
+    def test_both_heuristics_find_the_same_light(self):
+        """A floor under a large lamp, which both ways find well. All pixels see the same, and the
+        means differ by at most 4.5 standard errors, which are less than 3 percent."""
+        lamp = {"class": "Sphere", "center": [0, 3, 0], "radius": 2}
+        estimates = []
+        for heuristic in (1, 2):
+            self.scene(
+                [(FLOOR, {"class": "Lambert"}), (lamp, {"class": "Emitter"})],
+                camera="Under",
+                spp=256,
+                rayGeneration={"class": "PathTracer", "bounces": 1, "heuristic": heuristic},
+            )
+            self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q")
+            bits = channels((self.folder / "a.exr").read_bytes())["R"]
+            estimates.append(struct.unpack(f"<{len(bits)}f", struct.pack(f"<{len(bits)}I", *bits)))
+        self.assertNotEqual(*estimates)
+        means = [statistics.fmean(values) for values in estimates]
+        error = math.hypot(*(statistics.stdev(v) / math.sqrt(len(v)) for v in estimates))
+        self.assertLess(4.5 * error, 0.03 * means[1])
+        self.assertAlmostEqual(*means, delta=4.5 * error)
 
     def test_another_ray_generation_is_not_used(self):
         self.write(
