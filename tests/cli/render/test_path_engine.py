@@ -352,6 +352,32 @@ class Broken : Own {
         self.assertIn("were infinite or not a number", messages)
         self.assertIn("zero / zero", messages)
 
+    def test_values_below_0_are_left_out(self):
+        """A BSDF that is negative in half of its samples: the picture is that of the others, and
+        the message says which class it was, with the line of the engine that found it."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Below : Own {
+  void sampleBSDF() {
+    rt_LightDirection = normal();
+    rt_PDF = -1.0;
+    rt_BSDFValue = color(rand() < 0.5 ? -0.5 : 0.0);
+  }
+};
+""",
+        )
+        self.scene([(BALL, {"class": "Below", "albedo": 0, "glow": 0.25})], spp=16, depth=2)
+        self.assert_gray(0.25, 1e-6)
+        _, messages = self.run_rtslc("render", "scene.json", "-o", "a.exr")
+        self.assertIn("were infinite or not a number", messages)
+        self.assertIn("sqrt(min(rt_BSDFValue))", messages)
+        self.assertRegex(
+            messages,
+            "W2800.*`sampleBSDF` of `Below` wrote negative values for [0-9]+ of 512 directions",
+        )
+
     def test_check_tries_the_methods_of_materials(self):
         """Values below 0, values that are no numbers, and directions without a density."""
         self.write(

@@ -46,25 +46,6 @@ void writeFixes(const Messages &messages) {
   }
 }
 
-/// Runs the methods of the materials by which light is scattered, of a program for that.
-void tryMaterials(runtime::Scene &scene, const typed::Module &module, LinkRequest request,
-                  const CheckOptions &options, Messages &messages) {
-  request.isSampled = true;
-  request.keep.add(ItemSet::ofMembers()); // the records of the objects stay as they are
-  CompileOptions compile = options.common.compile;
-  compile.trace = TraceMode::Recurse;
-  compile.optimization = 0;
-  SourceManager sources;
-  Diagnostics unheard(sources); // all of it has been said
-  const auto program = compileProgram(module, request, compile, unheard,
-                                      [&](const auto &) { return scene.facts(); });
-  if (!program)
-    return;
-  scene.useProgram(program);
-  for (const Warning &warning : checkMaterials(scene, request))
-    messages.report(warning);
-}
-
 /// The shaders of a launch are linked, and its objects made.
 void checkLaunch(const scene::SceneDescription &launch, const typed::Module &module,
                  const CheckOptions &options, SceneBuilder buildScene, Messages &messages) {
@@ -81,7 +62,8 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
   if (!messages.diagnostics.hasErrors() && scattersByMethods(request, scene->program()))
-    tryMaterials(*scene, module, request, options, messages);
+    for (const Warning &warning : tryMaterials(*scene, module, request, options.common.compile))
+      messages.report(warning);
 }
 
 /// Everything that happens to a scene before it is rendered, through any of its cameras.

@@ -88,6 +88,19 @@ void draw(const runtime::Scene &scene, RtslRef material, FaultsByMethod &found) 
   }
 }
 
+/// Of all materials, in the scene's program with SamplingSlots.def.
+FaultsByMethod drawAll(const runtime::Scene &scene) {
+  const RtslLaunch launch = scene.launch();
+  std::set<RtslRef> materials;
+  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
+    materials.insert(launch.instances[i].material);
+  FaultsByMethod found;
+  for (const RtslRef material : materials)
+    if (material && scene.classOf(material).root == "rt_Material")
+      draw(scene, material, found);
+  return found;
+}
+
 } // namespace
 
 bool scattersByMethods(const LinkRequest &request, const runtime::Program &program) {
@@ -98,15 +111,21 @@ bool scattersByMethods(const LinkRequest &request, const runtime::Program &progr
          });
 }
 
-std::vector<Warning> checkMaterials(const runtime::Scene &scene, const LinkRequest &request) {
-  const RtslLaunch launch = scene.launch();
-  std::set<RtslRef> materials;
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
-    materials.insert(launch.instances[i].material);
-  FaultsByMethod found;
-  for (const RtslRef material : materials)
-    if (material && scene.classOf(material).root == "rt_Material")
-      draw(scene, material, found);
+std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
+                                  LinkRequest request, CompileOptions compile) {
+  request.isSampled = true;
+  request.keep.add(ItemSet::ofMembers()); // the records of the objects stay as they are
+  compile.target = Target::Host;
+  compile.trace = TraceMode::Recurse;
+  compile.optimization = 0;
+  SourceManager sources;
+  Diagnostics unheard(sources); // all of it has been said
+  const auto program = compileProgram(module, request, compile, unheard,
+                                      [&](const auto &) { return scene.facts(); });
+  if (!program)
+    return {};
+  scene.useProgram(program);
+  const FaultsByMethod found = drawAll(scene);
 
   std::vector<Warning> warnings;
   for (const auto &[name, faults] : found) {

@@ -1,6 +1,7 @@
 //===- MaterialCheck.h - whether materials scatter light that can be -------===//
 #pragma once
 
+#include "codegen/driver/Compiler.h"
 #include "codegen/link/LinkRequest.h"
 #include "runtime/scene/Scene.h"
 #include "support/Error.h"
@@ -14,8 +15,8 @@ bool scattersByMethods(const LinkRequest &request, const runtime::Program &progr
 
 /// Draws directions of each material on the scene's surfaces, and evaluates them: values below 0,
 /// values that are no numbers, and directions with a value but a density of 0 are warnings, one for
-/// each method and class, at its first object. The scene's program has SamplingSlots.def
-/// (LinkRequest::isSampled).
-std::vector<Warning> checkMaterials(const runtime::Scene &scene, const LinkRequest &request);
+/// each method and class, at its first object. The scene gets a program of its own for this.
+std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
+                                  LinkRequest request, CompileOptions compile);
 
 } // namespace rtsl::tool

@@ -13,6 +13,7 @@
 #include "tools/common/Output.h"
 #include "tools/common/Progress.h"
 #include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/compile/MaterialCheck.h"
 
 #include <fmt/format.h>
 
@@ -386,6 +387,9 @@ private:
           summary.notFinite.push_back({sample, {}, std::nullopt});
       }
     warn(summary, messages);
+    if (summary.statistics.samplesNotFinite && scattersByMethods(request, scene->program()))
+      for (const Warning &warning : tryMaterials(*scene, *module, request, compileOptions))
+        messages.report(warning);
     if (checkpoint)
       checkpoint->report(messages);
     if (viewer && !viewer->failure().empty())
