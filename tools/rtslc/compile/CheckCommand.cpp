@@ -3,10 +3,10 @@
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 #include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/Messages.h"
 #include "tools/rtslc/common/SceneShaders.h"
 #include "tools/rtslc/common/Shaders.h"
-#include "tools/rtslc/compile/MaterialCheck.h"
 
 #include <fmt/format.h>
 

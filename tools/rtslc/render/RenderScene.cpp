@@ -12,8 +12,8 @@
 #include "tools/common/Outcome.h"
 #include "tools/common/Output.h"
 #include "tools/common/Progress.h"
+#include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/SceneShaders.h"
-#include "tools/rtslc/compile/MaterialCheck.h"
 
 #include <fmt/format.h>
 

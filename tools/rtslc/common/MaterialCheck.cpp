@@ -1,4 +1,4 @@
-#include "tools/rtslc/compile/MaterialCheck.h"
+#include "tools/rtslc/common/MaterialCheck.h"
 
 #include "runtime/device/ray/Vector.h"
 #include "runtime/scene/Objects.h"
