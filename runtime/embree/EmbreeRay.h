@@ -6,28 +6,23 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/accel/Refit.h"
 #include "runtime/accel/TreeContents.h"
-#include "runtime/accel/TriangleBlocks.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/embree/EmbreeScene.h"
+#include "runtime/embree/EmbreeSpace.h"
 #include "runtime/embree/LastOccluders.h"
 
 #include <embree3/rtcore.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 namespace rtsl::runtime {
-
-struct EmbreeSpace;
 
 /// Embree's context of a ray, followed by the data for our callbacks.
 struct EmbreeContext {
@@ -45,55 +40,6 @@ struct EmbreeContext {
   float end(float t) const { return t * toEmbree * device::cullSlack; }
   /// Hits beyond it do not matter.
   float limit() const { return visitor ? visitor->limit(visitor->self) : state->nearest; }
-};
-
-/// An RTSL primitive in Embree, or a triangle of a mesh that has several keys.
-struct EmbreePrimitive {
-  void (*intersect)(RtslState *, RtslRef); // null: a triangle
-  std::uint32_t instance; // in a space of its own: some instance of the object or mesh
-  std::uint32_t number;   // of several of one object, or of the triangle
-};
-
-/// An instance in Embree that has a space of its own.
-struct EmbreeInstance {
-  std::uint32_t instance;
-  const EmbreeSpace *inside;
-};
-
-/// A tree for rays with origins up to some distance.
-struct EmbreeLevel {
-  const EmbreeSpace *owner = nullptr;
-  float largestOrigin = 0; // the sum of its coordinates
-  RTCScene scene = nullptr;
-  std::vector<RTCGeometry> geometries; // of a scene whose trees can follow what moves
-  std::once_flag built;
-};
-
-/// The contents of one space, with trees over them: the world, or a mesh or an object with several
-/// primitives that has instances with transforms.
-struct EmbreeSpace {
-  const EmbreeScene::Implementation *scene = nullptr;
-  bool isWorld = true;
-  LargeArray<TriangleBlock> blocks;
-  std::vector<EmbreePrimitive> primitives;
-  std::vector<EmbreeInstance> instances; // of the world
-  RtslBox bounds;                        // of all that is tested in the space
-  std::vector<MeshUse> meshes;           // in `blocks`
-  BoxOrder boxesWhenBuilt;               // once something has moved
-  bool follows = false;                  // since then
-  std::uint64_t moves = 0;               // Scene::movesOfMesh, of a mesh's space
-  std::vector<RtslBox> boxes;            // EmbreeScene::rememberBoxes: of all but `blocks`
-  // by largestOrigin; the first one is built
-  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
-  float firstLevelOrigin = 0; // of levels[0]
-  RTCScene firstLevel = nullptr;
-
-  /// The tree for rays from this origin.
-  RTCScene treeFor(device::Vec3 origin) const {
-    float size = __builtin_fabsf(origin.x) + __builtin_fabsf(origin.y) + __builtin_fabsf(origin.z);
-    return size <= firstLevelOrigin ? firstLevel : treeForFar(size);
-  }
-  RTCScene treeForFar(float origin) const;
 };
 
 struct EmbreeScene::Implementation {

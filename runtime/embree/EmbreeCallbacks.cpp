@@ -1,0 +1,229 @@
+#include "runtime/embree/EmbreeCallbacks.h"
+
+#include "runtime/embree/EmbreeRay.h"
+#include "runtime/embree/HostScene.h"
+
+#include <limits>
+
+namespace rtsl::runtime {
+
+namespace {
+
+using Implementation = EmbreeScene::Implementation;
+
+template <typename Arguments>
+const EmbreeContext &contextOf(const Arguments *arguments) {
+  return *reinterpret_cast<const EmbreeContext *>(arguments->context);
+}
+
+constexpr float isOver = -std::numeric_limits<float>::infinity(); // RTCRay::tfar
+
+template <typename Ray>
+const Ray &rayOf(const EmbreeContext &context) {
+  return static_cast<const Ray &>(*context.ray);
+}
+
+const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
+  return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
+}
+
+/// Passes an item to the visitor of the ray. False if the search is over.
+bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
+  const EmbreeVisitor &visitor = *context.visitor;
+  const bool ends = visitor.visit(visitor.self, item, enteredInstance(context));
+  ray.tfar = ends ? isOver : context.end(context.limit());
+  return !ends;
+}
+
+[[gnu::cold, gnu::noinline]] void visitBlock(const EmbreeContext &context, RTCRay &ray,
+                                             const TriangleBlock &block) {
+  const device::InstanceRay *entered = enteredInstance(context);
+  for (unsigned i = 0; i < TriangleBlock::lanes && block.instance[i] != RTSL_NO_HIT; ++i)
+    if (!visitItem(context, ray,
+                   {entered ? entered->instance : block.instance[i], block.triangle[i]}))
+      return;
+}
+
+template <typename Ray>
+void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  const TriangleBlock &block = context.space->blocks[arguments->primID];
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  if (context.visitor)
+    visitBlock(context, ray, block);
+  else if (testBlock(*context.state, rayOf<Ray>(context), block, false))
+    ray.tfar = context.end(context.state->nearest);
+}
+
+template <typename Ray>
+void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  if (!testBlock(*context.state, rayOf<Ray>(context), context.space->blocks[arguments->primID],
+                 true))
+    return;
+  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+  context.occluder = {arguments->primID, false};
+}
+
+template <typename Ray>
+RtslLeafItem itemOf(const EmbreeContext &context, const EmbreePrimitive &primitive) {
+  return {device::instanceOf(rayOf<Ray>(context), primitive.instance), primitive.number};
+}
+
+template <typename Ray>
+bool testPrimitive(const EmbreeContext &context, unsigned number) {
+  const EmbreePrimitive &primitive = context.space->primitives[number];
+  const RtslLeafItem item = itemOf<Ray>(context, primitive);
+  const RtslLaunch &launch = context.space->scene->launch;
+  const RtslInstance &instance = launch.instances[item.instance];
+  if (!primitive.intersect)
+    return device::testTriangle(*context.state, rayOf<Ray>(context), launch.meshes[instance.mesh],
+                                item.instance, item.primitive);
+  return device::testPrimitive(*context.state, rayOf<Ray>(context), instance, item,
+                               primitive.intersect);
+}
+
+template <typename Ray>
+void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  if (context.visitor)
+    visitItem(context, ray, itemOf<Ray>(context, context.space->primitives[arguments->primID]));
+  else if (testPrimitive<Ray>(context, arguments->primID))
+    ray.tfar = context.end(context.state->nearest);
+}
+
+template <typename Ray>
+void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
+  if (testPrimitive<Ray>(contextOf(arguments), arguments->primID))
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+}
+
+/// For a ray that Embree cannot trace: all that is in the space. True if the search is over.
+[[gnu::cold, gnu::noinline]] bool testAll(const EmbreeContext &context,
+                                          const device::InstanceRay &ray, bool anyHit) {
+  for (unsigned i = 0; i < context.space->primitives.size(); ++i) {
+    if (context.visitor) {
+      RTCRay unused{};
+      const EmbreePrimitive &primitive = context.space->primitives[i];
+      if (!visitItem(context, unused, itemOf<device::InstanceRay>(context, primitive)))
+        return true;
+    } else if (testPrimitive<device::InstanceRay>(context, i) && anyHit) {
+      return true;
+    }
+  }
+  for (const TriangleBlock &block : context.space->blocks) {
+    if (context.visitor) {
+      RTCRay unused{};
+      visitBlock(context, unused, block);
+      if (unused.tfar == isOver)
+        return true;
+    } else if (testBlock(*context.state, ray, block, anyHit) && anyHit) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Does the ray enter the box of the space before `limit`? It is that of a tree's root, tested
+/// before Embree begins, and turns with the instance, whose box in world space may be larger.
+bool entersSpace(const EmbreeSpace &space, const device::InstanceRay &ray, float epsilon,
+                 float limit) {
+  const device::Range range = device::rangeInBox(space.bounds.lower, space.bounds.upper, ray.origin,
+                                                 ray.inverse, 0, device::infinity);
+  return !range.isEmpty() && range.near <= limit * device::cullSlack &&
+         range.far >= epsilon * (1 - 2 * device::rangeShare);
+}
+
+/// Searches an instance that has a space of its own. True if the search is over.
+template <bool anyHit>
+bool searchInstance(const EmbreeContext &outer, unsigned number) {
+  const EmbreeInstance &one = outer.space->instances[number];
+  const Implementation &scene = *outer.space->scene;
+  RtslState &state = *outer.state;
+  device::InstanceRay ray;
+  const auto isSeen = [&] {
+    return outer.seesAll ||
+           device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots});
+  };
+  if (!isSeen() ||
+      !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Time, state.Epsilon,
+                             outer.limit(), ray) ||
+      !entersSpace(*one.inside, ray, state.Epsilon, outer.limit()))
+    return false;
+  EmbreeContext context;
+  rtcInitIntersectContext(&context.embree);
+  context.state = &state;
+  context.ray = &ray;
+  context.space = one.inside;
+  context.visitor = outer.visitor;
+  context.seesAll = true; // what is inside
+  context.toEmbree = 1;
+  int exponent = 0;
+  if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
+    if (!EmbreeScene::canFollow(ray.origin, ray.direction))
+      return testAll(context, ray, anyHit);
+    ++rayCounters().rescaledRays;
+    exponent = device::exponentOf(device::largest(ray.direction));
+  }
+  context.toEmbree = device::powerOfTwo(exponent);
+  const float origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
+  const float direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
+  const auto fill = [&](RTCRay &inner) {
+    Implementation::fill(inner, origin, direction, state.Epsilon, context.toEmbree,
+                         device::powerOfTwo(-exponent), context.end(outer.limit()));
+  };
+  const RTCScene tree = one.inside->treeFor(ray.origin);
+  if constexpr (anyHit) {
+    RTCRay inner;
+    fill(inner);
+    rtcOccluded1(tree, &context.embree, &inner);
+    return inner.tfar == isOver;
+  } else {
+    RTCRayHit inner;
+    fill(inner.ray);
+    inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    inner.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(tree, &context.embree, &inner);
+    return inner.ray.tfar == isOver;
+  }
+}
+
+void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
+  ray.tfar =
+      searchInstance<false>(context, arguments->primID) ? isOver : context.end(context.limit());
+}
+
+void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
+  if (!searchInstance<true>(contextOf(arguments), arguments->primID))
+    return;
+  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
+  contextOf(arguments).occluder = {arguments->primID, true};
+}
+
+} // namespace
+
+bool EmbreeScene::Implementation::isInInstance(const EmbreeContext &context, std::uint32_t number) {
+  return searchInstance<true>(context, number);
+}
+
+template <typename Ray>
+static constexpr SearchCallbacks forBlocks{intersectBlock<Ray>, occludedBlock<Ray>};
+template <typename Ray>
+static constexpr SearchCallbacks forPrimitives{intersectPrimitive<Ray>, occludedPrimitive<Ray>};
+
+SearchCallbacks blockCallbacks(bool isWorld) {
+  return isWorld ? forBlocks<device::TriangleRay> : forBlocks<device::InstanceRay>;
+}
+
+SearchCallbacks primitiveCallbacks(bool isWorld) {
+  return isWorld ? forPrimitives<device::TriangleRay> : forPrimitives<device::InstanceRay>;
+}
+
+SearchCallbacks instanceCallbacks() {
+  return {intersectInstance, occludedInstance};
+}
+
+} // namespace rtsl::runtime

@@ -1,0 +1,96 @@
+//===- EmbreeSpace.h - the contents of one space, with Embree's trees -----===//
+//
+// The world is a space, and so is each mesh, or object with several primitives, that has instances
+// with transforms.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/accel/Refit.h"
+#include "runtime/accel/TriangleBlocks.h"
+#include "runtime/embree/EmbreeScene.h"
+
+#include <embree3/rtcore.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace rtsl::runtime {
+
+struct EmbreeSpace;
+
+/// An RTSL primitive in Embree, or a triangle of a mesh that has several keys.
+struct EmbreePrimitive {
+  void (*intersect)(RtslState *, RtslRef); // null: a triangle
+  std::uint32_t instance; // in a space of its own: some instance of the object or mesh
+  std::uint32_t number;   // of several of one object, or of the triangle
+};
+
+/// An instance in Embree that has a space of its own.
+struct EmbreeInstance {
+  std::uint32_t instance;
+  const EmbreeSpace *inside;
+};
+
+/// A tree for rays with origins up to some distance.
+struct EmbreeLevel {
+  const EmbreeSpace *owner = nullptr;
+  float largestOrigin = 0; // the sum of its coordinates
+  RTCScene scene = nullptr;
+  std::vector<RTCGeometry> geometries; // of a scene whose trees can follow what moves
+  std::once_flag built;
+};
+
+/// What can be hit in the space, and trees over it.
+struct EmbreeSpace {
+  const EmbreeScene::Implementation *scene = nullptr;
+  bool isWorld = true;
+  LargeArray<TriangleBlock> blocks;
+  std::vector<EmbreePrimitive> primitives;
+  std::vector<EmbreeInstance> instances; // of the world
+  RtslBox bounds;                        // of all that is tested in the space
+  std::vector<MeshUse> meshes;           // in `blocks`
+  BoxOrder boxesWhenBuilt;               // once something has moved
+  bool follows = false;                  // since then
+  std::uint64_t moves = 0;               // Scene::movesOfMesh, of a mesh's space
+  std::vector<RtslBox> boxes;            // EmbreeScene::rememberBoxes: of all but `blocks`
+  // by largestOrigin; the first one is built
+  mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
+  float firstLevelOrigin = 0; // of levels[0]
+  RTCScene firstLevel = nullptr;
+
+  /// The tree for rays from this origin.
+  RTCScene treeFor(device::Vec3 origin) const {
+    float size = __builtin_fabsf(origin.x) + __builtin_fabsf(origin.y) + __builtin_fabsf(origin.z);
+    return size <= firstLevelOrigin ? firstLevel : treeForFar(size);
+  }
+  RTCScene treeForFar(float origin) const;
+};
+
+/// The function that tests primitives of the object.
+decltype(EmbreePrimitive::intersect) intersectOf(const Scene &scene, const Program::Slots &slots,
+                                                 RtslRef primitive);
+
+/// Throws the error that Embree has reported, if any.
+void checkEmbree(const EmbreeScene::Implementation &scene);
+
+/// Makes the blocks of the meshes, and the tree for origins that are not far away.
+void buildSpace(EmbreeSpace &space, unsigned threads);
+
+/// Frees all trees.
+void releaseLevels(EmbreeSpace &space);
+
+/// Adds the boxes of everything in the space but triangles in blocks.
+void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes);
+
+/// Follows what has moved. `mesh`: that of a space of its own. True if the tree was built anew.
+bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads);
+
+/// Makes a space that of another scene, whose launch is the current one, and follows what is
+/// elsewhere in it than it was in `boxes` and blocks, if anything.
+void followSpace(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
+                 const Program::Slots &slots, unsigned threads);
+
+} // namespace rtsl::runtime
