@@ -5,6 +5,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace rtsl {
 
 namespace {
@@ -37,6 +39,13 @@ void forEachInParallel(unsigned threads, std::size_t count,
   if (threads == 0 || threads >= unsigned(tbb::this_task_arena::max_concurrency()))
     return forEachInArena(count, work);
   tbb::task_arena(int(threads)).execute([&] { forEachInArena(count, work); });
+}
+
+void forRangesInParallel(unsigned threads, std::size_t count, std::size_t atOnce,
+                         const std::function<void(std::size_t, std::size_t)> &work) {
+  forEachInParallel(threads, (count + atOnce - 1) / atOnce, [&](std::size_t range) {
+    work(range * atOnce, std::min(count, (range + 1) * atOnce));
+  });
 }
 
 } // namespace rtsl

@@ -16,4 +16,8 @@ namespace rtsl {
 void forEachInParallel(unsigned threads, std::size_t count,
                        const std::function<void(std::size_t)> &work);
 
+/// The same for ranges of up to `atOnce` numbers below `count`: calls work(first, end).
+void forRangesInParallel(unsigned threads, std::size_t count, std::size_t atOnce,
+                         const std::function<void(std::size_t, std::size_t)> &work);
+
 } // namespace rtsl

@@ -10,8 +10,8 @@
 #include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
-#include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
+#include "support/LargeFile.h"
 
 #include <fmt/format.h>
 
@@ -68,7 +68,8 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
   if (!isPly && extension != ".obj")
     return std::nullopt;
   const bool isRead = isPipe(path);
-  const std::string bytes = readFile(path);
+  const LargeFile file(path);
+  const std::string_view bytes = file.bytes();
   std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
@@ -104,7 +105,8 @@ std::vector<MeshGroup> loadMeshGroups(const std::string &path) {
   try {
     if (isPipe(path))
       throw Error(message::meshUnreadableFromPipe(path), Place{path});
-    if (std::optional<std::vector<MeshGroup>> groups = readPlainObjGroups(readFile(path))) {
+    if (std::optional<std::vector<MeshGroup>> groups =
+            readPlainObjGroups(LargeFile(path).bytes())) {
       for (const MeshGroup &group : *groups)
         validateMesh(group.mesh, path);
       return std::move(*groups);

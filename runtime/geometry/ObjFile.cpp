@@ -1,410 +1,264 @@
 #include "runtime/geometry/ObjFile.h"
 
+#include "runtime/geometry/CornerNumbers.h"
 #include "runtime/geometry/Normals.h"
+#include "runtime/geometry/ObjLines.h"
 #include "runtime/geometry/PolygonSplit.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
+#include <atomic>
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace rtsl::runtime {
 
 namespace {
 
-constexpr std::uint32_t none = ~std::uint32_t(0);
+using obj::none;
 
-/// The indices of a corner of a face, counted from 0.
-struct Corner {
-  std::uint32_t position = none, uv = none, normal = none;
-
-  bool operator==(const Corner &other) const {
-    return position == other.position && uv == other.uv && normal == other.normal;
-  }
+/// What a file holds, before vertices are made.
+struct Contents {
+  std::vector<obj::Part> parts;
+  obj::Numbers numbers;
 };
 
-/// Turns corners into vertices; equal corners share one.
-class Vertices {
-public:
-  std::uint32_t add(const Corner &corner) {
-    if (corner.position >= firstAt.size())
-      firstAt.resize(corner.position + std::size_t(1), none);
-    std::uint32_t *link = &firstAt[corner.position];
-    while (*link != none) {
-      Vertex &vertex = vertices[*link];
-      if (vertex.corner == corner)
-        return *link;
-      link = &vertex.nextAt;
-    }
-    const auto number = std::uint32_t(vertices.size());
-    *link = number;
-    vertices.push_back({corner, none});
-    return number;
+/// Nothing if the file is not plain.
+std::optional<Contents> readContents(std::string_view text, bool wantsColors,
+                                     std::size_t bytesOfPart) {
+  std::vector<obj::Part> parts = obj::cutIntoParts(text, bytesOfPart);
+  std::vector<obj::LineCounts> counts(parts.size());
+  forEachInParallel(0, parts.size(),
+                    [&](std::size_t i) { counts[i] = obj::countLines(parts[i].text); });
+  obj::LineCounts above;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].before = above;
+    above.add(counts[i]);
   }
+  obj::Numbers numbers(above, wantsColors);
+  std::atomic<bool> isPlain{true};
+  forEachInParallel(0, parts.size(), [&](std::size_t i) {
+    if (!isPlain || !obj::readLines(parts[i], numbers))
+      isPlain = false;
+  });
+  const bool hasTriangles = std::any_of(
+      parts.begin(), parts.end(), [](const obj::Part &part) { return part.triangleCount != 0; });
+  if (!isPlain || !hasTriangles)
+    return std::nullopt;
+  return Contents{std::move(parts), std::move(numbers)};
+}
 
-  /// The position of each vertex.
-  std::vector<std::uint32_t> positions() const {
-    std::vector<std::uint32_t> numbers;
-    numbers.reserve(vertices.size());
-    for (const Vertex &vertex : vertices)
-      numbers.push_back(vertex.corner.position);
-    return numbers;
+/// Replaces the first index of each corner by the number of its vertex. Returns the corner of each
+/// vertex.
+template <std::size_t width>
+std::vector<std::uint32_t> numberVertices(Contents &contents) {
+  CornerNumbers<width> numbers(contents.numbers.positions.size() / 3);
+  for (obj::Part &part : contents.parts)
+    for (std::size_t i = 0; i < part.corners.size(); i += width)
+      part.corners[i] = numbers.of(&part.corners[i]);
+  return numbers.take();
+}
+
+std::vector<std::uint32_t> numberVertices(Contents &contents) {
+  switch (contents.numbers.cornerWidth()) {
+  case 1:
+    return numberVertices<1>(contents);
+  case 2:
+    return numberVertices<2>(contents);
+  default:
+    return numberVertices<3>(contents);
   }
+}
 
-  void reserve(std::size_t count) {
-    vertices.reserve(count);
-    firstAt.reserve(count);
-  }
+/// An index of the corner of each vertex.
+struct Indices {
+  const std::vector<std::uint32_t> &corners;
+  std::size_t width, place; // of a corner, and in it
 
-  /// `width` floats per vertex, those in `from` at its `index`. Empty if no vertex has any; zeros
-  /// for vertices without them.
-  std::vector<float> gather(const std::vector<float> &from, std::uint32_t Corner::*index,
-                            std::size_t width) const {
-    auto has = [&](const Vertex &vertex) { return vertex.corner.*index != none; };
-    if (std::none_of(vertices.begin(), vertices.end(), has))
-      return {};
-    std::vector<float> gathered(width * vertices.size(), 0.0f);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      if (has(vertices[i]))
-        std::copy_n(&from[width * (vertices[i].corner.*index)], width, &gathered[width * i]);
-    return gathered;
-  }
-
-private:
-  struct Vertex {
-    Corner corner;
-    std::uint32_t nextAt; // another one with the same position
-  };
-  std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> firstAt; // by position
+  std::size_t count() const { return corners.size() / width; }
+  std::uint32_t operator[](std::size_t vertex) const { return corners[width * vertex + place]; }
 };
 
-/// Reads line by line. Functions return false if the file is not plain.
-class Reader {
-public:
-  Reader(std::string_view text, const MeshRequest &request)
-      : at(text.data()), end(text.data() + text.size()), request(request),
-        wantsColors(request.wants("color")) {}
-
-  bool readAll() {
-    makeRoom();
-    while (at != end)
-      if (!readLine())
-        return false;
-    return !indices.empty();
-  }
-
-  /// The triangles of each material, by the name of the last `usemtl` above them.
-  std::vector<MeshGroup> takeGroups() {
-    const std::vector<MaterialUse> used = std::move(uses);
-    const Mesh whole = takeMesh();
-    std::vector<MeshGroup> groups;
-    std::map<std::string, std::size_t, std::less<>> numbers;
-    std::vector<std::vector<std::uint32_t>> triangles; // of each group
-    std::size_t use = 0, group = none;
-    for (std::uint32_t i = 0; i < whole.triangleCount(); ++i) {
-      const std::size_t before = use;
-      while (use < used.size() && used[use].firstIndex <= 3 * std::size_t(i))
-        ++use;
-      if (use != before || group == none) {
-        const std::string name(use == 0 ? std::string_view() : used[use - 1].material);
-        const auto [known, isNew] = numbers.emplace(name, groups.size());
-        group = known->second;
-        if (isNew) {
-          groups.push_back({name, {}});
-          triangles.emplace_back();
-        }
-      }
-      triangles[group].push_back(i);
+/// The `components` floats of each vertex. Empty if no vertex has any; zeros for vertices without
+/// them.
+std::vector<float> gather(const std::vector<float> &from, std::size_t components,
+                          const Indices &indices) {
+  if (from.empty())
+    return {};
+  std::vector<float> gathered(components * indices.count());
+  std::atomic<bool> anyHas{false};
+  forRangesInParallel(0, indices.count(), 1 << 16, [&](std::size_t first, std::size_t end) {
+    bool has = false;
+    for (std::size_t i = first; i < end; ++i) {
+      if (indices[i] == none)
+        continue;
+      has = true;
+      std::copy_n(&from[components * indices[i]], components, &gathered[components * i]);
     }
-    std::vector<std::uint32_t> places(whole.vertexCount(), none); // in the group that is made
-    for (std::size_t i = 0; i < groups.size(); ++i)
-      groups[i].mesh = part(whole, triangles[i], places);
-    return groups;
+    if (has)
+      anyHas = true;
+  });
+  return anyHas ? std::move(gathered) : std::vector<float>();
+}
+
+/// The attribute `color`, if every position has one.
+void addColors(Mesh &mesh, const Contents &contents, const Indices &positions, bool wanted) {
+  std::size_t count = 0;
+  for (const obj::Part &part : contents.parts)
+    count += part.colorCount;
+  if (count != 0 && !wanted)
+    mesh.otherAttributes.push_back("color");
+  const std::vector<float> &colors = contents.numbers.colors;
+  if (colors.empty() || 3 * count != colors.size())
+    return;
+  mesh.attributes.push_back(floatAttribute("color", 3, gather(colors, 3, positions)));
+  mesh.attributes.back().isRgb = true;
+}
+
+/// Triangles of a part, whose corners begin with the numbers of vertices.
+void addTriangles(const obj::Part &part, std::size_t width, const Mesh &mesh, std::uint32_t *to) {
+  const std::uint32_t *corner = part.corners.data();
+  for (const std::uint8_t size : part.faceSizes) {
+    std::uint32_t vertices[4];
+    for (unsigned i = 0; i < size; ++i, corner += width)
+      vertices[i] = *corner;
+    unsigned first = 0;
+    if (size == 4) {
+      const auto position = [&](unsigned i) {
+        return &mesh.positions[3 * std::size_t(vertices[i])];
+      };
+      first = unsigned(cornerOfDiagonal({position(0), position(1), position(2), position(3)}));
+    }
+    for (unsigned i = 1; i + 1 < size; ++i)
+      for (const unsigned c : {first, first + i, first + i + 1})
+        *to++ = vertices[c % size];
   }
+}
 
-  Mesh takeMesh() {
-    normalize(normals);
-    Mesh mesh;
-    mesh.positions = vertices.gather(positions, &Corner::position, 3);
-    mesh.normals = vertices.gather(normals, &Corner::normal, 3);
-    mesh.uvs = vertices.gather(uvs, &Corner::uv, 2);
-    mesh.indices = std::move(indices);
-    addColors(mesh);
-    if (request.keepsOrder)
-      mesh.order = {true, positions.size() / 3, faceCount, vertices.positions(), std::move(faces)};
-    return mesh;
-  }
+/// The number of the first triangle of each part, and that of all triangles.
+std::vector<std::size_t> firstTriangles(const std::vector<obj::Part> &parts) {
+  std::vector<std::size_t> first{0};
+  for (const obj::Part &part : parts)
+    first.push_back(first.back() + part.triangleCount);
+  return first;
+}
 
-private:
-  struct MaterialUse {
-    std::size_t firstIndex; // of the triangles that follow
-    std::string_view material;
-  };
+FileOrder orderOf(const Contents &contents, const Indices &positions) {
+  FileOrder order{true, contents.numbers.positions.size() / 3, 0, {}, {}};
+  for (std::size_t i = 0; i < positions.count(); ++i)
+    order.vertices.push_back(positions[i]);
+  for (const obj::Part &part : contents.parts)
+    for (const std::uint8_t size : part.faceSizes)
+      order.faces.insert(order.faces.end(), size - 2u, std::uint32_t(order.faceCount++));
+  return order;
+}
 
-  /// Some triangles of a mesh, with the vertices that they use. `places` are `none`, before and
-  /// after.
-  static Mesh part(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
-                   std::vector<std::uint32_t> &places) {
-    Mesh mesh;
-    mesh.otherAttributes = whole.otherAttributes;
-    std::vector<std::uint32_t> used;
-    for (const std::uint32_t triangle : triangles)
-      for (std::size_t corner = 0; corner < 3; ++corner) {
-        const std::uint32_t vertex = whole.indices[3 * std::size_t(triangle) + corner];
-        if (places[vertex] == none) {
-          places[vertex] = std::uint32_t(used.size());
-          used.push_back(vertex);
-        }
-        mesh.indices.push_back(places[vertex]);
+Mesh meshOf(Contents contents, const MeshRequest &request) {
+  const std::size_t width = contents.numbers.cornerWidth();
+  const std::vector<std::uint32_t> corners = numberVertices(contents);
+  const Indices positions{corners, width, 0};
+  Mesh mesh;
+  normalize(contents.numbers.normals);
+  mesh.positions = gather(contents.numbers.positions, 3, positions);
+  mesh.normals = gather(contents.numbers.normals, 3, {corners, width, width - 1});
+  mesh.uvs = gather(contents.numbers.uvs, 2, {corners, width, 1});
+  const std::vector<std::size_t> first = firstTriangles(contents.parts);
+  mesh.indices.resize(3 * first.back());
+  forEachInParallel(0, contents.parts.size(), [&](std::size_t i) {
+    addTriangles(contents.parts[i], width, mesh, &mesh.indices[3 * first[i]]);
+  });
+  addColors(mesh, contents, positions, request.wants("color"));
+  if (request.keepsOrder)
+    mesh.order = orderOf(contents, positions);
+  return mesh;
+}
+
+/// Some triangles of a mesh, with the vertices that they use. `places` are `none`, before and
+/// after.
+Mesh someOf(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
+            std::vector<std::uint32_t> &places) {
+  Mesh mesh;
+  mesh.otherAttributes = whole.otherAttributes;
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t triangle : triangles)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t vertex = whole.indices[3 * std::size_t(triangle) + corner];
+      if (places[vertex] == none) {
+        places[vertex] = std::uint32_t(used.size());
+        used.push_back(vertex);
       }
-    const auto gather = [&](const std::vector<float> &from, std::vector<float> &to,
-                            std::size_t width) {
-      for (const std::uint32_t vertex : used)
-        if (!from.empty())
-          to.insert(to.end(), &from[width * vertex], &from[width * vertex] + width);
-    };
-    gather(whole.positions, mesh.positions, 3);
-    gather(whole.normals, mesh.normals, 3);
-    gather(whole.uvs, mesh.uvs, 2);
+      mesh.indices.push_back(places[vertex]);
+    }
+  const auto gather = [&](const std::vector<float> &from, std::vector<float> &to,
+                          std::size_t width) {
     for (const std::uint32_t vertex : used)
-      places[vertex] = none;
-    return mesh;
-  }
+      if (!from.empty())
+        to.insert(to.end(), &from[width * vertex], &from[width * vertex] + width);
+  };
+  gather(whole.positions, mesh.positions, 3);
+  gather(whole.normals, mesh.normals, 3);
+  gather(whole.uvs, mesh.uvs, 2);
+  for (const std::uint32_t vertex : used)
+    places[vertex] = none;
+  return mesh;
+}
 
-  /// The attribute `color`, if every position has one.
-  void addColors(Mesh &mesh) const {
-    if (hasColors && !wantsColors)
-      mesh.otherAttributes.push_back("color");
-    if (colors.empty() || colors.size() != positions.size())
-      return;
-    mesh.attributes.push_back(
-        floatAttribute("color", 3, vertices.gather(colors, &Corner::position, 3)));
-    mesh.attributes.back().isRgb = true;
-  }
+/// The uses of materials in the whole file.
+std::vector<obj::MaterialUse> usesOf(const std::vector<obj::Part> &parts) {
+  const std::vector<std::size_t> first = firstTriangles(parts);
+  std::vector<obj::MaterialUse> uses;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    for (const obj::MaterialUse &use : parts[i].uses)
+      uses.push_back({first[i] + use.firstTriangle, use.material});
+  return uses;
+}
 
-  /// Counts the lines, so that vectors are not reallocated while they are read.
-  void makeRoom() {
-    std::size_t positionLines = 0, normalLines = 0, uvLines = 0, faces = 0;
-    for (const char *line = at; end - line > 1;) {
-      positionLines += line[0] == 'v' && line[1] == ' ';
-      normalLines += line[0] == 'v' && line[1] == 'n';
-      uvLines += line[0] == 'v' && line[1] == 't';
-      faces += line[0] == 'f';
-      const void *newline = std::memchr(line, '\n', std::size_t(end - line));
-      line = newline ? static_cast<const char *>(newline) + 1 : end;
+/// The triangles of each material, by the name of the last `usemtl` above them.
+std::vector<MeshGroup> groupsOf(const Mesh &whole, const std::vector<obj::MaterialUse> &uses) {
+  std::vector<MeshGroup> groups;
+  std::map<std::string, std::size_t, std::less<>> numbers;
+  std::vector<std::vector<std::uint32_t>> triangles; // of each group
+  std::size_t use = 0, group = none;
+  for (std::uint32_t i = 0; i < whole.triangleCount(); ++i) {
+    const std::size_t before = use;
+    while (use < uses.size() && uses[use].firstTriangle <= i)
+      ++use;
+    if (use != before || group == none) {
+      const std::string name(use == 0 ? std::string_view() : uses[use - 1].material);
+      const auto [known, isNew] = numbers.emplace(name, groups.size());
+      group = known->second;
+      if (isNew) {
+        groups.push_back({name, {}});
+        triangles.emplace_back();
+      }
     }
-    positions.reserve(3 * positionLines);
-    normals.reserve(3 * normalLines);
-    uvs.reserve(2 * uvLines);
-    indices.reserve(3 * faces);
-    vertices.reserve(positionLines);
+    triangles[group].push_back(i);
   }
-
-  static bool isBlank(char c) { return c == ' ' || c == '\t'; }
-  bool isAtEnd() const { return at == end || *at == '\n' || *at == '\r'; }
-  void skipBlanks() {
-    while (at != end && isBlank(*at))
-      ++at;
-  }
-
-  std::string_view readWord() {
-    const char *start = at;
-    while (!isAtEnd() && !isBlank(*at))
-      ++at;
-    return {start, std::size_t(at - start)};
-  }
-
-  /// True if only blanks remain.
-  bool endLine() {
-    skipBlanks();
-    if (at != end && *at == '\r')
-      ++at;
-    if (at == end)
-      return true;
-    return *at++ == '\n';
-  }
-
-  /// Ignores the rest of the line. A backslash at its end would continue it on the next line.
-  bool skipLine() {
-    const char *start = at;
-    const void *newline = std::memchr(at, '\n', std::size_t(end - at));
-    const char *last = newline ? static_cast<const char *>(newline) : end;
-    at = newline ? last + 1 : end;
-    if (last != start && last[-1] == '\r')
-      --last;
-    return last == start || last[-1] != '\\';
-  }
-
-  bool readLine() {
-    skipBlanks();
-    if (isAtEnd())
-      return endLine();
-    if (*at == '#')
-      return skipLine();
-    const std::string_view word = readWord();
-    if (word == "v")
-      return readPosition();
-    if (word == "vn")
-      return readNumbers(normals, 3) && endLine();
-    if (word == "vt")
-      return readTextureCoordinates();
-    if (word == "f")
-      return readFace();
-    if (word == "usemtl")
-      return readMaterial();
-    const bool meansNothing = word == "g" || word == "o" || word == "s" || word == "mtllib";
-    return meansNothing && skipLine();
-  }
-
-  /// The rest of the line, which may contain blanks.
-  bool readMaterial() {
-    skipBlanks();
-    const char *start = at, *last = at;
-    for (; !isAtEnd(); ++at)
-      if (!isBlank(*at))
-        last = at + 1;
-    uses.push_back({indices.size(), {start, std::size_t(last - start)}});
-    return (last == start || last[-1] != '\\') && endLine();
-  }
-
-  bool readNumber(float &number) {
-    skipBlanks();
-    const auto [after, error] = std::from_chars(at, end, number);
-    at = after;
-    return error == std::errc() && std::isfinite(number) && (isAtEnd() || isBlank(*at));
-  }
-
-  bool readNumbers(std::vector<float> &to, int count) {
-    for (float number; count > 0; --count) {
-      if (!readNumber(number))
-        return false;
-      to.push_back(number);
-    }
-    return true;
-  }
-
-  /// x y z, optionally with a color. Four numbers would be homogeneous coordinates.
-  bool readPosition() {
-    if (!readNumbers(positions, 3))
-      return false;
-    skipBlanks();
-    if (isAtEnd())
-      return endLine();
-    hasColors = true;
-    std::array<float, 3> color;
-    for (float &component : color)
-      if (!readNumber(component))
-        return false;
-    if (wantsColors)
-      colors.insert(colors.end(), color.begin(), color.end());
-    return endLine();
-  }
-
-  /// u v, optionally with w.
-  bool readTextureCoordinates() {
-    if (!readNumbers(uvs, 2))
-      return false;
-    skipBlanks();
-    float ignored;
-    return (isAtEnd() || readNumber(ignored)) && endLine();
-  }
-
-  /// An index counts from 1, or, if negative, backwards from the last one before the face.
-  bool readIndex(std::size_t count, std::uint32_t &index) {
-    std::int64_t number;
-    const auto [after, error] = std::from_chars(at, end, number);
-    at = after;
-    if (error != std::errc() || number == 0 || count >= none)
-      return false;
-    if (number < 0)
-      number += std::int64_t(count) + 1;
-    index = std::uint32_t(number - 1);
-    return number > 0 && number <= std::int64_t(count);
-  }
-
-  bool skip(char c) {
-    if (at == end || *at != c)
-      return false;
-    ++at;
-    return true;
-  }
-
-  /// v, v/vt, v//vn or v/vt/vn.
-  bool readCorner(Corner &corner) {
-    if (!readIndex(positions.size() / 3, corner.position))
-      return false;
-    if (skip('/')) {
-      if (at != end && *at != '/' && !readIndex(uvs.size() / 2, corner.uv))
-        return false;
-      if (skip('/') && !readIndex(normals.size() / 3, corner.normal))
-        return false;
-    }
-    return isAtEnd() || isBlank(*at);
-  }
-
-  bool readFace() {
-    std::array<Corner, 4> corners;
-    int count = 0;
-    for (skipBlanks(); !isAtEnd(); skipBlanks()) {
-      if (count == 4 || !readCorner(corners[std::size_t(count)]))
-        return false;
-      ++count;
-    }
-    if (count < 3)
-      return false;
-    std::array<std::uint32_t, 4> vertex;
-    for (int i = 0; i < count; ++i)
-      vertex[std::size_t(i)] = vertices.add(corners[std::size_t(i)]);
-    int first = 0;
-    if (count == 4)
-      first = cornerOfDiagonal(
-          {position(corners[0]), position(corners[1]), position(corners[2]), position(corners[3])});
-    for (int i = 1; i + 1 < count; ++i)
-      for (int corner : {first, first + i, first + i + 1})
-        indices.push_back(vertex[std::size_t(corner % count)]);
-    if (request.keepsOrder)
-      faces.insert(faces.end(), std::size_t(count - 2), std::uint32_t(faceCount));
-    ++faceCount;
-    return endLine();
-  }
-
-  const float *position(const Corner &corner) const {
-    return &positions[3 * std::size_t(corner.position)];
-  }
-
-  const char *at, *end;
-  const MeshRequest &request;
-  const bool wantsColors;
-  bool hasColors = false;
-  std::vector<float> positions, normals, uvs, colors; // as the file numbers them
-  std::vector<std::uint32_t> faces;                   // of each triangle
-  std::size_t faceCount = 0;
-  Vertices vertices;
-  std::vector<std::uint32_t> indices;
-  std::vector<MaterialUse> uses; // in the order of the file
-};
+  std::vector<std::uint32_t> places(whole.vertexCount(), none); // in the group that is made
+  for (std::size_t i = 0; i < groups.size(); ++i)
+    groups[i].mesh = someOf(whole, triangles[i], places);
+  return groups;
+}
 
 } // namespace
 
-std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request) {
-  Reader reader(text, request);
-  if (!reader.readAll())
+std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request,
+                                 std::size_t bytesOfPart) {
+  std::optional<Contents> contents = readContents(text, request.wants("color"), bytesOfPart);
+  if (!contents)
     return std::nullopt;
-  return reader.takeMesh();
+  return meshOf(std::move(*contents), request);
 }
 
-std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text) {
-  const MeshRequest nothing;
-  Reader reader(text, nothing);
-  if (!reader.readAll())
+std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text,
+                                                         std::size_t bytesOfPart) {
+  std::optional<Contents> contents = readContents(text, false, bytesOfPart);
+  if (!contents)
     return std::nullopt;
-  return reader.takeGroups();
+  const std::vector<obj::MaterialUse> uses = usesOf(contents->parts);
+  return groupsOf(meshOf(std::move(*contents), {}), uses);
 }
 
 } // namespace rtsl::runtime

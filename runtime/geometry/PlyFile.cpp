@@ -4,9 +4,11 @@
 #include "runtime/geometry/PlyFormat.h"
 #include "runtime/geometry/PolygonSplit.h"
 #include "support/ErrorMessages.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -22,6 +24,14 @@ struct Target {
   std::vector<float> *to = nullptr; // null: the column is skipped
   std::size_t component = 0;
 };
+
+/// Rows of an element that are read at once.
+struct Rows {
+  Body body; // at the first
+  std::size_t first, end;
+  std::size_t firstTriangle; // of faces
+};
+constexpr std::size_t rowsAtOnce = 1 << 15;
 
 /// An attribute, and the properties of the element that are its components.
 struct Column {
@@ -100,8 +110,9 @@ public:
   Mesh mesh;
 
 private:
-  /// The requested attributes of an element. One that the vertices have is not read of the faces.
-  std::vector<Column> columnsOf(const Element &element, bool ofTriangles) {
+  /// The requested attributes of an element, for so many vertices or triangles. One that the
+  /// vertices have is not read of the faces.
+  std::vector<Column> columnsOf(const Element &element, bool ofTriangles, std::size_t count) {
     std::vector<Column> columns;
     for (const std::string &name : request.attributes) {
       const std::vector<std::size_t> properties = propertiesOf(element, name);
@@ -113,6 +124,7 @@ private:
       Column column{{}, properties};
       column.attribute.name = name;
       column.attribute.components = std::uint32_t(properties.size());
+      column.attribute.words.resize(properties.size() * count);
       column.attribute.ofTriangles = ofTriangles;
       column.attribute.isRgb = name == "color" && properties.size() >= 3;
       const Type type = element.properties[properties.front()].type;
@@ -140,9 +152,9 @@ private:
     return found;
   }
 
-  /// Appends a number to its attribute; the properties of one come in any order.
-  bool readComponent(const Property &property, std::size_t number, Column &column,
-                     std::size_t index, std::size_t copies) {
+  /// Reads a number of an attribute; the properties of one come in any order.
+  static bool readComponent(Body &body, const Property &property, std::size_t number,
+                            Column &column, std::size_t index, std::size_t copies) {
     double value;
     if (!body.readNumber(property.type, value))
       return false;
@@ -158,7 +170,6 @@ private:
     } else {
       word = std::uint32_t(std::int64_t(value));
     }
-    attribute.words.resize(std::max(attribute.words.size(), components * (index + copies)));
     for (std::size_t i = 0; i < copies; ++i)
       attribute.words[components * (index + i) + component] = word;
     return true;
@@ -210,30 +221,85 @@ private:
     const auto [positions, normals, uvs] = components;
     if (positions != 7 || (normals != 0 && normals != 7) || (uvs != 0 && uvs != 3))
       return false;
-    std::vector<Column> columns = columnsOf(element, false);
-    for (Column &column : columns)
-      column.attribute.words.resize(column.attribute.components * element.count);
+    std::vector<Column> columns = columnsOf(element, false, element.count);
     const std::vector<Column *> columnOf = byProperty(element, columns);
     mesh.positions.resize(3 * element.count);
     mesh.normals.resize(normals ? 3 * element.count : 0);
     mesh.uvs.resize(uvs ? 2 * element.count : 0);
-    for (std::size_t i = 0; i < element.count; ++i)
+    const auto readRow = [&](Body &row, std::size_t i) {
       for (std::size_t p = 0; p < targets.size(); ++p) {
         const Property &property = element.properties[p];
         const auto [to, component] = targets[p];
         const bool isRead =
-            to ? body.readFloat(property.type, (*to)[(to == &mesh.uvs ? 2 : 3) * i + component])
-            : columnOf[p] ? readComponent(property, p, *columnOf[p], i, 1)
-                          : body.skip(property);
+            to ? row.readFloat(property.type, (*to)[(to == &mesh.uvs ? 2 : 3) * i + component])
+            : columnOf[p] ? readComponent(row, property, p, *columnOf[p], i, 1)
+                          : row.skip(property);
         if (!isRead)
           return false;
       }
+      return true;
+    };
+    const std::optional<std::vector<Rows>> rows = rowsOfVertices(element);
+    const bool isRead = rows && forAll(*rows, [&](const Rows &part) {
+                          Body row = part.body;
+                          for (std::size_t i = part.first; i < part.end; ++i)
+                            if (!readRow(row, i))
+                              return false;
+                          return true;
+                        });
     keep(columns);
-    return true;
+    return isRead;
+  }
+
+  /// Calls `read` for all parts, on all cores. False if one call is.
+  template <typename Read>
+  static bool forAll(const std::vector<Rows> &rows, Read read) {
+    std::atomic<bool> isGood{true};
+    forEachInParallel(0, rows.size(), [&](std::size_t i) {
+      if (!isGood || !read(rows[i]))
+        isGood = false;
+    });
+    return isGood;
+  }
+
+  /// The rows of an element without lists, which the body passes. Nothing if there are fewer.
+  std::optional<std::vector<Rows>> rowsOfVertices(const Element &element) {
+    std::vector<Rows> rows;
+    for (std::size_t first = 0; first < element.count; first += rowsAtOnce) {
+      const std::size_t end = std::min<std::size_t>(element.count, first + rowsAtOnce);
+      rows.push_back({body, first, end, 0});
+      if (!body.skipRows(element, end - first))
+        return std::nullopt;
+    }
+    return rows;
+  }
+
+  /// The same of faces, which are triangles and quadrilaterals; property number `list` has their
+  /// corners.
+  std::optional<std::vector<Rows>> rowsOfFaces(const Element &element, std::size_t list) {
+    std::vector<Rows> rows;
+    std::size_t triangles = 0;
+    for (std::size_t i = 0; i < element.count; ++i) {
+      if (i % rowsAtOnce == 0)
+        rows.push_back({body, i, std::min<std::size_t>(element.count, i + rowsAtOnce), triangles});
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const Property &property = element.properties[p];
+        std::uint64_t corners = 3;
+        if (p == list &&
+            (!Body(body).readCount(property.countType, corners) || corners < 3 || corners > 4))
+          return std::nullopt;
+        if (!body.skip(property))
+          return std::nullopt;
+        if (p == list)
+          triangles += corners - 2;
+      }
+    }
+    rows.push_back({body, element.count, element.count, triangles});
+    return rows;
   }
 
   bool readFaces(const Element &element) {
-    if (mesh.positions.empty())
+    if (mesh.positions.empty() || !mesh.indices.empty())
       return false;
     auto isCorners = [](const Property &property) {
       return property.isList &&
@@ -243,68 +309,80 @@ private:
                                      [](const Property &property) { return property.isList; });
     if (lists != 1 || std::none_of(element.properties.begin(), element.properties.end(), isCorners))
       return false;
-    std::vector<Column> columns = columnsOf(element, true);
-    const std::vector<Column *> columnOf = byProperty(element, columns);
     const auto list =
         std::size_t(std::find_if(element.properties.begin(), element.properties.end(), isCorners) -
                     element.properties.begin());
-    for (std::uint64_t i = 0; i < element.count; ++i) {
-      const std::size_t before = mesh.triangleCount();
-      const Body start = body;
+    const std::optional<std::vector<Rows>> rows = rowsOfFaces(element, list);
+    if (!rows)
+      return false;
+    const std::size_t triangles = rows->back().firstTriangle;
+    std::vector<Column> columns = columnsOf(element, true, triangles);
+    mesh.indices.resize(3 * triangles);
+    if (request.keepsOrder)
+      facesOfTriangles.resize(triangles);
+    faceCount = element.count;
+    const bool isRead =
+        forAll(*rows, [&](const Rows &part) { return readFaces(element, list, columns, part); });
+    keep(columns);
+    return isRead;
+  }
+
+  bool readFaces(const Element &element, std::size_t list, std::vector<Column> &columns,
+                 const Rows &part) {
+    const std::vector<Column *> columnOf = byProperty(element, columns);
+    std::size_t triangle = part.firstTriangle;
+    Body row = part.body;
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      const Body start = row;
       for (std::size_t p = 0; p < list; ++p) // read when it is known how many triangles there are
-        if (!body.skip(element.properties[p]))
-          return false;
-      if (!readFace(element.properties[list]))
+        row.skip(element.properties[p]);
+      const std::size_t added = readFace(row, element.properties[list], triangle);
+      if (added == 0)
         return false;
-      const Body afterCorners = body;
-      const std::size_t added = mesh.triangleCount() - before;
+      const Body afterCorners = row;
       if (!columns.empty())
-        body = start;
+        row = start;
       for (std::size_t p = columns.empty() ? list + 1 : 0; p < element.properties.size(); ++p) {
         if (p == list)
-          body = afterCorners;
+          row = afterCorners;
         else if (!(columnOf[p]
-                       ? readComponent(element.properties[p], p, *columnOf[p], before, added)
-                       : body.skip(element.properties[p])))
+                       ? readComponent(row, element.properties[p], p, *columnOf[p], triangle, added)
+                       : row.skip(element.properties[p])))
           return false;
       }
       if (request.keepsOrder)
-        facesOfTriangles.insert(facesOfTriangles.end(), added, std::uint32_t(faceCount));
-      ++faceCount;
+        std::fill_n(&facesOfTriangles[triangle], added, std::uint32_t(i));
+      triangle += added;
     }
-    keep(columns);
     return true;
   }
 
-  bool readFace(const Property &property) {
+  /// Reads the corners of the triangles of a face, from this one. Returns how many there are; 0: a
+  /// corner is not valid.
+  std::size_t readFace(Body &row, const Property &property, std::size_t triangle) {
     std::uint64_t count;
-    if (!body.readCount(property.countType, count) || count < 3 || count > 4)
-      return false;
+    if (!row.readCount(property.countType, count) || count < 3 || count > 4)
+      return 0;
     std::array<std::uint64_t, 4> corners{};
     for (std::size_t i = 0; i < count; ++i)
-      if (!body.readCount(property.type, corners[i]) || corners[i] >= mesh.vertexCount())
-        return false;
+      if (!row.readCount(property.type, corners[i]) || corners[i] >= mesh.vertexCount())
+        return 0;
     auto position = [&](int corner) { return &mesh.positions[3 * corners[std::size_t(corner)]]; };
     const std::size_t first =
         count == 3
             ? 0
             : std::size_t(cornerOfDiagonal({position(0), position(1), position(2), position(3)}));
+    std::uint32_t *to = &mesh.indices[3 * triangle];
     for (std::size_t i = 1; i + 1 < count; ++i)
       for (std::size_t corner : {first, first + i, first + i + 1})
-        mesh.indices.push_back(std::uint32_t(corners[corner % count]));
-    return true;
+        *to++ = std::uint32_t(corners[corner % count]);
+    return count - 2;
   }
 
   bool skipElement(const Element &element) {
     if (element.name == "tristrips") // which contain faces, too
       return false;
-    if (element.properties.empty())
-      return true;
-    for (std::uint64_t i = 0; i < element.count; ++i)
-      for (const Property &property : element.properties)
-        if (!body.skip(property))
-          return false;
-    return true;
+    return element.properties.empty() || body.skipRows(element, element.count);
   }
 
   Body body;

@@ -86,6 +86,26 @@ public:
     return true;
   }
 
+  /// So many rows of an element, which has properties.
+  bool skipRows(const Element &element, std::uint64_t count) {
+    const bool hasLists = std::any_of(element.properties.begin(), element.properties.end(),
+                                      [](const Property &one) { return one.isList; });
+    if (format != Format::Ascii && !hasLists) {
+      std::size_t size = 0;
+      for (const Property &property : element.properties)
+        size += sizeOf(property.type);
+      if (count > bytesLeft() / size)
+        return false;
+      position += count * size;
+      return true;
+    }
+    for (; count > 0; --count)
+      for (const Property &property : element.properties)
+        if (!skip(property))
+          return false;
+    return true;
+  }
+
   /// A non-negative integer.
   bool readCount(Type type, std::uint64_t &count) {
     if (format == Format::Ascii)
@@ -151,13 +171,23 @@ private:
   bool readBits(std::size_t size, std::uint64_t &bits) {
     if (size > bytesLeft())
       return false;
-    bits = 0;
-    for (std::size_t i = 0; i < size; ++i) {
-      const std::size_t from = format == Format::LittleEndian ? size - 1 - i : i;
-      bits = bits << 8 | static_cast<unsigned char>(position[from]);
-    }
+    bits = size == 1   ? unsigned(static_cast<unsigned char>(*position))
+           : size == 2 ? load<std::uint16_t>()
+           : size == 4 ? load<std::uint32_t>()
+                       : load<std::uint64_t>();
     position += size;
     return true;
+  }
+
+  template <typename Bits>
+  Bits load() const {
+    char bytes[sizeof(Bits)];
+    std::memcpy(bytes, position, sizeof bytes);
+    if (format == Format::BigEndian)
+      std::reverse(bytes, bytes + sizeof bytes);
+    Bits bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
   }
 
   static int bitsOf(Type type) { return 8 * int(sizeOf(type)); }

@@ -319,6 +319,51 @@ TEST_F(Meshes, PlainObjIsWhatAssimpReads) {
   }
 }
 
+namespace {
+
+void expectEqual(const Mesh &a, const Mesh &b) {
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.normals, b.normals);
+  EXPECT_EQ(a.uvs, b.uvs);
+  EXPECT_EQ(a.indices, b.indices);
+  EXPECT_EQ(a.otherAttributes, b.otherAttributes);
+  ASSERT_EQ(a.attributes.size(), b.attributes.size());
+  for (std::size_t i = 0; i < a.attributes.size(); ++i) {
+    EXPECT_EQ(a.attributes[i].name, b.attributes[i].name);
+    EXPECT_EQ(a.attributes[i].words, b.attributes[i].words);
+  }
+  EXPECT_EQ(a.order.vertices, b.order.vertices);
+  EXPECT_EQ(a.order.faces, b.order.faces);
+}
+
+} // namespace
+
+// Parts know what stands above them, by its number, and their vertices and materials go on.
+TEST_F(Meshes, PartsOfAnObjFileAreReadAsAWhole) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 30; ++i) {
+    const std::string text = randomObj(random);
+    const MeshRequest request{
+        i % 2 == 0 ? std::vector<std::string>{"color"} : std::vector<std::string>{}, true};
+    const std::optional<Mesh> whole = readPlainObj(text, request);
+    const auto groups = readPlainObjGroups(text);
+    ASSERT_TRUE(whole && groups);
+    for (const std::size_t bytes : {std::size_t(1), text.size() / 7 + 1, text.size() - 1}) {
+      const std::optional<Mesh> inParts = readPlainObj(text, request, bytes);
+      ASSERT_TRUE(inParts) << bytes;
+      ASSERT_NO_FATAL_FAILURE(expectEqual(*inParts, *whole)) << bytes << text;
+      const auto groupsInParts = readPlainObjGroups(text, bytes);
+      ASSERT_TRUE(groupsInParts && groupsInParts->size() == groups->size());
+      for (std::size_t group = 0; group < groups->size(); ++group) {
+        EXPECT_EQ((*groupsInParts)[group].material, (*groups)[group].material);
+        expectEqual((*groupsInParts)[group].mesh, (*groups)[group].mesh);
+      }
+    }
+    EXPECT_FALSE(readPlainObj(text + "f 1 2 999999\n", request, 100));
+    EXPECT_FALSE(readPlainObj("f 1 2 3\n" + text, request, 100)) << "they stand below";
+  }
+}
+
 TEST_F(Meshes, CornersThatAreEqualShareAVertex) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvn 0 1 0\n";
   EXPECT_EQ(readPlainObj(vertices + "f 1 2 3\nf 1 3 4\n")->vertexCount(), 4u);
@@ -427,6 +472,48 @@ TEST_F(Meshes, PlainPlyIsWhatAssimpReads) {
           }
         }
       }
+}
+
+// Rows are read in parts of 32,768: the same grid as an OBJ file, where faces are numbered too.
+TEST_F(Meshes, LargePlyIsTheSameMeshAsObj) {
+  constexpr unsigned width = 260;
+  std::string vertices, faces, obj;
+  const auto put = [](std::string &to, auto value) {
+    to.append(reinterpret_cast<const char *>(&value), sizeof value);
+  };
+  for (unsigned i = 0; i < width * width; ++i) {
+    const float position[3] = {float(i % width), float(i / width), float(i * 7 % 5)};
+    for (const float x : position)
+      put(vertices, x);
+    obj += fmt::format("v {} {} {}\n", position[0], position[1], position[2]);
+  }
+  unsigned faceCount = 0;
+  for (unsigned i = 0; i + width + 1 < width * width; ++i, ++faceCount) {
+    const std::uint32_t corners[4] = {i, i + 1, i + width + 1, i + width};
+    const unsigned count = 3 + i * 3 % 7 % 2;
+    put(faces, std::uint8_t(count));
+    obj += "f";
+    for (unsigned corner = 0; corner < count; ++corner) {
+      put(faces, corners[corner]);
+      obj += fmt::format(" {}", corners[corner] + 1);
+    }
+    obj += "\n";
+    put(faces, std::int32_t(i));
+  }
+  const std::string header =
+      fmt::format("ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\n"
+                  "property float y\nproperty float z\nelement face {}\n"
+                  "property list uchar int vertex_indices\nproperty int part\nend_header\n",
+                  width * width, faceCount);
+  const MeshRequest request{{"part"}, true};
+  const std::optional<Mesh> ply = readPlainPly(header + vertices + faces, request);
+  const std::optional<Mesh> plain = readPlainObj(obj, request);
+  ASSERT_TRUE(ply && plain);
+  EXPECT_EQ(corners(*ply), corners(*plain));
+  ASSERT_EQ(ply->attributes.size(), 1u);
+  EXPECT_EQ(ply->attributes[0].words, ply->order.faces) << "the number of each triangle's face";
+  EXPECT_EQ(ply->order.faces, plain->order.faces);
+  EXPECT_FALSE(readPlainPly(header + vertices + faces.substr(0, faces.size() - 1), request));
 }
 
 TEST_F(Meshes, PlyThatIsNotPlainIsLeftToAssimp) {

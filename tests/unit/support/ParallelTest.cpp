@@ -23,6 +23,19 @@ TEST(Parallel, CallsWorkOncePerNumber) {
     }
 }
 
+TEST(Parallel, RangesHaveAllNumbersOnce) {
+  for (const std::size_t count : {0u, 1u, 7u, 8u, 1000u}) {
+    std::vector<std::atomic<int>> calls(count);
+    forRangesInParallel(0, count, 8, [&](std::size_t first, std::size_t end) {
+      EXPECT_TRUE(first < end && end <= first + 8);
+      for (; first < end; ++first)
+        ++calls[first];
+    });
+    for (const std::atomic<int> &ofOne : calls)
+      EXPECT_EQ(ofOne, 1);
+  }
+}
+
 TEST(Parallel, RethrowsAnException) {
   for (const unsigned threads : {0u, 1u, 2u}) {
     const auto fail = [&] {
