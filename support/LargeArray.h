@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <new>
 #include <sys/mman.h>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace rtsl {
 
@@ -56,5 +58,22 @@ private:
   T *elements = nullptr;
   std::size_t count = 0;
 };
+
+/// A vector of so many zeros, in such pages if it is large.
+template <typename T>
+std::vector<T> largeVector(std::size_t count) {
+  static_assert(std::is_arithmetic_v<T>);
+  constexpr std::uintptr_t page = 4096;
+  constexpr std::size_t large = 4 << 20;
+  std::vector<T> numbers;
+  numbers.reserve(count);
+  if (count * sizeof(T) >= large) {
+    const auto start = (reinterpret_cast<std::uintptr_t>(numbers.data()) + page - 1) & ~(page - 1);
+    const auto end = reinterpret_cast<std::uintptr_t>(numbers.data() + count) & ~(page - 1);
+    ::madvise(reinterpret_cast<void *>(start), end - start, MADV_HUGEPAGE);
+  }
+  numbers.resize(count);
+  return numbers;
+}
 
 } // namespace rtsl

@@ -1,5 +1,6 @@
 #include "runtime/accel/TriangleBlocks.h"
 
+#include "runtime/accel/BoxRuns.h"
 #include "support/Parallel.h"
 
 #include <algorithm>
@@ -32,94 +33,46 @@ std::vector<Piece> cutIntoPieces(const std::vector<MeshUse> &meshes) {
   return pieces;
 }
 
-/// Every triangle with its box. geomID is the index of the mesh.
-LargeArray<RTCBuildPrimitive> triangleBoxes(const std::vector<MeshUse> &meshes, unsigned threads) {
+/// Every triangle with its box, and the index of its mesh.
+LargeArray<TriangleBox> triangleBoxes(const std::vector<MeshUse> &meshes, unsigned threads) {
   const std::vector<Piece> pieces = cutIntoPieces(meshes);
   if (pieces.empty())
     return {};
-  LargeArray<RTCBuildPrimitive> boxes(pieces.back().to + pieces.back().count);
+  LargeArray<TriangleBox> boxes(pieces.back().to + pieces.back().count);
   forEachInParallel(threads, pieces.size(), [&](std::size_t number) {
     const Piece &piece = pieces[number];
     const RtslMesh &mesh = *meshes[piece.use].mesh;
     for (std::uint32_t i = 0; i < piece.count; ++i) {
       const auto [a, b, c] = device::triangleVertices(mesh, piece.first + i);
-      RTCBuildPrimitive &box = boxes[piece.to + i];
-      box.lower_x = std::min({a.x, b.x, c.x}), box.upper_x = std::max({a.x, b.x, c.x});
-      box.lower_y = std::min({a.y, b.y, c.y}), box.upper_y = std::max({a.y, b.y, c.y});
-      box.lower_z = std::min({a.z, b.z, c.z}), box.upper_z = std::max({a.z, b.z, c.z});
-      box.geomID = piece.use;
-      box.primID = piece.first + i;
+      TriangleBox &box = boxes[piece.to + i];
+      for (int axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min({a[axis], b[axis], c[axis]});
+        box.upper[axis] = std::max({a[axis], b[axis], c[axis]});
+      }
+      box.mesh = piece.use;
+      box.triangle = piece.first + i;
     }
   });
   return boxes;
 }
 
-/// Boxes that are close together.
-struct Run {
-  std::size_t first;
-  unsigned length;
-};
-
-/// Partitions the boxes into runs of up to TriangleBlock::lanes, with Embree's builder.
-std::vector<Run> sortIntoRuns(RTCDevice device, LargeArray<RTCBuildPrimitive> &boxes) {
-  struct Lengths {
-    const RTCBuildPrimitive *first;
-    std::vector<std::uint8_t> of; // the length of a run, at its first box
-  } lengths{boxes.data(), std::vector<std::uint8_t>(boxes.size())};
-  RTCBVH tree = rtcNewBVH(device);
-  RTCBuildArguments arguments = rtcDefaultBuildArguments();
-  arguments.byteSize = sizeof arguments;
-  arguments.buildQuality = RTC_BUILD_QUALITY_MEDIUM;
-  arguments.maxBranchingFactor = 2; // more would make leaves that are not full
-  arguments.maxDepth = 1024;
-  arguments.sahBlockSize = TriangleBlock::lanes;
-  arguments.minLeafSize = 1;
-  arguments.maxLeafSize = TriangleBlock::lanes;
-  arguments.bvh = tree;
-  arguments.primitives = boxes.data();
-  arguments.primitiveCount = arguments.primitiveArrayCapacity = boxes.size();
-  arguments.userPtr = &lengths;
-  // Only the leaves of the tree are used: nodes are dummies, but must not be null.
-  arguments.createNode = [](RTCThreadLocalAllocator, unsigned, void *user) { return user; };
-  arguments.setNodeChildren = [](void *, void **, unsigned, void *) {};
-  arguments.setNodeBounds = [](void *, const RTCBounds **, unsigned, void *) {};
-  arguments.createLeaf = [](RTCThreadLocalAllocator, const RTCBuildPrimitive *leaf,
-                            std::size_t count, void *user) -> void * {
-    Lengths &lengths = *static_cast<Lengths *>(user);
-    lengths.of[std::size_t(leaf - lengths.first)] = std::uint8_t(count);
-    return user;
-  };
-  const bool isBuilt = rtcBuildBVH(&arguments) != nullptr;
-  rtcReleaseBVH(tree);
-
-  std::vector<Run> runs;
-  if (!isBuilt)
-    return runs;
-  runs.reserve(boxes.size() - std::size_t(std::count(lengths.of.begin(), lengths.of.end(), 0)));
-  for (std::size_t first = 0; first < boxes.size(); first += lengths.of[first])
-    runs.push_back({first, lengths.of[first]});
-  return runs;
-}
-
 } // namespace
 
-LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const std::vector<MeshUse> &meshes,
-                                             unsigned threads) {
-  LargeArray<RTCBuildPrimitive> boxes = triangleBoxes(meshes, threads);
+LargeArray<TriangleBlock> makeTriangleBlocks(const std::vector<MeshUse> &meshes, unsigned threads) {
+  static_assert(longestRun == TriangleBlock::lanes);
+  LargeArray<TriangleBox> boxes = triangleBoxes(meshes, threads);
   if (boxes.empty())
     return {};
-  const std::vector<Run> runs = sortIntoRuns(device, boxes);
+  const std::vector<BoxRun> runs = sortIntoRuns(boxes, threads);
   LargeArray<TriangleBlock> blocks(runs.size());
-  constexpr std::size_t atOnce = 1024;
-  forEachInParallel(threads, (runs.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
-    const std::size_t end = std::min(runs.size(), (part + 1) * atOnce);
-    for (std::size_t i = part * atOnce; i < end; ++i)
+  forRangesInParallel(threads, runs.size(), 1024, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
       for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
         const bool isEmpty = lane >= runs[i].length;
-        const RTCBuildPrimitive &box = boxes[runs[i].first + (isEmpty ? 0 : lane)];
-        const MeshUse &use = meshes[box.geomID];
-        blocks[i].setLane(lane, device::triangleVertices(*use.mesh, box.primID),
-                          isEmpty ? RTSL_NO_HIT : use.instance, box.primID);
+        const TriangleBox &box = boxes[runs[i].first + (isEmpty ? 0 : lane)];
+        const MeshUse &use = meshes[box.mesh];
+        blocks[i].setLane(lane, device::triangleVertices(*use.mesh, box.triangle),
+                          isEmpty ? RTSL_NO_HIT : use.instance, box.triangle);
       }
   });
   return blocks;

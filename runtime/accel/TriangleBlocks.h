@@ -4,8 +4,6 @@
 #include "runtime/accel/TriangleBlock.h"
 #include "support/LargeArray.h"
 
-#include <embree3/rtcore.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -17,9 +15,7 @@ struct MeshUse {
   const RtslMesh *mesh;
 };
 
-/// All triangles of the meshes in blocks of neighbouring ones, by Embree's builder. Errors of
-/// Embree are reported through the device; throws std::bad_alloc.
-LargeArray<TriangleBlock> makeTriangleBlocks(RTCDevice device, const std::vector<MeshUse> &meshes,
-                                             unsigned threads);
+/// All triangles of the meshes in blocks of neighbouring ones. Throws std::bad_alloc.
+LargeArray<TriangleBlock> makeTriangleBlocks(const std::vector<MeshUse> &meshes, unsigned threads);
 
 } // namespace rtsl::runtime

@@ -207,8 +207,7 @@ void setBounds(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
 } // namespace
 
 void buildSpace(EmbreeSpace &space, unsigned threads) {
-  space.blocks = makeTriangleBlocks(space.scene->device, space.meshes, threads);
-  checkEmbree(*space.scene);
+  space.blocks = makeTriangleBlocks(space.meshes, threads);
   if (!space.isWorld)
     setBounds(space, boxesOf(space));
   addLevels(space);

@@ -4,6 +4,7 @@
 #include "runtime/geometry/Normals.h"
 #include "runtime/geometry/ObjLines.h"
 #include "runtime/geometry/PolygonSplit.h"
+#include "support/LargeArray.h"
 #include "support/Parallel.h"
 
 #include <algorithm>
@@ -35,6 +36,7 @@ std::optional<Contents> readContents(std::string_view text, bool wantsColors,
   obj::LineCounts above;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i].before = above;
+    parts[i].faceLines = counts[i].faces;
     above.add(counts[i]);
   }
   obj::Numbers numbers(above, wantsColors);
@@ -87,7 +89,7 @@ std::vector<float> gather(const std::vector<float> &from, std::size_t components
                           const Indices &indices) {
   if (from.empty())
     return {};
-  std::vector<float> gathered(components * indices.count());
+  std::vector<float> gathered = largeVector<float>(components * indices.count());
   std::atomic<bool> anyHas{false};
   forRangesInParallel(0, indices.count(), 1 << 16, [&](std::size_t first, std::size_t end) {
     bool has = false;
@@ -165,7 +167,7 @@ Mesh meshOf(Contents contents, const MeshRequest &request) {
   mesh.normals = gather(contents.numbers.normals, 3, {corners, width, width - 1});
   mesh.uvs = gather(contents.numbers.uvs, 2, {corners, width, 1});
   const std::vector<std::size_t> first = firstTriangles(contents.parts);
-  mesh.indices.resize(3 * first.back());
+  mesh.indices = largeVector<std::uint32_t>(3 * first.back());
   forEachInParallel(0, contents.parts.size(), [&](std::size_t i) {
     addTriangles(contents.parts[i], width, mesh, &mesh.indices[3 * first[i]]);
   });

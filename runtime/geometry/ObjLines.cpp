@@ -1,5 +1,7 @@
 #include "runtime/geometry/ObjLines.h"
 
+#include "support/LargeArray.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -98,6 +100,8 @@ public:
       : cursor(part.text), part(part), numbers(numbers), above(part.before) {}
 
   bool readAll() {
+    part.faceSizes.reserve(part.faceLines);
+    part.corners.reserve(3 * numbers.cornerWidth() * part.faceLines);
     while (!cursor.isAtEnd())
       if (!readLine())
         return false;
@@ -229,6 +233,7 @@ void LineCounts::add(const LineCounts &other) {
   positions += other.positions;
   uvs += other.uvs;
   normals += other.normals;
+  faces += other.faces;
 }
 
 LineCounts countLines(std::string_view text) {
@@ -239,13 +244,15 @@ LineCounts countLines(std::string_view text) {
     counts.positions += line == Line::Position;
     counts.uvs += line == Line::Uv;
     counts.normals += line == Line::Normal;
+    counts.faces += line == Line::Face;
   }
   return counts;
 }
 
 Numbers::Numbers(const LineCounts &counts, bool wantsColors)
-    : positions(3 * counts.positions), normals(3 * counts.normals), uvs(2 * counts.uvs),
-      colors(wantsColors ? positions.size() : 0) {}
+    : positions(largeVector<float>(3 * counts.positions)),
+      normals(largeVector<float>(3 * counts.normals)), uvs(largeVector<float>(2 * counts.uvs)),
+      colors(largeVector<float>(wantsColors ? positions.size() : 0)) {}
 
 std::vector<Part> cutIntoParts(std::string_view text, std::size_t bytes) {
   std::vector<Part> parts;

@@ -19,7 +19,7 @@ constexpr std::uint32_t none = ~std::uint32_t(0);
 
 /// How many lines there are of these kinds.
 struct LineCounts {
-  std::size_t positions = 0, uvs = 0, normals = 0;
+  std::size_t positions = 0, uvs = 0, normals = 0, faces = 0;
 
   void add(const LineCounts &other);
 };
@@ -50,7 +50,8 @@ struct MaterialUse {
 /// Whole lines, and what they hold beside numbers.
 struct Part {
   std::string_view text;
-  LineCounts before; // of the lines above
+  LineCounts before;         // of the lines above
+  std::size_t faceLines = 0; // in the part
 
   std::vector<std::uint8_t> faceSizes; // corners of each face: 3 or 4
   std::vector<std::uint32_t> corners;  // Numbers::cornerWidth() indices of each

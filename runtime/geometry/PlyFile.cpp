@@ -4,6 +4,7 @@
 #include "runtime/geometry/PlyFormat.h"
 #include "runtime/geometry/PolygonSplit.h"
 #include "support/ErrorMessages.h"
+#include "support/LargeArray.h"
 #include "support/Parallel.h"
 
 #include <algorithm>
@@ -223,9 +224,9 @@ private:
       return false;
     std::vector<Column> columns = columnsOf(element, false, element.count);
     const std::vector<Column *> columnOf = byProperty(element, columns);
-    mesh.positions.resize(3 * element.count);
-    mesh.normals.resize(normals ? 3 * element.count : 0);
-    mesh.uvs.resize(uvs ? 2 * element.count : 0);
+    mesh.positions = largeVector<float>(3 * element.count);
+    mesh.normals = largeVector<float>(normals ? 3 * element.count : 0);
+    mesh.uvs = largeVector<float>(uvs ? 2 * element.count : 0);
     const auto readRow = [&](Body &row, std::size_t i) {
       for (std::size_t p = 0; p < targets.size(); ++p) {
         const Property &property = element.properties[p];
@@ -317,7 +318,7 @@ private:
       return false;
     const std::size_t triangles = rows->back().firstTriangle;
     std::vector<Column> columns = columnsOf(element, true, triangles);
-    mesh.indices.resize(3 * triangles);
+    mesh.indices = largeVector<std::uint32_t>(3 * triangles);
     if (request.keepsOrder)
       facesOfTriangles.resize(triangles);
     faceCount = element.count;
