@@ -57,6 +57,7 @@ struct ReferenceDescription {
   const LocatedName &shownName() const { return object ? object->className : name; }
 };
 
+class KeptMeshes;
 class ModelFiles;
 
 /// The value of a variable, and where it is defined.
@@ -187,6 +188,7 @@ struct SceneDescription {
   std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
   std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
+  std::shared_ptr<KeptMeshes> keptMeshes; // of scenes before this one, for it; null: none
 };
 
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.

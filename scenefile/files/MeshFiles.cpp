@@ -1,6 +1,7 @@
 #include "scenefile/files/MeshFiles.h"
 
 #include "scenefile/Models.h"
+#include "scenefile/files/KeptMeshes.h"
 #include "scenefile/gltf/Mesh.h"
 #include "support/ErrorMessages.h"
 #include "support/Parallel.h"
@@ -29,8 +30,28 @@ struct File {
   std::size_t uses = 0;
   bool keepsOrder = false; // the scene gives values for its vertices or faces
   Mesh mesh = {};
+  std::shared_ptr<const Mesh> kept = nullptr; // instead of `mesh`, for other scenes, too
   std::exception_ptr failure = nullptr;
+
+  /// The mesh, for one of the uses.
+  Mesh use() {
+    if (kept)
+      return *kept;
+    return uses == 1 ? std::move(mesh) : mesh;
+  }
 };
+
+/// Reads a file.
+void read(File &file, const SceneDescription &description, runtime::MeshRequest wanted) {
+  wanted.keepsOrder = file.keepsOrder;
+  if (!file.part.empty())
+    file.mesh =
+        gltf::readMesh(description.models->open(file.path), file.part, wanted, file.weights);
+  else if (description.keptMeshes)
+    file.kept = description.keptMeshes->load(file.path, wanted);
+  else
+    file.mesh = runtime::loadMesh(file.path, wanted);
+}
 
 bool hasValues(const GeometryDescription &geometry) {
   return std::any_of(geometry.attributes.begin(), geometry.attributes.end(),
@@ -79,16 +100,14 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
 
   forEachInParallel(0, files.size(), [&](std::size_t i) {
     File &file = files[i];
-    runtime::MeshRequest wanted = request;
-    wanted.keepsOrder = file.keepsOrder;
     try {
-      file.mesh = file.part.empty() ? runtime::loadMesh(file.path, wanted)
-                                    : gltf::readMesh(description.models->open(file.path), file.part,
-                                                     wanted, file.weights);
+      read(file, description, request);
     } catch (...) {
       file.failure = std::current_exception();
     }
   });
+  if (description.keptMeshes)
+    description.keptMeshes->forgetUnused();
   results.resize(uses.size());
   forEachInParallel(0, results.size(), [&](std::size_t i) {
     const GeometryDescription &geometry = *uses[i].geometry;
@@ -100,10 +119,7 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
         File &file = files[number];
         if (file.failure)
           std::rethrow_exception(file.failure);
-        if (file.uses == 1)
-          keys.push_back(std::move(file.mesh));
-        else
-          keys.push_back(file.mesh);
+        keys.push_back(file.use());
         names.push_back(file.path);
       }
       result.mesh = keys.size() == 1

@@ -6,6 +6,7 @@
 #include "codegen/driver/CodeCache.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
+#include "scenefile/files/KeptMeshes.h"
 #include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
@@ -87,10 +88,14 @@ int render(const RenderCommandOptions &options) {
     RenderCommandOptions several = options;
     several.common.compile.codeCache = std::make_shared<CodeCache>();
     several.keptTrees = std::make_shared<KeptTrees>();
+    several.keptMeshes = std::make_shared<scene::KeptMeshes>();
     return options.watches ? watch(several) : renderFrames(several);
   }
+  RenderCommandOptions one = options;
+  if (!options.aovs.empty())
+    one.keptMeshes = std::make_shared<scene::KeptMeshes>();
   Rendering rendering;
-  const ExitStatus status = render(options, nullptr, rendering);
+  const ExitStatus status = render(one, nullptr, rendering);
   return statusAfterInterruption(status);
 }
 

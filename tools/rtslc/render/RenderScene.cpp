@@ -199,6 +199,7 @@ private:
     input = readInput(options, messages);
     if (!input)
       return false;
+    input->description.keptMeshes = options.keptMeshes;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
     target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu);

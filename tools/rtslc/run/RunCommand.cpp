@@ -8,6 +8,7 @@
 #include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"
+#include "scenefile/files/KeptMeshes.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
@@ -128,9 +129,14 @@ public:
 
   /// Nothing if there were errors, which are reported.
   bool run(const scene::SceneDescription &description) {
-    for (std::size_t i = 0; i < scene::launchCount(description); ++i)
-      if (!runOne(scene::launchOf(description, i), i, scene::launchCount(description)))
+    const std::size_t count = scene::launchCount(description);
+    const auto meshes = count > 1 ? std::make_shared<scene::KeptMeshes>() : nullptr;
+    for (std::size_t i = 0; i < count; ++i) {
+      scene::SceneDescription launch = scene::launchOf(description, i);
+      launch.keptMeshes = meshes;
+      if (!runOne(launch, i, count))
         return false;
+    }
     return true;
   }
 
