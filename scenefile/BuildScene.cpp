@@ -50,8 +50,11 @@ public:
     attempt([&] {
       if (description.camera)
         scene.setCamera(add(*description.camera, "camera"));
-      if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
-        scene.setRayGeneration(add(*description.rayGeneration, "rayGeneration", true));
+      if (!description.passes.empty())
+        addPasses();
+      else if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
+        scene.setRayGeneration(
+            add(*description.rayGeneration, "rayGeneration", &description.render));
     });
     scene.setLampChoice(description.lampChoice);
     if (description.shutter)
@@ -97,6 +100,14 @@ public:
   }
 
 private:
+  /// The ray generations of all passes; the scene has that of the first.
+  void addPasses() {
+    std::vector<RtslRef> added;
+    for (const PassDescription &pass : description.passes)
+      added.push_back(add(pass.rayGeneration, nameOfPass(added.size()), &pass.render));
+    scene.setRayGeneration(added.front());
+  }
+
   void addNamed() {
     for (const auto *section : sections)
       for (const auto &object : *section)
@@ -118,8 +129,9 @@ private:
     }
   }
 
-  /// `isLaunched`: its output buffers that are not set get the size of the launch.
-  RtslRef add(const ObjectDescription &object, const std::string &name, bool isLaunched = false) {
+  /// `launch`: of a ray generation, whose output buffers that are not set get its size.
+  RtslRef add(const ObjectDescription &object, const std::string &name,
+              const RenderSettings *launch = nullptr) {
     if (object.image)
       return addImage(*object.image, object.className.text, name);
     const ClassInfo *classInfo = program.find(object.className.text);
@@ -167,11 +179,12 @@ private:
         set(classInfo ? find(classInfo->members, key.text) : nullptr, key, *value,
             fmt::format("member `{}` of `{}`", key.text, name));
       });
-    if (isLaunched && classInfo)
+    if (launch && classInfo)
       for (const MemberInfo &member : classInfo->members)
         if (member.type.isOutput && !isGiven(object, member.name) && !variables.of(member, object))
           ofMembers.attempt([&] {
-            values.members.push_back({member.name, outputOf(member, name), object.place});
+            values.members.push_back(
+                {member.name, outputOf(member, name, *launch, object.place), object.place});
           });
     ofMembers.throwIfAny();
     if (classInfo && leavesOut(*classInfo, values))
@@ -201,9 +214,10 @@ private:
   }
 
   /// An element for each launch index.
-  Value outputOf(const MemberInfo &member, const std::string &name) const {
-    const std::uint32_t width = description.render.width, slices = description.render.slices;
-    const std::uint32_t height = description.render.height / slices;
+  Value outputOf(const MemberInfo &member, const std::string &name, const RenderSettings &launch,
+                 const Place &place) const {
+    const std::uint32_t width = launch.width, slices = launch.slices;
+    const std::uint32_t height = launch.height / slices;
     const std::string what = fmt::format("member `{}` of `{}`", member.name, name);
     if (member.type.bufferRank == 1 && height == 1 && slices == 1)
       return zeros({width}, member.type, what);
@@ -211,8 +225,7 @@ private:
       return zeros({slices, height, width}, member.type, what);
     if (member.type.bufferRank == 2 && slices == 1)
       return zeros({height, width}, member.type, what);
-    throw Error(message::bufferSizeMissing(what, member.type.name),
-                description.rayGeneration->place);
+    throw Error(message::bufferSizeMissing(what, member.type.name), place);
   }
 
   /// The buffer of this name, made on first use.

@@ -168,6 +168,10 @@ std::size_t launchCount(const SceneDescription &description) {
   return std::max<std::size_t>(description.passes.size(), 1);
 }
 
+std::string nameOfPass(std::size_t pass) {
+  return fmt::format("passes.{}", pass);
+}
+
 SceneDescription launchOf(const SceneDescription &description, std::size_t pass) {
   SceneDescription launch = description;
   if (!description.passes.empty()) {

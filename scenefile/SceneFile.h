@@ -235,6 +235,8 @@ double numberOfRoot(const JsonValue &json, const SceneDescription &description,
 
 /// How many launches the scene has: its passes, or one.
 std::size_t launchCount(const SceneDescription &description);
+/// The name of the ray generation of a pass, in a scene of all.
+std::string nameOfPass(std::size_t pass);
 /// The scene of one launch, which has no passes.
 SceneDescription launchOf(const SceneDescription &description, std::size_t pass);
 
@@ -248,7 +250,8 @@ struct NamedBuffers {
 };
 
 /// Loads the meshes, creates the objects and checks all names and types against the program.
-/// An output buffer of the ray generation that is not set gets the size of the launch.
+/// An output buffer of the ray generation that is not set gets the size of the launch. A scene with
+/// passes has the ray generations of all, and is launched by the first.
 runtime::Scene buildScene(const SceneDescription &description,
                           std::shared_ptr<const runtime::Program> program);
 /// The same for one of several launches that share buffers: uses those made before, and adds

@@ -39,7 +39,7 @@ void rtslSceneDestroy(RtslScene *scene);
  * `settings` are `count` values that replace those of the file, as --set of `rtslc render` gives
  * them: "camera=side" is one of its cameras by name, "frame=12" the frame that its key frames are
  * of, "nodes.car.transform.translate=[0, 1, 0]" any other value. More can be added to the scene.
- * A file with `passes` fails. */
+ * Of a file with `passes`, the first is what is launched (rtslSceneSetPass). */
 RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
                          size_t count);
 /* Reads the file of the scene again, with these settings in place of those before, such as the next
@@ -221,6 +221,13 @@ RtslRenderSettings rtslRenderDefaults(void);
 
 /* The same but for what the file of the scene (rtslSceneLoad) says. */
 RtslRenderSettings rtslSceneSettings(const RtslScene *scene);
+
+/* How many launches the file of the scene has: its passes, or one. 0 for a scene of no file. */
+uint32_t rtslScenePasses(const RtslScene *scene);
+/* Makes a pass of the file, by its number from 0, what is launched: its ray generation, which
+ * rtslSceneFind finds as "passes.0" and so on, and its settings (rtslSceneSettings). All passes
+ * share the buffers that the file names. */
+int rtslSceneSetPass(RtslScene *scene, uint32_t pass);
 
 /* Runs the ray generation once for each sample, and makes no picture: what it computes is in its
  * output buffers. One rendering of a scene after the other uses the trees of the one before. */

@@ -71,7 +71,8 @@ struct RtslScene {
 
   std::string file;                                      // empty: the scene is of none
   std::shared_ptr<const rtsl::runtime::Program> program; // of such a scene
-  RtslRenderSettings ofFile = rtslRenderDefaults();
+  std::vector<RtslRenderSettings> passes;                // of its launches
+  RtslRenderSettings ofFile = rtslRenderDefaults();      // of the pass that is set
   /// Trees of the scene before it was read again, for the next rendering; or null.
   mutable std::shared_ptr<rtsl::runtime::KeptTrees> kept;
 };

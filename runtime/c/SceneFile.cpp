@@ -29,25 +29,28 @@ rtsl::Error inLines(const rtsl::Error &error) {
   return rtsl::Error(rtsl::Message{error.code, lines});
 }
 
+RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
+  return {render.width,
+          render.height / render.slices,
+          render.samplesPerPixel,
+          render.depth,
+          render.seed,
+          0,
+          render.slices};
+}
+
 /// What a file gives with these settings.
 RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std::string &file,
                const char *const *settings, std::size_t count) {
   try {
     const scene::SceneDescription description =
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
-    if (scene::launchCount(description) != 1)
-      throw rtsl::Error(rtsl::message::passesInC());
-    const scene::RenderSettings &render = description.render;
     RtslScene made(scene::buildScene(description, program));
     made.file = file;
     made.program = program;
-    made.ofFile = {render.width,
-                   render.height / render.slices,
-                   render.samplesPerPixel,
-                   render.depth,
-                   render.seed,
-                   0,
-                   render.slices};
+    for (std::size_t i = 0; i < scene::launchCount(description); ++i)
+      made.passes.push_back(settingsOf(scene::launchOf(description, i).render));
+    made.ofFile = made.passes.front();
     return made;
   } catch (const rtsl::Error &error) {
     throw inLines(error);
@@ -81,6 +84,21 @@ int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count)
 
 RtslRenderSettings rtslSceneSettings(const RtslScene *scene) {
   return scene->ofFile;
+}
+
+uint32_t rtslScenePasses(const RtslScene *scene) {
+  return std::uint32_t(scene->passes.size());
+}
+
+int rtslSceneSetPass(RtslScene *scene, uint32_t pass) {
+  return guarded(0, [&] {
+    if (pass >= scene->passes.size())
+      throw rtsl::Error(rtsl::message::noSuchPass(pass, scene->passes.size()));
+    if (scene->passes.size() > 1)
+      scene->scene.setRayGeneration(scene->scene.find(scene::nameOfPass(pass)));
+    scene->ofFile = scene->passes[pass];
+    return 1;
+  });
 }
 
 RtslObject rtslSceneFind(const RtslScene *scene, const char *name) {

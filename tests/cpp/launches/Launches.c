@@ -247,6 +247,34 @@ static void files(void) {
   need((found = (const float *)rtslSceneOutput(scene, "found", sizes)) != NULL, "an output");
   need(sizes[0] == 1 && sizes[1] == 2 && sizes[2] == 3, "its sizes");
   need(found[0] == 19, "a distance");
+  need(rtslScenePasses(scene) == 1 && rtslSceneSetPass(scene, 0), "one launch");
+  rtslSceneDestroy(scene);
+}
+
+/* Two passes of a file: the second one adds what the first one has found, and again. */
+static void passesOfFile(void) {
+  RtslScene *scene = rtslSceneLoad(launches_shaders(), "passes.json", NULL, 0);
+  uint32_t pass, sizes[3];
+  int round;
+  const float *total, *found;
+  need(scene != NULL && rtslScenePasses(scene) == 2, "a scene with passes");
+  for (round = 0; round < 2; ++round) {
+    for (pass = 0; pass < 2; ++pass) {
+      RtslRenderSettings settings;
+      need(rtslSceneSetPass(scene, pass), "a pass");
+      settings = rtslSceneSettings(scene);
+      need(settings.width == (pass == 0 ? 3 : 1), "its size");
+      need(rtslLaunch(scene, &settings), "its launch");
+      if (pass == 0) {
+        need((found = (const float *)rtslSceneOutput(scene, "found", sizes)) != NULL, "rays");
+        need(found[0] == 19 && sizes[0] == 1 && sizes[1] == 2 && sizes[2] == 3, "what they find");
+      }
+    }
+    need((total = (const float *)rtslSceneOutput(scene, "total", sizes)) != NULL, "a sum");
+    printf("total %g\n", total[0]);
+    need(rtslSceneReload(scene, NULL, 0) && rtslScenePasses(scene) == 2, "the file again");
+  }
+  need(!rtslSceneSetPass(scene, 2), "a third pass");
   rtslSceneDestroy(scene);
 }
 
@@ -296,7 +324,7 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 2, 0, NULL));
   EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 3, NULL));
   EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "nowhere.json", NULL, 0));
-  EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "passes.json", NULL, 0));
+  EXPECT_FAILURE(rtslSceneSetPass(scene, 0));
   EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "scene.json", &setting, 1));
   EXPECT_FAILURE(rtslSceneReload(scene, NULL, 0));
   EXPECT_FAILURE(rtslSceneFind(scene, "nothing"));
@@ -313,6 +341,7 @@ int main(int count, char **arguments) {
   passes();
   images(arguments[1], atoi(arguments[2]));
   files();
+  passesOfFile();
   mistakes();
   return 0;
 }

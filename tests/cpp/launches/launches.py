@@ -38,7 +38,7 @@ WORDS = (
     "a `sampler2D` has one file",
     "of 1, 2 or 4 channels",
     "nowhere.json",
-    "the scene has `passes`",
+    "there is no pass 0: the file of the scene has 0 launches",
     "nowhere",
     "the scene is of no file",
     "no object of the scene is named `nothing`",
@@ -105,7 +105,16 @@ def write_scenes(folder):
             "rayGeneration": {**measure, "found": [[[[0, 0]] * 3] * 2]},
             "render": {"engine": "programs", "size": [3, 2, 1], "spp": 1},
         },
-        "passes.json": {**start, "passes": [{"rayGeneration": measure}] * 2},
+        "passes.json": {
+            **start,
+            "materials": {"clay": {"class": "Marked"}},
+            "objects": [ball],
+            "buffers": {"found": {"size": [1, 2, 3]}},
+            "passes": [
+                {"rayGeneration": {**measure, "found": "found"}, "size": [3, 2, 1], "spp": 1},
+                {"rayGeneration": {"class": "Total", "found": "found"}, "size": [1, 1], "spp": 1},
+            ],
+        },
     }
     for name, document in scenes.items():
         (folder / name).write_text(json.dumps(document))
@@ -122,7 +131,10 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     write_scenes(pathlib.Path(name))
     os.chdir(name)
     said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
-    for line, word in zip(said, WORDS, strict=True):
+    run(rtslc, "run", "passes.json", "--out", "total=total.npy", "-q")
+    (total,) = struct.unpack("<f", pathlib.Path("total.npy").read_bytes()[-4:])
+    assert said[:2] == [f"total {total:g}"] * 2, (said, total)
+    for line, word in zip(said[2:], WORDS, strict=True):
         assert word in line, (word, said)
     compare("first.exr", "--camera=side", "--frame=1")
     compare("level.exr", "--camera=side", "--frame=1", "--set=materials.clay.level=0.25")
