@@ -112,7 +112,7 @@ class Program:
         self.scene.clear()
 
 
-def measure(build, pairs, spp, size, write_scene=write_scene):
+def measure(build, pairs, spp, size, write_scene=write_scene, byhand="bench-meshes"):
     """`write_scene(folder)` gives the scene's file and those for the program by hand."""
     binaries = build / "bin"
     with tempfile.TemporaryDirectory() as name:
@@ -124,13 +124,13 @@ def measure(build, pairs, spp, size, write_scene=write_scene):
             arguments = [str(binaries / "rtslc"), "render", str(scene), "--json", "-q", *more]
             return Program(name, arguments + options, folder / f"{name}.exr")
 
-        byhand = Program(
-            "bench-meshes",
-            [str(binaries / "bench-meshes"), *map(str, files)] + options,
+        theirs = Program(
+            byhand,
+            [str(binaries / byhand), *map(str, files)] + options,
             folder / "byhand.exr",
         )
         ours = [rtslc("strict"), rtslc("fast", "--fp=fast")]
-        programs = [byhand, *ours]
+        programs = [theirs, *ours]
         for program in programs:  # once, to warm the caches
             program.run(2)
             program.forget()
@@ -153,9 +153,9 @@ def measure(build, pairs, spp, size, write_scene=write_scene):
                 {
                     "program": program.name,
                     "speed": summarise(
-                        [b / a for a, b in zip(program.seconds, byhand.seconds)]
+                        [b / a for a, b in zip(program.seconds, theirs.seconds)]
                     ).as_json(),
-                    "pictures": compare(build, program, byhand),
+                    "pictures": compare(build, program, theirs),
                 }
                 for program in ours
             ],

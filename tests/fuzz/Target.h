@@ -1,8 +1,8 @@
 //===- Target.h - what a fuzzer runs --------------------------------------===//
 //
-// All targets, FrontEnd.cpp, SceneReader.cpp, MaterialReader.cpp and ImageReader.cpp, define
-// LLVMFuzzerTestOneInput. libFuzzer calls it with inputs that it makes; Replay.cpp is a plain main
-// that calls it with files. docs/testing.md describes how to run them.
+// All targets, FrontEnd.cpp, SceneReader.cpp, MaterialReader.cpp, GltfReader.cpp and
+// ImageReader.cpp, define LLVMFuzzerTestOneInput. libFuzzer calls it with inputs that it makes;
+// Replay.cpp is a plain main that calls it with files. docs/testing.md describes how to run them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

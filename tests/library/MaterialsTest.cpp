@@ -165,7 +165,7 @@ constexpr float alphas[] = {0, 0.001f, 0.003f, 0.01f, 0.03f, 0.1f, 0.3f, 0.6f, 1
 std::string named(const char *name, float number) {
   return std::string(name) + " " + std::to_string(number).substr(0, 5);
 }
-Limits ofAlpha(float alpha, double energy = 1.001, double index = 1) {
+Limits ofAlpha(float alpha, double energy = 1.002, double index = 1) {
   return {energy, alpha > 0 ? double(alpha) : 1.0, index};
 }
 
@@ -178,7 +178,7 @@ void testDiffuse(Floor &floor) {
     OrenNayar rough;
     rough.reflectance = white;
     rough.sigma = sigma;
-    floor.all(named("OrenNayar", sigma), rough, {1.001});
+    floor.all(named("OrenNayar", sigma), rough, {1.002});
   }
   for (const float spread : {0.2f, 0.3f, 0.5f, 1.0f}) {
     Velvet velvet;
@@ -225,7 +225,7 @@ void testGlossy(Floor &floor) {
       ward.alphaU = alphaU;
       ward.alphaV = alphaV;
       floor.all(named("Ward", alphaU) + named(" and", alphaV), ward,
-                ofAlpha(std::min(alphaU, alphaV), 1.001));
+                ofAlpha(std::min(alphaU, alphaV), 1.002));
     }
 }
 
@@ -239,8 +239,8 @@ void testTransparent(Floor &floor) {
       glass.alpha = alpha;
       const std::string name = named("Dielectric", alpha) + named(" of index", index);
       const float bent = alpha * std::min(index - 1, 1.0f); // how far refracted rays spread
-      floor.directions(name, glass, ofAlpha(bent, 1.001, index));
-      floor.directions(name + " from inside", glass, ofAlpha(bent, 1.001, 1 / index), false);
+      floor.directions(name, glass, ofAlpha(bent, 1.002, index));
+      floor.directions(name + " from inside", glass, ofAlpha(bent, 1.002, 1 / index), false);
       floor.reciprocity(name, glass, ofAlpha(alpha).width, index);
     }
   for (const float index : {1.0f, 1.5f, 4.0f}) {
@@ -292,7 +292,7 @@ void testCompound(Floor &floor) {
   mixed.amount = 0.3f;
   floor.all("MixMaterial", mixed, ofMetals);
   mixed.second = ofGlass;
-  floor.directions("MixMaterial with a delta", mixed, {1.001, 1, 1.5});
+  floor.directions("MixMaterial with a delta", mixed, {1.002, 1, 1.5});
 
   TwoSided coin;
   coin.front = ofMetal;

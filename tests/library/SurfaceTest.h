@@ -34,7 +34,7 @@ struct Surface {
 
 /// What a case allows, and where its density is largest.
 struct Limits {
-  double energy = 1.001; // the largest albedo
+  double energy = 1.002; // the largest albedo
   double width = 1;      // the smallest angle that the density has, in radians
   double index = 1;      // of the far side, relative to the eye's: where the refracted ray is
 };
