@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""launches.py RTSLC SOURCE LAUNCHES TURNTABLE: runs the test of launches in C, checks the messages
-of its mistakes, and compares pictures of the turntable, whose trees follow what moves, with those
-of scenes that `rtslc render` makes."""
+"""launches.py RTSLC SOURCE LAUNCHES TURNTABLE MODELS: runs the test of launches in C, checks the
+messages of its mistakes, and compares pictures of the turntable, whose trees follow what moves,
+and of a model with materials of the library with those that `rtslc render` makes."""
 import base64
 import json
 import os
@@ -13,7 +13,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from programs import run
 
-rtslc, source, launches, turntable = sys.argv[1:]
+rtslc, source, launches, turntable, models = sys.argv[1:]
 
 WORDS = (
     "no node is entered",
@@ -120,9 +120,32 @@ def write_scenes(folder):
         (folder / name).write_text(json.dumps(document))
 
 
-def compare(picture, *options):
+def write_model(folder):
+    """An OBJ file with two materials of an MTL file, which are the library's, and a scene."""
+    (folder / "model.mtl").write_text(
+        "newmtl red\nKd 0.7 0.2 0.1\nPr 0.5\nnewmtl metal\nKd 0.8 0.8 0.7\nPm 1\nPr 0.3\n"
+    )
+    (folder / "model.obj").write_text(
+        "mtllib model.mtl\nv -1 0 0\nv 1 0 0\nv 0 1.5 0\nv -2 -0.5 -2\nv 2 -0.5 -2\n"
+        "v 2 -0.5 2\nv -2 -0.5 2\nusemtl red\nf 1 2 3\nusemtl metal\nf 4 7 6 5\n"
+    )
+    scene = {
+        "rtsl": 1,
+        "import": ["std.cameras"],
+        "camera": {
+            "class": "PerspectiveCamera",
+            "constructor": [[0.9, 1.3, 6], [0, 0.5, 0], [0, 1, 0]],
+        },
+        "objects": [{"model": "model.obj"}],
+        "background": [0.5, 0.6, 0.8],
+        "render": {"engine": "path", "size": [48, 32], "spp": 4},
+    }
+    (folder / "model.json").write_text(json.dumps(scene))
+
+
+def compare(picture, *options, scene="scene.json"):
     """The picture has the bits of what `rtslc render` makes of the scene."""
-    run(rtslc, "render", "scene.json", "-o", "expected.exr", "-q", *options)
+    run(rtslc, "render", scene, "-o", "expected.exr", "-q", *options)
     said = json.loads(run(rtslc, "compare", picture, "expected.exr", "--json"))
     assert said["rmse"] == 0, (picture, said)
 
@@ -140,6 +163,9 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     compare("level.exr", "--camera=side", "--frame=1", "--set=materials.clay.level=0.25")
     compare("second.exr", "--camera=front", "--frame=2")
     compare("same.exr", "--camera=front", "--frame=2")
+    write_model(pathlib.Path(name))
+    run(models, "model.json", "model.exr")
+    compare("model.exr", scene="model.json")
     os.chdir(source)
 
 scene = {
