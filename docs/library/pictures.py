@@ -379,12 +379,25 @@ def scenes():
         },
         lights=[{"class": "DistantLight", "direction": [1, 2, 1]}],
     )
-    yield "LayeredAir", {
-        **air,
-        "helpers": {"air": {"class": "LayeredAir", "thickness": 0.15}},
-        "rayGeneration": {"class": "CurvedTracer", "field": "air", "reach": 2000},
-        "render": {**air["render"], "engine": "programs", "spp": 16},
-    }
+    for name, thickness in (("LayeredAir", 0.15), ("CurvedTracer", 0.5)):
+        yield name, {
+            **air,
+            "helpers": {"air": {"class": "LayeredAir", "thickness": thickness}},
+            "rayGeneration": {"class": "CurvedTracer", "field": "air", "reach": 2000},
+            "render": {**air["render"], "engine": "programs", "spp": 16},
+        }
+    yellow = {"class": "HomogeneousMedium", "scattering": [6, 5, 1], "absorption": [0, 0.2, 1]}
+    ring = scene(
+        [
+            FLOOR,
+            {
+                "primitive": TORUS,
+                "material": {"class": "MediumBoundary", "interior": yellow},
+            },
+        ]
+    )
+    ring["render"].update(engine="volume", spp=1024)
+    yield "MediumBoundary", ring
     for name, members in (
         ("HomogeneousMedium", {"scattering": [2.2, 2.5, 2.8]}),
         (
