@@ -236,7 +236,8 @@ public:
 private:
   void sort(const Group &all) {
     if (all.end - all.first <= largestGroup)
-      return splitIntoRuns(boxes.data() + all.first, boxes.data() + all.end, &lengths[all.first]);
+      return splitIntoRuns(boxes.data() + all.first, boxes.data() + all.end,
+                           lengths.data() + all.first);
     const std::vector<Group> groups = sortIntoGroups(all);
     // Where all is in one cell, a few distant boxes may have made the grid too coarse.
     forEachInParallel(threads, groups.size(), [&](std::size_t i) {
@@ -245,7 +246,7 @@ private:
       if (count > 16 * largestGroup && count < all.end - all.first)
         sort(groups[i]);
       else
-        splitIntoRuns(boxes.data() + first, boxes.data() + end, &lengths[first]);
+        splitIntoRuns(boxes.data() + first, boxes.data() + end, lengths.data() + first);
     });
   }
 

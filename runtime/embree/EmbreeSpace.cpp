@@ -248,10 +248,8 @@ namespace {
 bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   const RtslLaunch &launch = space.scene->launch;
   std::atomic<bool> isChanged{false};
-  constexpr std::size_t atOnce = 1024;
-  forEachInParallel(threads, (space.blocks.size() + atOnce - 1) / atOnce, [&](std::size_t part) {
-    const std::size_t end = std::min(space.blocks.size(), (part + 1) * atOnce);
-    for (std::size_t i = part * atOnce; i < end; ++i) {
+  forRangesInParallel(threads, space.blocks.size(), 1024, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
       TriangleBlock &block = space.blocks[i];
       const TriangleBlock before = block;
       for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {

@@ -169,7 +169,7 @@ Mesh meshOf(Contents contents, const MeshRequest &request) {
   const std::vector<std::size_t> first = firstTriangles(contents.parts);
   mesh.indices = largeVector<std::uint32_t>(3 * first.back());
   forEachInParallel(0, contents.parts.size(), [&](std::size_t i) {
-    addTriangles(contents.parts[i], width, mesh, &mesh.indices[3 * first[i]]);
+    addTriangles(contents.parts[i], width, mesh, mesh.indices.data() + 3 * first[i]);
   });
   addColors(mesh, contents, positions, request.wants("color"));
   if (request.keepsOrder)

@@ -60,13 +60,11 @@ struct MeshQuery::Implementation {
   /// Traces all rays, and calls take(i, state, whether it hits something).
   template <typename Take>
   void trace(const QueryRay *rays, std::size_t count, std::uint32_t how, Take take) const {
-    constexpr std::size_t atOnce = 1024;
-    forEachInParallel(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
+    forRangesInParallel(threads, count, 1024, [&](std::size_t first, std::size_t end) {
       RtslState state{};
       state.launch = &launch;
       state.rayMask = ~0u;
-      const std::size_t end = std::min(count, (part + 1) * atOnce);
-      for (std::size_t i = part * atOnce; i < end; ++i) {
+      for (std::size_t i = first; i < end; ++i) {
         const QueryRay &ray = rays[i];
         std::copy_n(ray.origin, 3, state.RayOrigin);
         std::copy_n(ray.direction, 3, state.RayDirection);
