@@ -67,9 +67,7 @@ struct Extent {
 // Groups into runs
 //===----------------------------------------------------------------------===//
 
-constexpr unsigned mostBins = 16;
-/// Fewer boxes have half as many bins.
-constexpr std::ptrdiff_t manyBoxes = 32;
+constexpr unsigned binCount = 16;
 
 /// The number of runs that so many boxes need at least.
 std::size_t runsOf(std::size_t boxes) {
@@ -86,8 +84,7 @@ struct Split {
 /// The bins of boxes, along all axes.
 class Bins {
 public:
-  Bins(const TriangleBox *first, const TriangleBox *end)
-      : binCount(end - first < manyBoxes ? mostBins / 2 : mostBins) {
+  Bins(const TriangleBox *first, const TriangleBox *end) {
     Extent middles;
     for (const TriangleBox *box = first; box != end; ++box)
       middles.add(middleOf(*box), middleOf(*box));
@@ -125,7 +122,7 @@ private:
   void improve(Split &best, int axis) const {
     const auto &extent = extents[std::size_t(axis)];
     const auto &count = counts[std::size_t(axis)];
-    std::array<double, mostBins> right; // costs of the bins from here on
+    std::array<double, binCount> right; // costs of the bins from here on
     Extent sum;
     std::size_t boxes = 0;
     for (std::size_t bin = binCount; bin-- > 1;) {
@@ -144,10 +141,9 @@ private:
     }
   }
 
-  const unsigned binCount;
   Vector lower, scale;
-  std::array<std::array<Extent, mostBins>, 3> extents;
-  std::array<std::array<std::uint32_t, mostBins>, 3> counts{};
+  std::array<std::array<Extent, binCount>, 3> extents;
+  std::array<std::array<std::uint32_t, binCount>, 3> counts{};
 };
 
 /// Partitions boxes into two parts, neither of which is empty. Returns the first of the second.
