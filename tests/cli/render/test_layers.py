@@ -70,7 +70,7 @@ class Layers(Case):
 
     def test_layers_of_a_rendering_that_was_resumed(self):
         self.render("part.exr", "--spp=2", "--checkpoint=a.ckpt")
-        self.render("layers.exr", "--spp=5", "--checkpoint=a.ckpt", "--aov=id", "--aov=id,normals")
+        self.render("layers.exr", "--spp=5", "--checkpoint=a.ckpt", "--aov=id", "--aov=id,normal")
         self.render("whole.exr", "--spp=5")
         self.assert_layers("layers.exr", ["id", "normals"], "whole.exr", "--spp=5")
 
@@ -127,7 +127,7 @@ class Layers(Case):
     def test_bad_values(self):
         for options, part in (
             (["-o", "a.exr", "--aov=path"], "albedo"),
-            (["-o", "a.exr", "--aov=normal"], "normals"),
+            (["-o", "a.exr", "--aov=normale"], "normals"),
             (["-o", "a.png", "--aov=normals"], "only EXR files have layers"),
             (["-o", "-", "--aov=normals"], "only EXR files have layers"),
         ):

@@ -154,7 +154,8 @@ void addAovOption(CLI::App &command, std::vector<std::string> &aovs) {
       .add_option_function<std::vector<std::string>>(
           "--aov",
           [&aovs, views](const std::vector<std::string> &names) {
-            for (const std::string &name : names) {
+            for (const std::string &given : names) {
+              const std::string name = given == "normal" ? "normals" : given; // others say so
               if (std::find(views.begin(), views.end(), name) == views.end())
                 refuseWord("--aov", name, views);
               if (std::find(aovs.begin(), aovs.end(), name) == aovs.end())
