@@ -3,14 +3,14 @@
 
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/passes/BindMembers.h"
-#include "codegen/passes/ExpandCopies.h"
-#include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/InlineFunctions.h"
-#include "codegen/passes/PromoteVariables.h"
 #include "codegen/passes/PropagateConstants.h"
 #include "codegen/passes/ShareExpressions.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
+#include "codegen/passes/variables/ExpandCopies.h"
+#include "codegen/passes/variables/HoistVariables.h"
+#include "codegen/passes/variables/PromoteVariables.h"
 
 #include "mlir/Dialect/Func/Extensions/InlinerExtension.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"

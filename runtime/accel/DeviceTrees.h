@@ -1,9 +1,9 @@
 //===- DeviceTrees.h - the trees of a scene, built where it is ------------===//
 #pragma once
 
-#include "runtime/accel/ClusterTree.h"
 #include "runtime/accel/TreeItems.h"
 #include "runtime/accel/TreeKind.h"
+#include "runtime/accel/build/ClusterTree.h"
 
 #include <cstdint>
 

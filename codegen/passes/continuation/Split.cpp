@@ -5,11 +5,11 @@
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/Steps.h"
 
-#include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/continuation/Recorder.h"
 #include "codegen/passes/continuation/states/KeptState.h"
 #include "codegen/passes/continuation/suspend/CutJoins.h"
+#include "codegen/passes/variables/HoistVariables.h"
 
 #include "mlir/IR/Verifier.h"
 

@@ -3,9 +3,9 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
-#include "codegen/passes/HoistVariables.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/Simplify.h"
+#include "codegen/passes/variables/HoistVariables.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Math/IR/Math.h"

@@ -1,4 +1,4 @@
-#include "FakeProgram.h"
+#include "tests/unit/runtime/FakeProgram.h"
 
 #include "runtime/device/ray/Vector.h"
 

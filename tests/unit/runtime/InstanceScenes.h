@@ -1,7 +1,7 @@
 //===- InstanceScenes.h - random scenes of instances ----------------------===//
 #pragma once
 
-#include "FakeProgram.h"
+#include "tests/unit/runtime/FakeProgram.h"
 
 #include "runtime/geometry/Motion.h"
 #include "runtime/scene/Scene.h"

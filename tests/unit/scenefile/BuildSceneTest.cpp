@@ -1,5 +1,5 @@
-#include "../runtime/FakeProgram.h"
 #include "ErrorText.h"
+#include "tests/unit/runtime/FakeProgram.h"
 
 #include "scenefile/SceneFile.h"
 

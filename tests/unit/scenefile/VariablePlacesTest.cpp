@@ -1,6 +1,6 @@
 //===- VariablePlacesTest.cpp - where variables could set members ---------===//
-#include "../runtime/FakeProgram.h"
 #include "ErrorText.h"
+#include "tests/unit/runtime/FakeProgram.h"
 
 #include "scenefile/SceneFile.h"
 #include "scenefile/graph/VariablePlaces.h"

@@ -1,0 +1,186 @@
+// One picture on several devices, which are host megakernels here, has the bits of one.
+#include "tests/unit/runtime/render/PaintingProgram.h"
+
+#include "runtime/device/engines/Slice.h"
+#include "runtime/render/SeveralDevices.h"
+#include "support/Error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+using namespace rtsl::runtime;
+using namespace rtsl::test;
+using rtsl::Error;
+
+namespace {
+
+SeveralDevices team(std::size_t devices, const RenderOptions &options,
+                    void (*runLane)(const RtslJob *, std::uint32_t) = paint) {
+  return SeveralDevices(
+      devices,
+      [=](std::size_t, const RenderOptions &ofPart) {
+        return std::make_unique<HostMegakernel>(codeOf(runLane), emptyScene(), ofPart);
+      },
+      options);
+}
+
+Image onOne(const RenderOptions &options) {
+  return HostMegakernel(codeOf(paint), emptyScene(), options).render();
+}
+
+/// Infinite in the samples of column 3 with even numbers.
+void paintInfinities(const RtslJob *job, std::uint32_t lane) {
+  paint(job, lane);
+  for (std::uint32_t place = 0; place < job->width * job->height; ++place)
+    if (rtsl::device::pixelAt(*job, place).x == 3)
+      for (std::uint32_t i = 0; i < job->sampleCount; i += 2)
+        job->samples[3 * (std::uint64_t(place) * job->sampleCount + i)] = 1e30f * 1e30f;
+}
+
+} // namespace
+
+TEST(RowsLeft, AreAllTakenOnceAndLessAndLess) {
+  for (const std::size_t devices : {1, 2, 3, 8})
+    for (const std::uint32_t height : {1u, 3u, 4u, 5u, 64u, 1000u, 65536u}) {
+      RowsLeft rows({7, 11, 9, 11 + height}, devices, 2 * height);
+      std::uint32_t next = 11, last = height;
+      for (Window part = rows.take(); part.pixels() > 0; part = rows.take()) {
+        EXPECT_EQ(part.x0, 7u);
+        EXPECT_EQ(part.x1, 9u);
+        EXPECT_EQ(part.y0, next);
+        EXPECT_LE(part.height(), last);
+        next = part.y1;
+        last = part.height();
+      }
+      EXPECT_EQ(next, 11 + height);
+      if (devices == 1)
+        EXPECT_EQ(last, height);
+      else if (height >= 64 * devices)
+        EXPECT_LE(last, 4u); // so that no device waits for another one
+    }
+}
+
+TEST(RowsLeft, AreNotMoreThanFitExceptAFew) {
+  RowsLeft rows({0, 0, 10, 100}, 1, 165);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_EQ(rows.take().height(), 16u);
+  EXPECT_EQ(rows.take().height(), 4u);
+  EXPECT_EQ(rows.take().pixels(), 0u);
+  EXPECT_EQ(RowsLeft({0, 0, 10, 100}, 1, 1).take().height(), 4u);
+}
+
+TEST(SeveralDevices, GiveTheBitsOfOne) {
+  RenderOptions options = small();
+  options.height = 61;
+  const Image expected = onOne(options);
+  for (const std::size_t devices : {1, 2, 3, 5}) {
+    SeveralDevices several = team(devices, options);
+    for (int time = 0; time < 2; ++time) {
+      RenderStatistics statistics;
+      EXPECT_EQ(several.render(&statistics).pixels, expected.pixels);
+      EXPECT_EQ(statistics.samples, 20u * 61 * 3);
+      EXPECT_EQ(statistics.pixels, 20u * 61);
+      std::uint64_t samples = 0;
+      for (std::size_t i = 0; i < devices; ++i)
+        samples += several.samplesOf(i);
+      EXPECT_EQ(samples, statistics.samples);
+    }
+  }
+}
+
+TEST(SeveralDevices, RenderAPartOfThePicture) {
+  RenderOptions options = small();
+  options.crop = Window{3, 2, 8, 9};
+  const Image expected = onOne(options), image = team(2, options).render();
+  EXPECT_EQ(image.pixels, expected.pixels);
+  EXPECT_EQ(image.top, 2u);
+  EXPECT_EQ(image.wholeHeight, 10u);
+}
+
+TEST(SeveralDevices, GoOnWithSums) {
+  RenderOptions options = small();
+  options.height = 37;
+  for (const bool isAdaptive : {false, true}) {
+    options.isAdaptive = isAdaptive;
+    options.samplesPerPixel = 33;
+    PartialRendering ofOne, ofSeveral;
+    PassOptions passes;
+    passes.error = isAdaptive ? 0.4 : 0;
+    const Image expected =
+        HostMegakernel(codeOf(paint), emptyScene(), options).renderInPasses(passes, nullptr, ofOne);
+    RenderStatistics statistics;
+    const Image image = team(3, options).renderInPasses(passes, nullptr, ofSeveral, &statistics);
+    EXPECT_EQ(image.pixels, expected.pixels);
+    EXPECT_EQ(ofSeveral.sums.colors, ofOne.sums.colors);
+    EXPECT_EQ(ofSeveral.sums.taken, ofOne.sums.taken);
+    EXPECT_EQ(ofSeveral.sums.closed, ofOne.sums.closed);
+    EXPECT_EQ(statistics.samples, rtsl::runtime::countSamples(ofOne.sums).samples);
+  }
+}
+
+TEST(SeveralDevices, NameTheFirstSamplesThatAreNotFinite) {
+  RenderOptions options = small();
+  options.threads = 1;
+  options.height = 40;
+  RenderStatistics ofOne, ofSeveral;
+  const Image expected =
+      HostMegakernel(codeOf(paintInfinities), emptyScene(), options).render(&ofOne);
+  EXPECT_EQ(team(2, options, paintInfinities).render(&ofSeveral).pixels, expected.pixels);
+  EXPECT_EQ(ofSeveral.samplesNotFinite, 2u * 40);
+  EXPECT_EQ(ofSeveral.samplesNotFinite, ofOne.samplesNotFinite);
+  ASSERT_EQ(ofSeveral.notFinite.size(), ofOne.notFinite.size());
+  for (std::size_t i = 0; i < ofOne.notFinite.size(); ++i)
+    EXPECT_FALSE(ofOne.notFinite[i] < ofSeveral.notFinite[i] ||
+                 ofSeveral.notFinite[i] < ofOne.notFinite[i]);
+}
+
+TEST(SeveralDevices, TellHowFarTheyAre) {
+  RenderOptions options = small();
+  options.maxDepth = 1;
+  options.threads = 1;
+  double last = 0;
+  unsigned calls = 0;
+  bool isAscending = true;
+  options.progress = [&](double share) {
+    isAscending &= share >= last && share <= 1;
+    last = share;
+    ++calls;
+  };
+  team(2, options).render();
+  EXPECT_TRUE(isAscending);
+  EXPECT_GT(calls, 2u);
+  EXPECT_GT(last, 0.3);
+}
+
+TEST(SeveralDevices, StopTogether) {
+  RenderOptions options = small();
+  options.width = 1000;
+  options.height = 1000;
+  options.maxDepth = 1;
+  options.threads = 1;
+  std::atomic<bool> cancel{false};
+  options.cancel = &cancel;
+  options.progress = [&](double share) { cancel = share > 0; };
+  options.keepsUnfinished = true;
+  RenderStatistics statistics;
+  const Image part = team(2, options).render(&statistics);
+  EXPECT_TRUE(statistics.isUnfinished);
+  EXPECT_GT(statistics.pixels, 0u);
+  EXPECT_LT(statistics.pixels, 1000000u);
+  EXPECT_EQ(part.at(999, 999)[2], 0.0f);
+}
+
+TEST(SeveralDevices, AFaultOfOneEndsAll) {
+  SeveralDevices several(
+      3,
+      [](std::size_t i, const RenderOptions &ofPart) {
+        const auto overflow = [](const RtslJob *job, std::uint32_t) {
+          __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+        };
+        return std::make_unique<HostMegakernel>(codeOf(i == 1 ? +overflow : paint), emptyScene(),
+                                                ofPart);
+      },
+      small());
+  EXPECT_THROW(several.render(), Error);
+}
