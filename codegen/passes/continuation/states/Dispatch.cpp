@@ -15,7 +15,6 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Separate.h"
-#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/FirstStates.h"
 #include "codegen/passes/continuation/states/KeptState.h"
@@ -51,20 +50,6 @@ std::uint32_t payloadsOf(const RayGraph &rays) {
 /// wait for them: the entry points, then the beginnings of methods, and so on.
 std::int64_t turnOf(FuncOp state) {
   return ir::attr::entry.isOn(state) ? -1 : ir::attr::state.of(state).getInt();
-}
-
-bool sendsRay(FuncOp state) {
-  return ir::anyOperation(state, [](mlir::Operation *op) {
-    auto next = llvm::dyn_cast<ir::NextOp>(op);
-    return next && (next.getTransition() == ir::Transition::Trace ||
-                    next.getTransition() == ir::Transition::Last);
-  });
-}
-
-/// Whether rays only replace each other, until one ends: no state that follows a trace sends one.
-bool raysReplace(const RayGraph &rays, llvm::ArrayRef<FuncOp> states) {
-  return llvm::any_of(rays.kinds, [](const RayGraph::Kind &kind) { return kind.sentLast != 0; }) &&
-         llvm::none_of(states, [](FuncOp state) { return turnOf(state) > 0 && sendsRay(state); });
 }
 
 class Dispatcher {
@@ -246,13 +231,7 @@ mlir::LogicalResult Dispatcher::run() {
   dropUncalled();
   const RayGraph rays = findRays(module);
   const KeptState kept = findKeptState(module);
-  std::map<std::string, std::string> entries; // the states that they begin with
-  for (llvm::StringRef slot : machineSlots())
-    entries[ir::slotSymbol(slot)];
-  for (FuncOp state : module.getOps<FuncOp>())
-    if (auto entry = ir::attr::entry.of(state); entry && ir::attr::state.isOn(state))
-      entries[entry.getValue().str()] = state.getSymName().str();
-  const llvm::StringMap<std::string> replacements = eraseJumpingEntries(module);
+  const std::map<std::string, std::string> firstStates = findFirstStates(module);
   for (FuncOp state : module.getOps<FuncOp>()) {
     if (!ir::attr::state.isOn(state))
       continue;
@@ -269,7 +248,6 @@ mlir::LogicalResult Dispatcher::run() {
   FuncOp firstState = makeFirstState(module, states, numbers);
   ir::insertForRuntime(symbols, firstState);
   ir::attr::exported.set(firstState);
-  const bool replace = raysReplace(rays, states);
   areas = frameAreas(module);
   for (FuncOp state : states) {
     state.walk([&](ir::EnterOp) { hasCalls = true; });
@@ -286,11 +264,8 @@ mlir::LogicalResult Dispatcher::run() {
   makeFrameSize();
   makeConstant("rtsl_calls", hasCalls);
   const auto markAsFact = [&](FuncOp function) { ir::attr::factOfScene.set(function); };
-  for (const auto &[entry, state] : entries) {
-    const auto replacement = replacements.find(state);
-    const llvm::StringRef first = replacement == replacements.end() ? state : replacement->second;
-    markAsFact(makeConstant(entry + "_first", numbers.lookup(first)));
-  }
+  for (const auto &[entry, state] : firstStates)
+    markAsFact(makeConstant(entry + "_first", numbers.lookup(state)));
   llvm::SmallVector<std::uint32_t> sent, sentLast;
   for (const RayGraph::Kind &kind : rays.kinds) {
     sent.push_back(kind.sent);
@@ -303,7 +278,7 @@ mlir::LogicalResult Dispatcher::run() {
              high = static_cast<std::uint32_t>(kept.fields >> 32);
   markAsFact(makeTable("rtsl_rays_kept", {low, high, kept.attributes, payloadsOf(rays)}));
   markAsFact(makeConstant("rtsl_rays_wait_once", rays.waitsOnce));
-  markAsFact(makeConstant("rtsl_rays_replace", replace));
+  markAsFact(makeConstant("rtsl_rays_replace", rays.replace));
   return mlir::success();
 }
 

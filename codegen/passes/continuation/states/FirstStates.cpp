@@ -9,6 +9,8 @@
 #include "codegen/passes/continuation/states/FirstStates.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Slots.h"
+#include "codegen/passes/continuation/common/TracedFunctions.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -39,6 +41,13 @@ llvm::StringRef jumpsTo(mlir::Block &block) {
 
 bool isEntry(FuncOp function) {
   return ir::attr::state.isOn(function) && ir::attr::entry.isOn(function);
+}
+
+/// The state that an entry's state jumps to whatever the object is, if nothing else jumps to it.
+llvm::StringRef onlyTarget(FuncOp state) {
+  const bool isUsed = !mlir::SymbolTable::symbolKnownUseEmpty(state, state->getParentOp());
+  return isUsed || !state.getBody().hasOneBlock() ? llvm::StringRef()
+                                                  : jumpsTo(state.getBody().front());
 }
 
 /// Whether a path through the state does nothing but jump.
@@ -122,19 +131,21 @@ FuncOp makeChoice(FuncOp state, const StateNumbers &numbers) {
 
 } // namespace
 
-llvm::StringMap<std::string> eraseJumpingEntries(mlir::ModuleOp module) {
-  llvm::StringMap<std::string> targets;
+std::map<std::string, std::string> findFirstStates(mlir::ModuleOp module) {
+  std::map<std::string, std::string> first;
+  for (llvm::StringRef slot : machineSlots())
+    first[ir::slotSymbol(slot)];
   for (FuncOp state : llvm::make_early_inc_range(module.getOps<FuncOp>())) {
-    if (!isEntry(state) || !state.getBody().hasOneBlock() ||
-        !mlir::SymbolTable::symbolKnownUseEmpty(state, module))
+    if (!isEntry(state))
       continue;
-    const llvm::StringRef target = jumpsTo(state.getBody().front());
-    if (target.empty())
-      continue;
-    targets[state.getSymName()] = target.str();
-    state.erase();
+    std::string &name = first[ir::attr::entry.of(state).getValue().str()];
+    name = onlyTarget(state).str();
+    if (name.empty())
+      name = state.getSymName().str();
+    else
+      state.erase();
   }
-  return targets;
+  return first;
 }
 
 FuncOp makeFirstState(mlir::ModuleOp module, llvm::ArrayRef<FuncOp> states,

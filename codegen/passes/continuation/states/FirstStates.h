@@ -9,15 +9,15 @@
 
 #include "codegen/passes/continuation/states/PassFrame.h"
 
-#include "llvm/ADT/StringMap.h"
-
+#include <map>
 #include <string>
 
 namespace rtsl::continuation {
 
-/// Erases the states of entry points that jump to another state whatever the object is. Returns the
-/// names of the states that take their place, by the names of the erased ones.
-llvm::StringMap<std::string> eraseJumpingEntries(mlir::ModuleOp module);
+/// The names of the states in which entry points begin, by the entry points' symbols; empty for a
+/// slot of the machine that has no state. Erases the states of entry points that jump to another
+/// state whatever the object is: they begin in that one.
+std::map<std::string, std::string> findFirstStates(mlir::ModuleOp module);
 
 /// Appends `@rtsl_first_state(%state: i32, %object) -> i32`: where the state of an entry point only
 /// jumps for this object, the number of the state that it jumps to, otherwise `%state`.

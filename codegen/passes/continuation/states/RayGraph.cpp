@@ -2,6 +2,7 @@
 #include "codegen/passes/continuation/states/RayGraph.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
@@ -29,6 +30,7 @@ private:
   void findCallers();
   void addRays(mlir::func::FuncOp state);
   bool waitsOnce();
+  bool raysReplace();
 
   mlir::ModuleOp module;
   RayGraph graph;
@@ -147,6 +149,22 @@ bool Finder::waitsOnce() {
   return true;
 }
 
+bool sends(mlir::func::FuncOp state) {
+  return ir::anyOperation(
+      state, [](mlir::Operation *op) { return llvm::isa<ir::SpawnOp, ir::SpawnPayloadOp>(op); });
+}
+
+bool Finder::raysReplace() {
+  auto followsTrace = [](mlir::func::FuncOp state) {
+    return !ir::attr::entry.isOn(state) && ir::attr::state.of(state).getInt() > 0;
+  };
+  return llvm::any_of(graph.kinds,
+                      [](const RayGraph::Kind &kind) { return kind.sentLast != 0; }) &&
+         llvm::none_of(module.getOps<mlir::func::FuncOp>(), [&](mlir::func::FuncOp state) {
+           return isState(state) && followsTrace(state) && sends(state);
+         });
+}
+
 RayGraph Finder::run() {
   numberPayloads();
   for (auto state : module.getOps<mlir::func::FuncOp>())
@@ -162,6 +180,7 @@ RayGraph Finder::run() {
     if (isState(state))
       addRays(state);
   graph.waitsOnce = waitsOnce();
+  graph.replace = raysReplace();
   return graph;
 }
 

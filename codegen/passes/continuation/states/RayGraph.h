@@ -27,6 +27,8 @@ struct RayGraph {
   /// Only `generate` waits for rays, or nothing does, and no other method has a frame: one level is
   /// enough.
   bool waitsOnce = false;
+  /// Rays only replace each other, until one ends: no state that follows a trace sends one.
+  bool replace = false;
 
   /// The exact number of levels that a sample may need.
   std::uint32_t levels(std::uint32_t maxDepth) const;
