@@ -375,20 +375,6 @@ Num abs(Num a) {
   return a.isFloat() ? apply<math::AbsFOp>(a) : select(less(a, 0.0), -a, a);
 }
 
-Num all(Num a) {
-  Num result = a[0];
-  for (unsigned i = 1; i < a.count(); ++i)
-    result = result & a[i];
-  return result;
-}
-
-Num any(Num a) {
-  Num result = a[0];
-  for (unsigned i = 1; i < a.count(); ++i)
-    result = result | a[i];
-  return result;
-}
-
 template <typename Op>
 static Num convert(Num a, mlir::Type scalar) {
   Value operand = a;

@@ -255,9 +255,6 @@ Num ceil(Num a);
 Num trunc(Num a);
 Num roundEven(Num a); // halves to the even neighbour
 Num abs(Num a);       // integers too; the most negative integer stays
-/// All components of a vector of bools.
-Num all(Num a);
-Num any(Num a);
 
 Num toInt(Num a);    // f32 -> i32: truncates and saturates, NaN gives 0
 Num toFloat(Num a);  // signed

@@ -1,5 +1,6 @@
 //===- LowerOperators.cpp - unary and binary operators, conversions -------===//
 #include "codegen/lower/Lowering.h"
+#include "language/formulas/Comparison.h"
 #include "language/formulas/Matrices.h"
 
 namespace rtsl::lowering {
@@ -160,9 +161,9 @@ Num FunctionLowering::equality(const Parts &left, const Parts &right, const Type
         nullptr);
     return num(emitter.load(same));
   }
-  Num result = all(equal(num(left[0]), num(right[0])));
+  Num result = formulas::all(equal(num(left[0]), num(right[0])));
   for (std::size_t i = 1; i < left.size(); ++i)
-    result = result & all(equal(num(left[i]), num(right[i])));
+    result = result & formulas::all(equal(num(left[i]), num(right[i])));
   return result;
 }
 

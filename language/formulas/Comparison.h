@@ -1,4 +1,4 @@
-//===- Comparison.h - lessThan and the like -------------------------------===//
+//===- Comparison.h - comparisons of vectors, and of their results --------===//
 #pragma once
 
 #include "language/formulas/Operations.h"
@@ -24,6 +24,21 @@ Number greaterThanEqual(Number x, Number y, IntegerSign sign) {
 template <typename Number>
 Number logicalNot(Number x) {
   return !x;
+}
+
+template <typename Number>
+Number all(Number x) {
+  Number result = x[0];
+  for (unsigned i = 1; i < x.count(); ++i)
+    result = result & x[i];
+  return result;
+}
+template <typename Number>
+Number any(Number x) {
+  Number result = x[0];
+  for (unsigned i = 1; i < x.count(); ++i)
+    result = result | x[i];
+  return result;
 }
 
 } // namespace rtsl::formulas

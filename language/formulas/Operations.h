@@ -21,7 +21,6 @@
 //   lessUnsigned(x, y)                 ints
 //   select(condition, x, y)            condition ? x : y, by component where it is a vector
 //   fma, sqrt, floor, ceil, trunc, roundEven, abs
-//   all, any                           of the components of bools
 //   toInt, toFloat                     truncates and saturates, NaN gives 0; from a signed int
 //   fromBool                           0 or 1, an int
 //   multiplyExtended(x, y, sign, high, low)   the 64 bits of the product of two ints

@@ -253,19 +253,6 @@ Number abs(Number a) {
   });
 }
 
-Number all(Number a) {
-  Number result = a[0];
-  for (unsigned i = 1; i < a.count(); ++i)
-    result = result & a[i];
-  return result;
-}
-Number any(Number a) {
-  Number result = a[0];
-  for (unsigned i = 1; i < a.count(); ++i)
-    result = result | a[i];
-  return result;
-}
-
 Number toInt(Number a) {
   return each(Kind::Int, a,
               [](Scalar x) { return convertScalar(x, TypeKind::Float, TypeKind::Int); });

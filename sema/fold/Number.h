@@ -93,8 +93,7 @@ Number ceil(Number a);
 Number trunc(Number a);
 Number roundEven(Number a);
 Number abs(Number a);
-Number all(Number a);
-Number any(Number a);
+
 Number toInt(Number a);
 Number toFloat(Number a);
 Number fromBool(Number a);
