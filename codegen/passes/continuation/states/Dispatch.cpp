@@ -15,6 +15,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Separate.h"
+#include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/states/FirstStates.h"
 #include "codegen/passes/continuation/states/KeptState.h"
