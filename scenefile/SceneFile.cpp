@@ -479,6 +479,14 @@ private:
     throw Error(message::noSuchLightSampler(value.string), value.place());
   }
 
+  void readEditable(const JsonValue &value) {
+    expect(value, Kind::Array, "`editable`");
+    for (const JsonValue &name : value.elements) {
+      expect(name, Kind::String, "a name of `editable`");
+      scene.editable.push_back({name.string, name.place()});
+    }
+  }
+
   void readPart(const JsonValue &part, GeometryDescription &geometry) const {
     expect(part, Kind::String, "`part`");
     for (const MeshPath &key : geometry.mesh)
@@ -519,12 +527,15 @@ private:
 
   void readRender(const JsonValue &value) {
     expect(value, Kind::Object, "`render`");
-    checkKeys(value, {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler"},
+    checkKeys(value,
+              {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
               "`render`");
     if (const JsonValue *shutter = value.find("shutter"))
       readShutter(*shutter);
     if (const JsonValue *sampler = value.find("lightSampler"))
       readLightSampler(*sampler);
+    if (const JsonValue *editable = value.find("editable"))
+      readEditable(*editable);
     RenderSettings &render = scene.render;
     if (const JsonValue *engine = value.find("engine")) {
       expect(*engine, Kind::String, "`engine`");

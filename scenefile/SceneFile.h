@@ -184,6 +184,8 @@ struct SceneDescription {
   RenderSettings render;
   std::optional<std::array<float, 2>> shutter; // `render.shutter`: when it opens and closes
   runtime::LampChoice lampChoice = runtime::LampChoice::Automatic; // `render.lightSampler`
+  /// `render.editable`: classes, or members of a class as "Class.member".
+  std::vector<LocatedName> editable;
   std::vector<Warning> warnings;
   std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes

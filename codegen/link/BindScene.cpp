@@ -89,6 +89,18 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
   return common;
 }
 
+/// Whether the scene names the member, or its class or one derived from it, as editable.
+bool isEditable(const LinkRequest &request, ir::ClassOp record, ir::MemberDeclOp member,
+                const Objects &objects) {
+  const auto names = [&](llvm::StringRef className) {
+    const auto found = request.editable.find(className.str());
+    return found != request.editable.end() &&
+           (found->second.empty() || found->second.count(member.getSymName().str()));
+  };
+  return names(record.getSymName()) ||
+         llvm::any_of(objects, [&](const auto *object) { return names(object->className); });
+}
+
 /// The first location that reads a member, by class and name.
 using Readers =
     std::map<std::pair<std::string, std::string>, std::pair<std::string, ir::SourcePlace>>;
@@ -175,6 +187,11 @@ Finding describe(ir::ClassOp record, ir::MemberDeclOp member, std::size_t object
     finding.isNeeded = true;
     finding.reason = llvm::isa<ir::BufferType>(type) ? "read from the record: a buffer"
                                                      : "read from the record: a reference";
+    return finding;
+  }
+  if (ir::attr::editable.isOn(member)) {
+    finding.isNeeded = true;
+    finding.reason = "read from the record: editable";
     return finding;
   }
   const std::string value = words.empty() ? std::string() : valueText(member.getType(), words);
@@ -294,12 +311,14 @@ void bindScene(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRe
       if (member.isScratch())
         continue;
       std::vector<std::int32_t> words = commonWords(classes, member, objects->second);
+      if (isEditable(request, record, member, objects->second))
+        ir::attr::editable.set(member);
       if (findings)
         findings->push_back(describe(record, member, objects->second.size(), words, readers));
       const Item item = itemOf(record.getSymName().str(), member.getType());
       if (request.without.count({item, (record.getSymName() + "." + member.getSymName()).str()}))
         words = commonWords(classes, member, llvm::ArrayRef(objects->second).take_front());
-      if (!words.empty() && !keep.has(item))
+      if (!words.empty() && !keep.has(item) && !ir::attr::editable.isOn(member))
         ir::attr::bound.set(member, builder.getDenseI32ArrayAttr(words));
     }
   }

@@ -8,12 +8,16 @@
 #include "codegen/link/BindTables.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/ClassTable.h"
+#include "codegen/ir/Layout.h"
+#include "codegen/ir/Rtsl.h"
 #include "runtime/device/ray/ListedBox.h"
 
 #include "llvm/ADT/STLExtras.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace rtsl {
@@ -30,6 +34,43 @@ std::vector<std::int32_t> wordsOf(const void *bytes, std::size_t size) {
   std::vector<std::int32_t> words(size / 4);
   std::memcpy(words.data(), bytes, words.size() * 4);
   return words;
+}
+
+/// Calls `visit(object, member, offset)` for each editable member of each object; bytes from the
+/// start of its record.
+template <typename Visit>
+void forEachEditable(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const Visit &visit) {
+  const ir::ClassTable classes(ir);
+  const mlir::SymbolTable symbols(ir);
+  for (const runtime::SceneFacts::Object &object : scene.objects)
+    for (auto at = symbols.lookup<ir::ClassOp>(object.className); at;
+         at = at.getBase() ? symbols.lookup<ir::ClassOp>(*at.getBase()) : ir::ClassOp())
+      for (auto member : at.getBody().getOps<ir::MemberDeclOp>())
+        if (ir::attr::editable.isOn(member))
+          visit(object, member, *classes.find(object.className, member.getSymName())->offset);
+}
+
+/// The records of all objects; members that are editable are zero.
+std::vector<std::int32_t> recordsWithoutEditable(mlir::ModuleOp ir,
+                                                 const runtime::SceneFacts &scene) {
+  std::vector<std::int32_t> words = wordsOf(scene.records, scene.recordBytes);
+  forEachEditable(ir, scene,
+                  [&](const auto &object, ir::MemberDeclOp member, std::uint32_t offset) {
+                    const auto begin = words.begin() + (object.record - scene.records + offset) / 4;
+                    std::fill(begin, begin + ir::sizeInBytes(member.getType()) / 4, 0);
+                  });
+  return words;
+}
+
+/// Whether the boxes of primitives may change without new code.
+bool hasEditablePrimitives(mlir::ModuleOp ir, const runtime::SceneFacts &scene) {
+  bool found = false;
+  forEachEditable(ir, scene, [&](const auto &object, ir::MemberDeclOp, std::uint32_t) {
+    found |= llvm::any_of(scene.instances, [&](const RtslInstance &instance) {
+      return object.record == scene.records + instance.primitive;
+    });
+  });
+  return found;
 }
 
 /// Is each instance one primitive, and are they few enough for a list?
@@ -60,12 +101,14 @@ std::string reasonForTree(std::size_t instances) {
                                 : "some instance is a mesh, or holds several primitives";
 }
 
-Finding describe(const runtime::SceneFacts &scene) {
-  const bool needsTree = !isListed(scene.instances);
+Finding describe(const runtime::SceneFacts &scene, bool isEditable) {
+  const bool isList = isListed(scene.instances) && !isEditable;
   return {Item::Tree,
           "tree",
-          needsTree,
-          needsTree ? reasonForTree(scene.instanceCount) : reasonForList(scene.instances.size()),
+          !isList,
+          isList       ? reasonForList(scene.instances.size())
+          : isEditable ? "some primitive is editable: boxes are not in the code"
+                       : reasonForTree(scene.instanceCount),
           {}};
 }
 
@@ -73,15 +116,15 @@ Finding describe(const runtime::SceneFacts &scene) {
 
 void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
                 Findings *findings) {
+  const bool isEditable = hasEditablePrimitives(ir, scene);
   if (findings)
-    findings->push_back(describe(scene));
+    findings->push_back(describe(scene, isEditable));
   if (request.keep.has(Item::Parameters))
     return;
   mlir::Builder builder(ir.getContext());
   if (scene.records && !scene.hasBuffers && scene.recordBytes <= mostRecordBytes)
-    ir::attr::records.set(ir,
-                          builder.getDenseI32ArrayAttr(wordsOf(scene.records, scene.recordBytes)));
-  if (scene.instances.empty())
+    ir::attr::records.set(ir, builder.getDenseI32ArrayAttr(recordsWithoutEditable(ir, scene)));
+  if (scene.instances.empty() || isEditable)
     return;
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
   ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));

@@ -99,7 +99,10 @@ void noteMemberOffsets(mlir::ModuleOp module) {
   mlir::Builder builder(module.getContext());
   module.walk([&](ir::MemberOp op) {
     llvm::StringRef className = llvm::cast<ir::RefType>(op.getObject().getType()).getClassName();
-    const uint32_t offset = *classes.find(className, op.getMember())->offset;
+    const auto *member = classes.find(className, op.getMember());
+    const uint32_t offset = *member->offset;
+    if (ir::attr::editable.isOn(member->declaration))
+      ir::attr::editable.set(op);
     ir::attr::offset.set(op, builder.getI32IntegerAttr(static_cast<int32_t>(offset)));
   });
 }

@@ -223,13 +223,17 @@ struct ConvertElement : ConvertOpToLLVMPattern<ir::ElementOp> {
   }
 };
 
-/// The address of the scene's records.
-Value recordsAddress(mlir::OpBuilder &builder, Location location) {
-  if (Value records = sceneRecords(builder, location))
-    return records;
+/// The address of the records that the launch has.
+Value launchRecords(mlir::OpBuilder &builder, Location location) {
   Value field = launchAddress(builder, location, offsetof(RtslLaunch, records));
   return LLVM::LoadOp::create(builder, location, field.getType(), field, alignof(void *), false,
                               false, /*isInvariant=*/true);
+}
+
+/// The address of the scene's records: of its table of constants, if the program has one.
+Value recordsAddress(mlir::OpBuilder &builder, Location location) {
+  Value table = sceneRecords(builder, location);
+  return table ? table : launchRecords(builder, location);
 }
 
 struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
@@ -238,7 +242,8 @@ struct ConvertMember : ConvertOpToLLVMPattern<ir::MemberOp> {
                                 ConversionPatternRewriter &rewriter) const override {
     const int64_t offset = ir::attr::offset.of(op).getInt();
     Location location = op.getLoc();
-    Value records = recordsAddress(rewriter, location);
+    Value records = ir::attr::editable.isOn(op) ? launchRecords(rewriter, location)
+                                                : recordsAddress(rewriter, location);
     Value record = indexedAddress(rewriter, location, records,
                                   widen(rewriter, location, adaptor.getObject()), 1);
     rewriter.replaceOp(op,

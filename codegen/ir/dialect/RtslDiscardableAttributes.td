@@ -244,6 +244,13 @@ def bound : DiscardableAttribute<"bound", DenseI32Array, ["rtsl.member_decl"]> {
   let readBy = "passes/BindMembers";
 }
 
+def editable
+    : DiscardableAttribute<"editable", Unit, ["rtsl.member_decl", "rtsl.member"]> {
+  let meaning = "its value may change without new code: never from the table of records";
+  let setBy = "link/BindScene, emit/ConvertToLlvm";
+  let readBy = "link/BindTables, emit/MemoryPatterns";
+}
+
 def offset : DiscardableAttribute<"offset", Integer, ["rtsl.member"]> {
   let meaning = "i32, bytes from the start of the record, for use without the class";
   let setBy = "emit/ConvertToLlvm";

@@ -113,6 +113,41 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
   }
 }
 
+/// "Class.member", or "Class" with an empty member.
+std::pair<std::string, std::string> editableName(const std::string &text) {
+  const std::size_t dot = text.find('.');
+  return {text.substr(0, dot), dot == std::string::npos ? "" : text.substr(dot + 1)};
+}
+
+/// Says which names of `render.editable` are not classes of the scene, or not their members.
+void refuseUnknownEditable(const scene::SceneDescription &description, const typed::Module &module,
+                           Messages &messages) {
+  for (const scene::LocatedName &name : description.editable) {
+    const auto [className, member] = editableName(name.text);
+    const SourceRange range = messages.rangeOf(name.place);
+    std::vector<std::string> names;
+    const typed::Class *found = module.findClass(className);
+    if (!found) {
+      for (const auto &one : module.classes)
+        names.push_back(one->name);
+      Diagnostic &diagnostic = messages.report(message::noSuchClass(className), range);
+      if (const std::string near = closestName(className, names); !near.empty())
+        diagnostic.note(fmt::format("did you mean `{}`?", near));
+      continue;
+    }
+    if (member.empty() && name.text == className)
+      continue;
+    for (const typed::Class *one = found; one; one = one->base)
+      for (const auto &own : one->members)
+        names.push_back(own->name);
+    if (std::find(names.begin(), names.end(), member) != names.end())
+      continue;
+    Diagnostic &diagnostic = messages.report(message::noSuchMember(className, member), range);
+    if (const std::string near = closestName(member, names); !near.empty())
+      diagnostic.note(fmt::format("did you mean `{}`?", near));
+  }
+}
+
 } // namespace
 
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
@@ -135,6 +170,8 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
   if (!messages.diagnostics.hasErrors())
     refuseUnknownClasses(description, *module, shaders.modules(), messages);
+  if (!messages.diagnostics.hasErrors())
+    refuseUnknownEditable(description, *module, messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
   if (filesRead) {
@@ -167,6 +204,15 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
                              {part.place.file, part.place.line, part.place.column}});
   request.givenMembers = scene::givenMembers(description);
   request.referredClasses = scene::referredClasses(description);
+  std::set<std::string> whole; // classes all of whose members are editable
+  for (const scene::LocatedName &name : description.editable) {
+    const auto [className, member] = editableName(name.text);
+    request.editable[className].insert(member);
+    if (member.empty())
+      whole.insert(className);
+  }
+  for (const std::string &className : whole)
+    request.editable[className].clear();
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;

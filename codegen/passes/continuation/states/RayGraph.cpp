@@ -158,8 +158,7 @@ bool Finder::raysReplace() {
   auto followsTrace = [](mlir::func::FuncOp state) {
     return !ir::attr::entry.isOn(state) && ir::attr::state.of(state).getInt() > 0;
   };
-  return llvm::any_of(graph.kinds,
-                      [](const RayGraph::Kind &kind) { return kind.sentLast != 0; }) &&
+  return llvm::any_of(graph.kinds, [](const RayGraph::Kind &kind) { return kind.sentLast != 0; }) &&
          llvm::none_of(module.getOps<mlir::func::FuncOp>(), [&](mlir::func::FuncOp state) {
            return isState(state) && followsTrace(state) && sends(state);
          });

@@ -21,7 +21,7 @@ class Eye : rt_RayGeneration {
   }
 };
 )" + materials,
-                {classes, {}, {}, {}, {}, true, runtime::Engine::Programs, features});
+                {classes, {}, {}, {}, {}, {}, true, runtime::Engine::Programs, features});
   EXPECT_TRUE(linked.succeeded);
   std::uint32_t how = ~0u;
   if (linked.succeeded)
@@ -120,7 +120,7 @@ struct Lost { float x; };
 class Eye : rt_RayGeneration {
   void generate() { Lost l = Lost(0.5); trace(vec3(0.0), vec3(1.0), 0.0, 1.0, l); rt_SampleColor = color(l.x); }
 };)",
-                {{"Eye"}, {}, {}, {}, {}, true, runtime::Engine::Programs});
+                {{"Eye"}, {}, {}, {}, {}, {}, true, runtime::Engine::Programs});
   EXPECT_TRUE(linked.succeeded);
   ASSERT_EQ(linked.diagnostics.all().size(), 1u) << renderText(linked.diagnostics, false);
   EXPECT_EQ(linked.diagnostics.all()[0].code, Code::rayTypeUnanswered);
@@ -147,7 +147,7 @@ class N : rt_Material {
   void closestHit(inout A a) { a.x = 2.0; }
   void closestHit(inout B b) { b.x = 3.0; }
 };)",
-                {{"Eye", "M", "N"}, {}, {}, {}, {}, true, runtime::Engine::Programs});
+                {{"Eye", "M", "N"}, {}, {}, {}, {}, {}, true, runtime::Engine::Programs});
   ASSERT_TRUE(linked.succeeded);
   EXPECT_EQ(linked.callees("rtsl_rt_Material_closestHit_payload"),
             (std::vector<std::string>{"dispatch.rt_Material.closestHit.A",
