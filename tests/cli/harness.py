@@ -74,9 +74,9 @@ def obey_permissions():
 
 
 class Case(unittest.TestCase):
-    # The level of optimisation of these commands where a test gives none; None: that of users, as in
-    # `make deep`. No picture depends on it, which tests/render and the conformance suite check, nor
-    # does what a program needs, and a rendering takes a half to a quarter of the time.
+    # The level of optimisation of these commands where a test gives none; None: that of users, as
+    # in `make deep`. No picture depends on it, which tests/render and the conformance suite check,
+    # nor does what a program needs, and a rendering takes a half to a quarter of the time.
     level = None if "RTSL_DEEP" in os.environ else "-O0"
     OPTIMISING = ("render", "run", "explain", "pack")
 
