@@ -107,6 +107,7 @@ class Case(unittest.TestCase):
         (None: any)."""
         if (
             self.level
+            and arguments[:1]
             and arguments[0] in self.OPTIMISING
             and not any(str(argument).startswith("-O") for argument in arguments)
         ):

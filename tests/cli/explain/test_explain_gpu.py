@@ -12,6 +12,8 @@ SCENE = EXAMPLES / "metal" / "scene.json"
 
 
 class ExplainGpu(Case):
+    level = None  # the figures are those of optimised code
+
     def test_by_the_driver(self):
         """Each state has a row, with the names of --lane-use."""
         text, _ = self.run_with_fake_driver([RTSLC, "explain", "--gpu", SCENE])

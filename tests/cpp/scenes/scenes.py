@@ -26,10 +26,17 @@ def sphere(center, radius, material):
     }
 
 
+def file_of(imported, folder):
+    """The file that a scene in the folder imports: by its path, or by the name of a module."""
+    if imported.endswith(".rtsl"):
+        return (folder / imported).resolve()
+    return pathlib.Path(source, "library", *imported.split(".")).with_suffix(".rtsl")
+
+
 def example(name):
     folder = pathlib.Path(source, "examples", name)
     scene = json.loads((folder / "scene.json").read_text())
-    scene["import"] = [str((folder / name).resolve()) for name in scene["import"]]
+    scene["import"] = [str(file_of(name, folder)) for name in scene["import"]]
     scene["render"].update(size=[64, 36], spp=4)
     return scene
 
@@ -422,8 +429,8 @@ SPACES = [
 
 # Scenes by the shaders that they share, and the options of both compilers.
 CASES = [
-    ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs")]),
-    ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal"), example("quadrics")]),
+    ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs"), example("quadrics")]),
+    ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal")]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True), late(), beyond()]),
