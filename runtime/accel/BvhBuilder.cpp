@@ -1,9 +1,9 @@
 #include "runtime/accel/BvhBuilder.h"
 
 #include "runtime/accel/TreeItems.h"
-#include "runtime/accel/build/BinaryTree.h"
-#include "runtime/accel/build/HostBuildDevice.h"
-#include "runtime/accel/build/WideTree.h"
+#include "runtime/accel/trees/BinaryTree.h"
+#include "runtime/accel/trees/HostBuildDevice.h"
+#include "runtime/accel/trees/WideTree.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "support/Parallel.h"
 

@@ -3,7 +3,7 @@
 
 #include "runtime/accel/TreeItems.h"
 #include "runtime/accel/TreeKind.h"
-#include "runtime/accel/build/ClusterTree.h"
+#include "runtime/accel/trees/ClusterTree.h"
 
 #include <cstdint>
 

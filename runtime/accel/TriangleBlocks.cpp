@@ -1,6 +1,6 @@
 #include "runtime/accel/TriangleBlocks.h"
 
-#include "runtime/accel/build/BoxRuns.h"
+#include "runtime/accel/trees/BoxRuns.h"
 #include "support/Parallel.h"
 
 #include <algorithm>

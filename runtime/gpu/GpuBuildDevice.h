@@ -1,7 +1,7 @@
 //===- GpuBuildDevice.h - builds trees on a CUDA device -------------------===//
 #pragma once
 
-#include "runtime/accel/build/ClusterTree.h"
+#include "runtime/accel/trees/ClusterTree.h"
 #include "runtime/gpu/CudaDevice.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "runtime/render/HostMegakernel.h"
 
-#include "runtime/accel/build/HostBuildDevice.h"
+#include "runtime/accel/trees/HostBuildDevice.h"
 #include "runtime/device/engines/SampleSums.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"

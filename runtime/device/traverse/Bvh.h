@@ -16,7 +16,7 @@
 namespace rtsl::device {
 
 /// No path from the root is longer, as the builder guarantees
-/// (runtime/accel/build/BinaryTree.h). Each step down pushes one entry at most.
+/// (runtime/accel/trees/BinaryTree.h). Each step down pushes one entry at most.
 constexpr int maxBvhDepth = 64;
 
 /// Items are put off if fewer than one in this many lanes would test them; and only if this many

@@ -1,5 +1,5 @@
 //===- BoxRunsTest.cpp ----------------------------------------------------===//
-#include "runtime/accel/build/BoxRuns.h"
+#include "runtime/accel/trees/BoxRuns.h"
 
 #include <gtest/gtest.h>
 

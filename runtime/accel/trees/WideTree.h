@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/accel/build/BinaryTree.h"
+#include "runtime/accel/trees/BinaryTree.h"
 #include "runtime/device/ray/Abi.h"
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 // hierarchies", 2007), with costs that count whole runs.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/accel/build/BoxRuns.h"
+#include "runtime/accel/trees/BoxRuns.h"
 
 #include "support/Parallel.h"
 

@@ -1,7 +1,7 @@
 //===- HostBuildDevice.h - builds trees on the CPU ------------------------===//
 #pragma once
 
-#include "runtime/accel/build/ClusterTree.h"
+#include "runtime/accel/trees/ClusterTree.h"
 
 namespace rtsl::runtime {
 

@@ -1,4 +1,4 @@
-#include "runtime/accel/build/WideTree.h"
+#include "runtime/accel/trees/WideTree.h"
 
 #include "runtime/device/trees/Children.h"
 #include "runtime/device/trees/Grid.h"

@@ -1,4 +1,4 @@
-#include "runtime/accel/build/HostBuildDevice.h"
+#include "runtime/accel/trees/HostBuildDevice.h"
 
 #include "runtime/device/trees/Clusters.h"
 #include "runtime/device/trees/Sort.h"

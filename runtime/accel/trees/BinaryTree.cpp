@@ -1,4 +1,4 @@
-#include "runtime/accel/build/BinaryTree.h"
+#include "runtime/accel/trees/BinaryTree.h"
 
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/trees/Bounds.h"

@@ -1,4 +1,4 @@
-#include "runtime/accel/build/ClusterTree.h"
+#include "runtime/accel/trees/ClusterTree.h"
 
 #include "runtime/device/trees/Clusters.h"
 #include "runtime/device/trees/Sort.h"
