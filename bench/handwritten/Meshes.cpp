@@ -6,6 +6,7 @@
 // Embree's.
 //
 //===----------------------------------------------------------------------===//
+#include "EmbreeRays.h"
 #include "Program.h"
 
 #include "runtime/device/ray/Random.h"
@@ -133,23 +134,6 @@ private:
   RTCDevice device = nullptr;
 };
 
-RTCRay embreeRay(vec3 origin, vec3 direction, float start, float end) {
-  RTCRay ray;
-  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tnear = start, ray.tfar = end;
-  ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
-  return ray;
-}
-
-bool isOccluded(const Scene &scene, vec3 from, vec3 direction, float distance) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = embreeRay(from, direction, epsilon, distance);
-  rtcOccluded1(scene.embree, &context, &ray);
-  return ray.tfar < 0;
-}
-
 /// What arrives of both lights, and of the ambient one. Random numbers are drawn as BallLight.rtsl
 /// of examples/glass draws them.
 vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 normal) {
@@ -166,7 +150,7 @@ vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 n
     const float squared = glm::dot(path, path), distance = std::sqrt(squared);
     const vec3 toLight = path * (1 / distance);
     const float cosine = glm::dot(normal, toLight);
-    if (cosine > 0 && !isOccluded(scene, point, toLight, distance))
+    if (cosine > 0 && !isOccluded(scene.embree, embreeRay(point, toLight, epsilon, distance)))
       sum += (cosine / squared) * ball.intensity;
   }
   return sum;

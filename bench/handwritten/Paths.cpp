@@ -6,6 +6,7 @@
 // writes a small path tracer on Embree: parallelograms are Embree's quads, and hits are Embree's.
 //
 //===----------------------------------------------------------------------===//
+#include "EmbreeRays.h"
 #include "Program.h"
 
 #include "runtime/device/ray/Random.h"
@@ -108,23 +109,6 @@ private:
   std::uint32_t dimension = 0;
 };
 
-RTCRay embreeRay(vec3 from, vec3 direction, float start, float end) {
-  RTCRay ray;
-  ray.org_x = from.x, ray.org_y = from.y, ray.org_z = from.z;
-  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tnear = start, ray.tfar = end;
-  ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
-  return ray;
-}
-
-bool isOccluded(const Scene &scene, vec3 from, vec3 direction, float distance) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = embreeRay(from, direction, epsilon, distance - epsilon);
-  rtcOccluded1(scene.embree, &context, &ray);
-  return ray.tfar < 0;
-}
-
 /// The power heuristic.
 float share(float density, float other) {
   const float ratio = other / density;
@@ -148,7 +132,8 @@ vec3 searched(const Scene &scene, vec3 point, vec3 normal, Dice &dice) {
   const float squared = glm::dot(path, path), distance = std::sqrt(squared);
   const vec3 toLamp = path / distance;
   const float cosine = glm::dot(normal, toLamp), ofLamp = std::abs(glm::dot(lamp.normal, toLamp));
-  if (cosine <= 0 || ofLamp == 0 || isOccluded(scene, point, toLamp, distance))
+  if (cosine <= 0 || ofLamp == 0 ||
+      isOccluded(scene.embree, embreeRay(point, toLamp, epsilon, distance - epsilon)))
     return vec3(0);
   const float density = squared / (ofLamp * lamp.area);
   return lamp.radiance * (cosine / pi / density * share(density, cosine / pi));

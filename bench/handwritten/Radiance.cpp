@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Radiance.h"
+#include "EmbreeRays.h"
 
 #include "runtime/device/ray/Random.h"
 
@@ -31,23 +32,6 @@ struct Ray {
 };
 
 vec3 radiance(const Scene &scene, const Picture &picture, const Ray &ray);
-
-RTCRay embreeRay(vec3 origin, vec3 direction, float start, float end) {
-  RTCRay ray;
-  ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-  ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-  ray.tnear = start, ray.tfar = end;
-  ray.time = 0, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
-  return ray;
-}
-
-bool isOccluded(const Scene &scene, vec3 from, vec3 direction, float distance) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = embreeRay(from, direction, epsilon, distance);
-  rtcOccluded1(scene.embree(), &context, &ray);
-  return ray.tfar < 0;
-}
 
 vec3 sky(vec3 direction) {
   const vec3 horizon(0.9f, 0.95f, 1), zenith(0.25f, 0.45f, 0.8f);
@@ -77,7 +61,7 @@ vec3 lambert(const Scene &scene, const Ray &ray, vec3 point, vec3 normal, vec3 a
     const float distance = std::sqrt(squared);
     const vec3 toLight = path * (1 / distance);
     const float cosine = glm::dot(normal, toLight);
-    if (cosine > 0 && !isOccluded(scene, point, toLight, distance))
+    if (cosine > 0 && !isOccluded(scene.embree(), embreeRay(point, toLight, epsilon, distance)))
       light += (cosine / squared) * ball.intensity;
   }
   return albedo * light;

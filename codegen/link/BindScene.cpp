@@ -93,9 +93,8 @@ std::vector<std::int32_t> commonWords(const ir::ClassTable &classes, ir::MemberD
 bool isEditable(const LinkRequest &request, ir::ClassOp record, ir::MemberDeclOp member,
                 const Objects &objects) {
   const auto names = [&](llvm::StringRef className) {
-    const auto found = request.editable.find(className.str());
-    return found != request.editable.end() &&
-           (found->second.empty() || found->second.count(member.getSymName().str()));
+    return request.editable.count(className.str()) ||
+           request.editable.count((className + "." + member.getSymName()).str());
   };
   return names(record.getSymName()) ||
          llvm::any_of(objects, [&](const auto *object) { return names(object->className); });

@@ -116,14 +116,17 @@ Finding describe(const runtime::SceneFacts &scene, bool isEditable) {
 
 void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
                 Findings *findings) {
-  const bool isEditable = hasEditablePrimitives(ir, scene);
+  const bool anyEditable = !request.editable.empty();
+  const bool isEditable = anyEditable && hasEditablePrimitives(ir, scene);
   if (findings)
     findings->push_back(describe(scene, isEditable));
   if (request.keep.has(Item::Parameters))
     return;
   mlir::Builder builder(ir.getContext());
   if (scene.records && !scene.hasBuffers && scene.recordBytes <= mostRecordBytes)
-    ir::attr::records.set(ir, builder.getDenseI32ArrayAttr(recordsWithoutEditable(ir, scene)));
+    ir::attr::records.set(
+        ir, builder.getDenseI32ArrayAttr(anyEditable ? recordsWithoutEditable(ir, scene)
+                                                     : wordsOf(scene.records, scene.recordBytes)));
   if (scene.instances.empty() || isEditable)
     return;
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);

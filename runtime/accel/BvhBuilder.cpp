@@ -52,10 +52,8 @@ namespace {
 /// Calls work(i) for all i below count, on threads.
 template <typename Work>
 void forAll(unsigned threads, std::size_t count, Work work) {
-  constexpr std::size_t atOnce = 1 << 14;
-  forEachInParallel(threads, (count + atOnce - 1) / atOnce, [&](std::size_t part) {
-    const std::size_t end = std::min(count, (part + 1) * atOnce);
-    for (std::size_t i = part * atOnce; i < end; ++i)
+  forRangesInParallel(threads, count, 1 << 14, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
       work(i);
   });
 }

@@ -113,38 +113,35 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
   }
 }
 
-/// "Class.member", or "Class" with an empty member.
-std::pair<std::string, std::string> editableName(const std::string &text) {
-  const std::size_t dot = text.find('.');
-  return {text.substr(0, dot), dot == std::string::npos ? "" : text.substr(dot + 1)};
+/// Reports a name that does not exist, with the one that is closest to it.
+void refuseName(const Message &message, const std::string &name,
+                const std::vector<std::string> &known, const SourceRange &range,
+                Messages &messages) {
+  Diagnostic &diagnostic = messages.report(message, range);
+  if (const std::string near = closestName(name, known); !near.empty())
+    diagnostic.note(fmt::format("did you mean `{}`?", near));
 }
 
 /// Says which names of `render.editable` are not classes of the scene, or not their members.
 void refuseUnknownEditable(const scene::SceneDescription &description, const typed::Module &module,
                            Messages &messages) {
   for (const scene::LocatedName &name : description.editable) {
-    const auto [className, member] = editableName(name.text);
+    const std::size_t dot = name.text.find('.');
+    const std::string className = name.text.substr(0, dot);
     const SourceRange range = messages.rangeOf(name.place);
-    std::vector<std::string> names;
-    const typed::Class *found = module.findClass(className);
-    if (!found) {
+    std::vector<std::string> known;
+    if (!module.findClass(className)) {
       for (const auto &one : module.classes)
-        names.push_back(one->name);
-      Diagnostic &diagnostic = messages.report(message::noSuchClass(className), range);
-      if (const std::string near = closestName(className, names); !near.empty())
-        diagnostic.note(fmt::format("did you mean `{}`?", near));
-      continue;
+        known.push_back(one->name);
+      refuseName(message::noSuchClass(className), className, known, range, messages);
+    } else if (dot != std::string::npos) {
+      const std::string member = name.text.substr(dot + 1);
+      for (const typed::Class *one = module.findClass(className); one; one = one->base)
+        for (const auto &own : one->members)
+          known.push_back(own->name);
+      if (std::find(known.begin(), known.end(), member) == known.end())
+        refuseName(message::noSuchMember(className, member), member, known, range, messages);
     }
-    if (member.empty() && name.text == className)
-      continue;
-    for (const typed::Class *one = found; one; one = one->base)
-      for (const auto &own : one->members)
-        names.push_back(own->name);
-    if (std::find(names.begin(), names.end(), member) != names.end())
-      continue;
-    Diagnostic &diagnostic = messages.report(message::noSuchMember(className, member), range);
-    if (const std::string near = closestName(member, names); !near.empty())
-      diagnostic.note(fmt::format("did you mean `{}`?", near));
   }
 }
 
@@ -204,15 +201,8 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
                              {part.place.file, part.place.line, part.place.column}});
   request.givenMembers = scene::givenMembers(description);
   request.referredClasses = scene::referredClasses(description);
-  std::set<std::string> whole; // classes all of whose members are editable
-  for (const scene::LocatedName &name : description.editable) {
-    const auto [className, member] = editableName(name.text);
-    request.editable[className].insert(member);
-    if (member.empty())
-      whole.insert(className);
-  }
-  for (const std::string &className : whole)
-    request.editable[className].clear();
+  for (const scene::LocatedName &name : description.editable)
+    request.editable.insert(name.text);
   request.engine = description.render.engine;
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;
