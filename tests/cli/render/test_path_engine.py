@@ -316,13 +316,14 @@ class ClosedForms(PathCase):
                             self.assertAlmostEqual(one, other, delta=2e-3 * other)
 
     def test_densities_of_0_absorb(self):
-        """A material whose `sampleBSDF` writes a density of 0 sends out what shines, and no NaN."""
+        """A material whose `sampleBSDF` writes a density of 0, and no value, sends out what shines,
+        and no NaN."""
         self.write(
             "shaders.rtsl",
             SHADERS
             + """
 class Absorbs : Own {
-  void sampleBSDF() { rt_LightDirection = normal(); rt_BSDFValue = color(1.0); rt_PDF = 0.0; }
+  void sampleBSDF() { rt_LightDirection = normal(); rt_BSDFValue = color(0.0); rt_PDF = 0.0; }
 };
 """,
         )
@@ -377,6 +378,33 @@ class Below : Own {
             messages,
             "W2800.*`sampleBSDF` of `Below` wrote negative values for [0-9]+ of 512 directions",
         )
+
+    def test_values_without_a_density_are_left_out(self):
+        """A BSDF with a value for half of the directions that it draws with a density of 0: the
+        picture is that of the others, and the message says which class it was, with the line of the
+        engine that found it."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Lost : Own {
+  void sampleBSDF() {
+    rt_LightDirection = normal();
+    rt_PDF = 0.0;
+    rt_BSDFValue = color(rand() < 0.5 ? 1.0 : 0.0);
+  }
+};
+""",
+        )
+        self.scene([(BALL, {"class": "Lost", "albedo": 0, "glow": 0.25})], spp=16, depth=2)
+        for engine in ("path", "volume"):
+            self.assert_gray(0.25, 1e-6, "--engine", engine)
+            _, messages = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--engine", engine)
+            self.assertRegex(messages, "W2865.*were infinite or not a number", engine)
+            self.assertIn("rt_BSDFValue / rt_PDF", messages, engine)
+            self.assertRegex(
+                messages, "W2800.*`sampleBSDF` of `Lost` drew [0-9]+ of 512 directions", engine
+            )
 
     def test_check_tries_the_methods_of_materials(self):
         """Values below 0, values that are no numbers, and directions without a density."""
