@@ -165,6 +165,14 @@ LIGHT_SCENES = {
     },
     "DiskLight": {"center": [2, 2.5, 1], "normal": [-2, -2.5, -1], "radiance": [6, 6, 6]},
     "SphereLight": {"center": [2, 3, 2], "radiance": [18, 18, 18]},
+    "MeshLight": {
+        "vertices": [[-1, 2, -1], [1, 2, -1], [1, 2, 1], [-1, 2, 1], [0, 3, 0]],
+        "triangles": [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+        "radiance": [8, 8, 8],
+        "isTwoSided": True,
+    },
+    "SunLight": {"toSun": [3, 1, 2], "scale": 0.06},
+    "SkyLight": {"toSun": [3, 1, 2]},
     "EnvironmentLight": {
         "zenith": [0.5, 0.7, 1],
         "horizon": [0.9, 0.8, 0.7],
@@ -492,7 +500,7 @@ def main():
         if wanted and name not in wanted:
             continue
         level = ["-O0"] if options else []  # no picture depends on it
-        if name == "EnvironmentLight":  # all of its light is chosen at random
+        if name in ("EnvironmentLight", "SkyLight"):  # all of its light is chosen at random
             description["render"]["spp"] = 1024
             level = []
         file = folder / f"{name}.json"

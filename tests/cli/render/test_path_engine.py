@@ -119,22 +119,21 @@ class ClosedForms(PathCase):
         a = 1 / math.sqrt(2)
         factor = 4 / (2 * math.pi) * 2 * a * math.atan(a)
         corner, side1, side2 = [-1, 1, -1], [2, 0, 0], [0, 0, 2]
-        self.scene(
-            [(FLOOR, {"class": "Own", "albedo": 0.5})],
-            camera="Down",
-            spp=256,
-            lights=[
-                {
-                    "class": "RectangleLight",
-                    "corner": corner,
-                    "side1": side1,
-                    "side2": side2,
-                    "radiance": 2,
-                    "isTwoSided": True,
-                }
-            ],
-        )
-        self.assert_gray(0.5 * 2 * factor, 0.01)
+        vertices = [corner, [1, 1, -1], [1, 1, 1], [-1, 1, 1], [0.5, 1, -0.5]]
+        triangles = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]  # of different sizes
+        for light in (
+            {"class": "RectangleLight", "corner": corner, "side1": side1, "side2": side2},
+            {"class": "MeshLight", "vertices": vertices, "triangles": triangles},
+            {"class": "MeshLight", "vertices": [vertices[i] for three in triangles for i in three]},
+        ):
+            with self.subTest(light=light):
+                self.scene(
+                    [(FLOOR, {"class": "Own", "albedo": 0.5})],
+                    camera="Down",
+                    spp=256,
+                    lights=[{**light, "radiance": 2, "isTwoSided": True}],
+                )
+                self.assert_gray(0.5 * 2 * factor, 0.01)
         lamp = {"class": "Emitter", "radiance": 2, "isTwoSided": True}
         square = {"class": "Parallelogram", "constructor": [corner, side1, side2]}
         self.scene(
@@ -168,6 +167,53 @@ class ClosedForms(PathCase):
                         root="lamp",
                     )
                     self.assert_gray(0.5 * 2 * factor, 0.01)
+
+    def test_meshes_that_send_out_nothing(self):
+        """One without triangles, and one whose triangles have no area."""
+        for given in ({}, {"vertices": [[0, 1, 0], [1, 1, 0], [3, 1, 0]]}):
+            self.scene(
+                [(FLOOR, {"class": "Own", "albedo": 0.5})],
+                camera="Down",
+                spp=1,
+                lights=[{"class": "MeshLight", **given}],
+                background=0.25,
+            )
+            self.assert_gray(0.5 * 0.25, 1e-6)
+
+    def test_the_sky_however_it_is_found(self):
+        """As a light, and as the background that the floor's own directions meet."""
+        sky = {"toSun": [0.4, 0.5, 0], "turbidity": 4, "scale": 0.2}
+        floor = [(FLOOR, {"class": "Own", "albedo": 0.5})]
+        self.scene(floor, camera="Down", spp=256, lights=[{"class": "SkyLight", **sky}])
+        found = self.mean()
+        self.write("sky.rtsl", "import std.backgrounds;\nclass Sky : DaylightSky {};\n")
+        scene = json.loads(pathlib.Path(self.folder, "scene.json").read_text())
+        scene["import"].append("std.backgrounds")
+        del scene["lights"]
+        scene["background"] = {"class": "DaylightSky", **sky}
+        self.write("scene.json", json.dumps(scene))
+        for one, other in zip(found, self.mean()):
+            self.assertAlmostEqual(one, other, delta=0.02 * other)
+
+    def test_the_sun_fades_as_its_way_through_the_air_gets_longer(self):
+        """By Beer's law, and blue fades most."""
+
+        def lit(angle):
+            """The optical mass (Kasten 1965), and the logarithms of the sun's light there."""
+            cosine = math.cos(math.radians(angle))
+            sun = {"class": "SunLight", "toSun": [math.sin(math.radians(angle)), cosine, 0]}
+            floor = [(FLOOR, {"class": "Own", "albedo": 1})]
+            self.scene(floor, camera="Down", spp=1, lights=[{**sun, "angle": 0}])
+            mass = 1 / (cosine + 0.15 * (93.885 - angle) ** -1.253)
+            return mass, [math.log(c / cosine) for c in self.mean()]
+
+        (mass0, light0), (mass1, light1), (mass2, light2) = lit(0), lit(60), lit(80)
+        slopes = [(b - a) / (mass1 - mass0) for a, b in zip(light0, light1)]
+        for slope, a, b in zip(slopes, light1, light2):
+            self.assertAlmostEqual((b - a) / (mass2 - mass1), slope, delta=1e-3 * abs(slope))
+        self.assertLess(slopes[2], slopes[1])
+        self.assertLess(slopes[1], slopes[0])
+        self.assertLess(slopes[0], 0)
 
     def test_a_lamp_among_many(self):
         """Lamps are chosen by their power: of a thousand only the bright one matters, and it is
