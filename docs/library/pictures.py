@@ -199,6 +199,7 @@ TEXTURES["ImageChannel"] = {
     "channel": 1,
 }
 TEXTURES["Threshold"] = {"pattern": {"class": "Noise", "scale": 4}}
+TEXTURES["ExponentRoughness"] = {"pattern": {"class": "Noise", "scale": 4}, "exponent": 30}
 NORMALS = {
     "file": str(ROOT / "examples/gltf/still-life.gltf"),
     "part": "images.1",

@@ -41,7 +41,7 @@ public:
     illumination = int(number("illum", 0, 10).value_or(2));
     metallic = number("Pm", 0, 1);
     for (const Statement &statement : material.statements)
-      if (!isKnown(statement.keyword) && !(statement.keyword == "map_Ks" && isMirror()))
+      if (!isKnown(statement.keyword) && !isOfHighlights(statement.keyword))
         warn(statement, nameOf(statement));
     JsonValue made = isRefracting() ? dielectric() : isThinGlass() ? pane() : surface();
     return covered(withRelief(std::move(made)));
@@ -54,6 +54,13 @@ private:
         "Tr",   "illum", "map_Kd", "map_Ke", "map_d", "map_Bump", "map_bump", "bump",
         "norm", "Pr",    "Pm",     "Pc",     "Pcr",   "Ps",       "map_Pr",   "map_Pm"};
     return std::find(known.begin(), known.end(), keyword) != known.end();
+  }
+
+  /// Is it a map of the strength or of the size of highlights, which this material has?
+  bool isOfHighlights(const std::string &keyword) const {
+    if (isRefracting() || isThinGlass())
+      return false;
+    return keyword == "map_Ks" || (keyword == "map_Ns" && hasExponent());
   }
 
   //===--------------------------------------------------------------------===//
@@ -258,6 +265,19 @@ private:
     return std::nullopt;
   }
 
+  /// Is the roughness that of an exponent?
+  bool hasExponent() const { return !material.find("Pr") && !material.find("map_Pr"); }
+
+  /// Those of an image of exponents.
+  JsonValue roughnessOf(const Map &map) const {
+    const JsonValue source = at("map_Ns");
+    JsonValue pattern = libraryObject(source, "textures.ExponentRoughness", modules);
+    set(pattern, "pattern", channel("map_Ns", map, map.channel, false));
+    if (const auto exponent = number("Ns", 0, 1e9))
+      setNumber(pattern, "exponent", "Ns", *exponent);
+    return pattern;
+  }
+
   /// What is left of white light, above 0.
   std::vector<double> filter() const {
     std::vector<double> values = color("Tf").value_or(std::vector<double>(3, 1));
@@ -292,8 +312,11 @@ private:
     for (const char *keyword : {"Pr", "Pm", "Pc", "Ps", "map_Pr", "map_Pm", "map_Ke"})
       if (material.find(keyword))
         return false;
-    const auto specular = color("Ks");
-    return !isMirror() && mean(emission()) == 0 && (!specular || mean(*specular) == 0);
+    return !isMirror() && mean(emission()) == 0 && mean(specular()) == 0;
+  }
+
+  std::vector<double> specular() const {
+    return color("Ks").value_or(std::vector<double>(3, material.find("map_Ks") ? 1 : 0));
   }
 
   std::vector<double> diffuse() const {
@@ -317,13 +340,19 @@ private:
     } else {
       setColor(made, "baseColor", "Kd", diffuse());
       setColors(made, "baseColorMap", "map_Kd");
+      setColors(made, "specularMap", "map_Ks");
     }
     setNumber(made, "metallic", "Pm", isMirror() ? 1 : metallic.value_or(0));
-    setNumber(made, "roughness", material.find("Pr") ? "Pr" : "Ns",
-              std::sqrt(alpha().value_or(isMirror() ? 0 : 1)));
+    if (const std::optional<Map> exponents = hasExponent() ? map("map_Ns") : std::nullopt) {
+      setNumber(made, "roughness", "map_Ns", 1);
+      set(made, "roughnessMap", roughnessOf(*exponents));
+    } else {
+      setNumber(made, "roughness", material.find("Pr") ? "Pr" : "Ns",
+                std::sqrt(alpha().value_or(isMirror() ? 0 : 1)));
+      setChannel(made, "roughnessMap", "map_Pr");
+    }
     setNumber(made, "index", "Ni", index());
     setChannel(made, "metallicMap", "map_Pm");
-    setChannel(made, "roughnessMap", "map_Pr");
     if (const auto coat = number("Pc", 0, 1)) {
       setNumber(made, "clearcoat", "Pc", *coat);
       setNumber(made, "clearcoatRoughness", "Pcr", number("Pcr", 0, 1).value_or(0.03));
@@ -342,8 +371,8 @@ private:
   double index() const {
     if (const auto found = number("Ni", 0, 2); found && *found > 1)
       return std::max(*found, 1.01);
-    const auto specular = color("Ks");
-    const double root = std::sqrt(0.08 * (specular && !isMirror() ? mean(*specular) : 0.5));
+    const bool isGiven = !isMirror() && (material.find("Ks") || material.find("map_Ks"));
+    const double root = std::sqrt(0.08 * (isGiven ? mean(specular()) : 0.5));
     return std::max((1 + root) / (1 - root), 1.01);
   }
 

@@ -203,14 +203,41 @@ class Materials(ObjCase):
         for leaning in ("ramp", "normals"):
             self.assertGreater(abs(found[leaning][0] - found["plain"][0]), 0.02, found)
 
+    def test_images_of_highlights(self):
+        """Where the image of their strength is black there are none; an image of exponents has the
+        roughness of its product with `Ns`."""
+        for name, value in (("black", 0), ("white", 255), ("fifth", 51)):
+            (self.folder / f"{name}.png").write_bytes(png([[(value,) * 3] * 2] * 2))
+        shiny = "Kd 0.2 0.4 0.6\nKs 1 1 1\nNs {}\nmap_Ks {}.png"
+        self.materials(shiny.format(20, "black"), shiny.format(20, "white"))
+        self.scene(background=[1, 1, 1])
+        left, right, warnings = self.halves()
+        self.assert_color(left, [0.2, 0.4, 0.6], 0.01)
+        self.assertEqual(warnings, "")
+        self.materials(shiny.format(20, "white").rsplit("\n", 1)[0])
+        plain, _, _ = self.halves()
+        self.assert_color(plain, [0.25, 0.43, 0.62], 0.03)
+        self.assertGreater(plain[0], 0.215)
+        self.materials(shiny.format(100, "white") + "\nmap_Ns fifth.png", shiny.format(20, "white"))
+        fifth, twenty, warnings = self.halves()
+        self.assertEqual(warnings, "")
+        for found in (right, fifth, twenty):
+            self.assert_color(found, plain, 0.01)
+
     def test_statements_without_a_meaning_are_named(self):
         (self.folder / "x.png").write_bytes(png([[(9, 9, 9)]]))
         self.materials(
-            "Kd 0.5 0.5 0.5\nmap_Ks x.png\nsharpness 60\nmap_Kd -blendu on -mm 0 1 x.png"
+            "Kd 0.5 0.5 0.5\nmap_Tr x.png\nsharpness 60\nmap_Kd -blendu on -mm 0 1 x.png",
+            "illum 7\nNi 1.5\nmap_Ks x.png\nmap_Ns x.png",
         )
         self.scene()
         _, _, warnings = self.halves()
-        for name in ("`map_Ks` of the material `left`", "`sharpness`", "`-blendu`", "`-mm`"):
+        for name in (
+            "`map_Tr` of the material `left`",
+            *("`sharpness`", "`-blendu`", "`-mm`"),
+            "`map_Ks` of the material `right`",
+            "`map_Ns` of the material `right`",
+        ):
             self.assertIn(name, warnings)
         self.assertIn("squares.mtl:3:1", warnings)
 
