@@ -1,6 +1,7 @@
 # rtsl_add_shaders(target NAME name SHADERS files... [TRACE split|recurse] [FP strict|fast]):
 # compiles RTSL files to C++ when the target is built, again when one of them or what they import
-# changes, and adds it to the target. The target then has `const RtslShaders *name_shaders()`
+# changes, and adds it to the target. A file may be a module of the standard library, such as
+# std.materials.Principled. The target then has `const RtslShaders *name_shaders()`
 # (declare it with RTSL_DECLARE_SHADERS(name)) and links rtsl::runtime. TRACE selects how methods
 # that trace are compiled: their states, or calls. FP fast lets the C++ compiler change the last
 # digits for speed (docs/fast.md).
@@ -11,6 +12,13 @@ function(rtsl_add_shaders target)
   endif()
   set(files)
   foreach(file IN LISTS ARG_SHADERS)
+    if(file MATCHES "^std\\.[A-Za-z0-9_.]+$" AND NOT file MATCHES "\\.rtsl$")
+      string(REPLACE "." "/" file "${file}")
+      set(file "${RTSL_LIBRARY}/${file}.rtsl")
+      if(NOT EXISTS "${file}")
+        message(FATAL_ERROR "rtsl_add_shaders: the standard library has no ${file}")
+      endif()
+    endif()
     get_filename_component(file "${file}" ABSOLUTE)
     list(APPEND files "${file}")
   endforeach()
@@ -39,4 +47,8 @@ endfunction()
 
 if(NOT DEFINED RTSL_SHADER_FLAGS AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(RTSL_SHADER_FLAGS -march=x86-64-v3) # what the runtime is compiled for
+endif()
+
+if(NOT DEFINED RTSL_LIBRARY) # in the build tree; the installed package sets it
+  get_filename_component(RTSL_LIBRARY "${CMAKE_CURRENT_LIST_DIR}/../library" ABSOLUTE)
 endif()

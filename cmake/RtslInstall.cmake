@@ -13,7 +13,8 @@ endforeach()
 set(rtslPackage "${CMAKE_INSTALL_LIBDIR}/cmake/rtsl")
 configure_package_config_file(cmake/rtslConfig.cmake.in "${PROJECT_BINARY_DIR}/rtslConfig.cmake.in"
   INSTALL_DESTINATION "${rtslPackage}"
-  PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_BINDIR)
+  PATH_VARS CMAKE_INSTALL_LIBDIR CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_BINDIR
+            CMAKE_INSTALL_DATADIR)
 file(GENERATE OUTPUT "${PROJECT_BINARY_DIR}/rtslConfig.cmake" INPUT
   "${PROJECT_BINARY_DIR}/rtslConfig.cmake.in")
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/rtslConfigVersion.cmake"

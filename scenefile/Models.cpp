@@ -1,5 +1,6 @@
 #include "scenefile/Models.h"
 
+#include "scenefile/files/KeptFiles.h"
 #include "scenefile/gltf/Model.h"
 #include "scenefile/gltf/Nodes.h"
 #include "scenefile/gltf/Parts.h"
@@ -17,15 +18,16 @@ namespace rtsl::scene {
 
 using Kind = JsonValue::Kind;
 
+std::unique_ptr<gltf::File> openModel(const std::string &path) {
+  return obj::isObj(path) ? obj::readModel(path) : std::make_unique<gltf::File>(path);
+}
+
 const gltf::File &ModelFiles::open(const std::string &path, const std::optional<Place> &place) {
   const std::lock_guard lock(mutex);
   auto found = opened.find(path);
   if (found == opened.end()) {
     try {
-      found = opened
-                  .emplace(path, obj::isObj(path) ? obj::readModel(path)
-                                                  : std::make_unique<gltf::File>(path))
-                  .first;
+      found = opened.emplace(path, kept ? kept->model(path) : openModel(path)).first;
     } catch (Error &error) {
       if (place && (!error.place || error.place->line == 0))
         error.place = place;
@@ -46,7 +48,7 @@ std::vector<std::string> ModelFiles::files() const {
 
 ModelFiles &modelsOf(SceneDescription &scene) {
   if (!scene.models)
-    scene.models = std::make_shared<ModelFiles>();
+    scene.models = std::make_shared<ModelFiles>(scene.keptFiles);
   return *scene.models;
 }
 

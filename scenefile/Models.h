@@ -16,13 +16,22 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rtsl::scene {
 
+class KeptFiles;
+
+/// Opens a glTF file, or an OBJ file with its materials. Throws the mistakes in it.
+std::unique_ptr<gltf::File> openModel(const std::string &path);
+
 /// The glTF and OBJ files of a scene, each opened once.
 class ModelFiles {
 public:
+  /// `kept`: those of scenes before this one; null: none.
+  explicit ModelFiles(std::shared_ptr<KeptFiles> kept = nullptr) : kept(std::move(kept)) {}
+
   /// The file at a path, opened on first use. The mistakes in it are thrown each time; those of
   /// opening it are at `place`, if it is given.
   const gltf::File &open(const std::string &path, const std::optional<Place> &place = {});
@@ -31,8 +40,9 @@ public:
   std::vector<std::string> files() const;
 
 private:
+  std::shared_ptr<KeptFiles> kept;
   mutable std::mutex mutex;
-  std::map<std::string, std::unique_ptr<gltf::File>> opened;
+  std::map<std::string, std::shared_ptr<const gltf::File>> opened;
 };
 
 /// Those of a scene.

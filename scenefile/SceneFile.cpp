@@ -5,6 +5,7 @@
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Models.h"
 #include "scenefile/SettingsReader.h"
+#include "scenefile/files/MeshPaths.h"
 #include "scenefile/gltf/Mesh.h"
 #include "scenefile/graph/Graph.h"
 #include "scenefile/graph/KeyTimes.h"
@@ -17,6 +18,7 @@
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
@@ -259,7 +261,16 @@ private:
       });
       return;
     }
-    forEachValue(value, [&](const JsonValue &inner) { readFilesIn(inner); });
+    // The files of a node's mesh are no images, and its variables are values by name.
+    const bool isNode = !value.find("class");
+    const JsonValue *mesh = isNode ? value.find("mesh") : nullptr;
+    const JsonValue *variables = isNode ? value.find("variables") : nullptr;
+    forEachValue(value, [&](const JsonValue &inner) {
+      if (&inner == variables)
+        forEachValue(inner, [&](const JsonValue &variable) { readFilesIn(variable); });
+      else if (&inner != mesh)
+        readFilesIn(inner);
+    });
   }
 
   void readBuffers() {
@@ -423,7 +434,7 @@ private:
     if (primitive)
       geometry.primitive = readObject(*primitive, "`primitive`");
     if (mesh) {
-      readMesh(*mesh, geometry);
+      geometry.mesh = readMeshPaths(*mesh, scene.file, geometry.meshTimes);
       if (const JsonValue *part = value.find("part"))
         readPart(*part, geometry);
       if (const JsonValue *weights = value.find("weights"))
@@ -435,24 +446,6 @@ private:
                       coordinates->place());
         geometry.isBarycentric = coordinates->string == "barycentric";
       }
-    }
-  }
-
-  /// The path of a file, or {"keys": [paths], "times": [...]}.
-  void readMesh(const JsonValue &value, GeometryDescription &geometry) const {
-    const auto add = [&](const JsonValue &path) {
-      geometry.mesh.push_back({{path.string, path.place()}, resolve(path)});
-    };
-    if (value.kind != Kind::Object) {
-      expect(value, Kind::String, "`mesh`");
-      add(value);
-      return;
-    }
-    checkKeys(value, {"keys", "times"}, "`mesh` with keys");
-    geometry.meshTimes = readKeyTimes(value, "a mesh");
-    for (const JsonValue &key : value.find("keys")->elements) {
-      expect(key, Kind::String, "a key of a mesh");
-      add(key);
     }
   }
 
@@ -570,7 +563,8 @@ void chooseFrame(JsonValue &root) {
 } // namespace
 
 SceneDescription parseScene(const std::string &text, const std::string &path,
-                            const std::vector<std::string> &overrides) {
+                            const std::vector<std::string> &overrides,
+                            std::shared_ptr<KeptFiles> kept) {
   auto root = std::make_shared<JsonValue>(parseJson(text, path));
   ErrorCollector errors;
   std::vector<std::string> included = expandIncludes(*root, path, errors);
@@ -581,13 +575,15 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
   scene.file = path;
   scene.root = root;
   scene.included = std::move(included);
+  scene.keptFiles = std::move(kept);
   expandModels(*root, scene, errors);
   SceneReader(*root, scene, std::move(errors)).read();
   return scene;
 }
 
-SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides) {
-  return parseScene(readFile(path), path, overrides);
+SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides,
+                               std::shared_ptr<KeptFiles> kept) {
+  return parseScene(readFile(path), path, overrides, std::move(kept));
 }
 
 } // namespace rtsl::scene

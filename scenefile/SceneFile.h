@@ -57,7 +57,7 @@ struct ReferenceDescription {
   const LocatedName &shownName() const { return object ? object->className : name; }
 };
 
-class KeptMeshes;
+class KeptFiles;
 class ModelFiles;
 
 /// The value of a variable, and where it is defined.
@@ -190,18 +190,20 @@ struct SceneDescription {
   std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
   std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
-  std::shared_ptr<KeptMeshes> keptMeshes; // of scenes before this one, for it; null: none
+  std::shared_ptr<KeptFiles> keptFiles; // of scenes before this one, for it; null: none
 };
 
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.
 /// An override's value is JSON, or else a string; paths in it are relative to the working
-/// directory, those in the file to the file's folder.
+/// directory, those in the file to the file's folder. `kept`: files of scenes before this one.
 SceneDescription readSceneFile(const std::string &path,
-                               const std::vector<std::string> &overrides = {});
+                               const std::vector<std::string> &overrides = {},
+                               std::shared_ptr<KeptFiles> kept = nullptr);
 
 /// The same for a text in memory; `path` is for messages and for relative paths.
 SceneDescription parseScene(const std::string &text, const std::string &path,
-                            const std::vector<std::string> &overrides = {});
+                            const std::vector<std::string> &overrides = {},
+                            std::shared_ptr<KeptFiles> kept = nullptr);
 
 /// The files that the scene reads besides shaders, each once: scene files that it includes, meshes,
 /// images, buffers.

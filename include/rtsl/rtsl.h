@@ -39,7 +39,21 @@ void rtslSceneDestroy(RtslScene *scene);
  * `settings` are `count` values that replace those of the file, as --set of `rtslc render` gives
  * them: "camera=side" is one of its cameras by name, "frame=12" the frame that its key frames are
  * of, "nodes.car.transform.translate=[0, 1, 0]" any other value. More can be added to the scene.
- * Of a file with `passes`, the first is what is launched (rtslSceneSetPass). */
+ * Of a file with `passes`, the first is what is launched (rtslSceneSetPass).
+ *
+ * Models become objects of classes of the library, and so do engines such as `path`; the shaders
+ * must have been compiled with those that the scene needs, by the names of their modules:
+ * rtsl_add_shaders(... SHADERS std.materials.Principled std.engines.PathTracer ...). The error for
+ * those that are missing lists them. They are, of glTF files:
+ *   materials: Principled Emitter NormalMap Cutout
+ *   textures:  ImageTexture ImageChannel ImageSlope Threshold TransformedPattern
+ *   lights:    PointLight SpotLight DistantLight
+ *   cameras:   PerspectiveCamera OrthographicCamera
+ * and of OBJ files:
+ *   materials: Lambert Principled Dielectric ThinGlass NormalMap BumpMap Cutout
+ *   textures:  ImageTexture ImageChannel ImageSlope TransformedPattern
+ *   cameras:   PerspectiveCamera
+ * and for images std.images.sampler2D and std.images.sampler3D. */
 RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
                          size_t count);
 /* Reads the file of the scene again, with these settings in place of those before, such as the next

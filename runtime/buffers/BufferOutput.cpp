@@ -107,11 +107,16 @@ std::string csvOf(const OutputBuffer &buffer) {
 
 } // namespace
 
+void checkBufferFile(const std::string &path, const std::string &buffer, bool holdsStructs,
+                     const std::string &type) {
+  if (holdsStructs && std::filesystem::path(path).extension() == ".csv")
+    throw Error(message::structsNotInFile(path, buffer, type)).note(".npy holds them");
+}
+
 void writeBuffer(const std::string &path, const OutputBuffer &buffer) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".csv" && buffer.type.kind == ValueType::Kind::Struct)
-    throw Error(message::structsNotInFile(path, buffer.member, buffer.type.name))
-        .note(".npy holds them");
+  checkBufferFile(path, buffer.member, buffer.type.kind == ValueType::Kind::Struct,
+                  buffer.type.name);
   writeFileAtomically(
       path, extension == ".npy" ? npyOf(buffer)
             : extension == ".csv"

@@ -4,8 +4,11 @@
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace runtime = rtsl::runtime;
 namespace scene = rtsl::scene;
@@ -39,12 +42,31 @@ RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
           render.slices};
 }
 
+/// The modules of the library with classes that the scene has objects of, such as those that the
+/// materials of its models become, and the shaders do not have.
+void requireLibraryClasses(const scene::SceneDescription &description,
+                           const runtime::Program &program) {
+  std::vector<std::string> missing;
+  for (const std::string &name : scene::classesUsed(description))
+    if (!program.find(name))
+      for (const scene::ImportDescription &import : description.imports) {
+        const std::string &module = import.name.text;
+        if (import.path.empty() && module.substr(module.rfind('.') + 1) == name)
+          missing.push_back(module);
+      }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  if (!missing.empty())
+    throw rtsl::Error(rtsl::message::libraryClassesMissing(fmt::join(missing, "`, `")));
+}
+
 /// What a file gives with these settings.
 RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std::string &file,
                const char *const *settings, std::size_t count) {
   try {
     const scene::SceneDescription description =
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
+    requireLibraryClasses(description, *program);
     RtslScene made(scene::buildScene(description, program));
     made.file = file;
     made.program = program;

@@ -1,7 +1,7 @@
 #include "scenefile/files/MeshFiles.h"
 
 #include "scenefile/Models.h"
-#include "scenefile/files/KeptMeshes.h"
+#include "scenefile/files/KeptFiles.h"
 #include "scenefile/gltf/Mesh.h"
 #include "support/ErrorMessages.h"
 #include "support/Parallel.h"
@@ -47,8 +47,8 @@ void read(File &file, const SceneDescription &description, runtime::MeshRequest 
   if (!file.part.empty())
     file.mesh =
         gltf::readMesh(description.models->open(file.path), file.part, wanted, file.weights);
-  else if (description.keptMeshes)
-    file.kept = description.keptMeshes->load(file.path, wanted);
+  else if (description.keptFiles)
+    file.kept = description.keptFiles->mesh(file.path, wanted);
   else
     file.mesh = runtime::loadMesh(file.path, wanted);
 }
@@ -106,8 +106,8 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
       file.failure = std::current_exception();
     }
   });
-  if (description.keptMeshes)
-    description.keptMeshes->forgetUnused();
+  if (description.keptFiles)
+    description.keptFiles->forgetUnused();
   results.resize(uses.size());
   forEachInParallel(0, results.size(), [&](std::size_t i) {
     const GeometryDescription &geometry = *uses[i].geometry;

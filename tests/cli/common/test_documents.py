@@ -45,6 +45,25 @@ def row(rows, words):
 
 
 class Documents(Case):
+    def test_classes_that_models_need(self):
+        """include/rtsl/rtsl.h lists what the readers of glTF and OBJ files make objects of."""
+        said = re.search(
+            r"They are, of glTF files:(.*?)and of OBJ files:(.*?)and for images",
+            read("include/rtsl/rtsl.h"),
+            re.DOTALL,
+        )
+        for words, folder in zip(said.groups(), ("gltf", "obj")):
+            made = set()
+            for path in (ROOT / "scenefile" / folder).glob("*.cpp"):
+                text = path.read_text(encoding="utf-8")
+                made |= set(re.findall(r'"((?:materials|textures|lights|cameras)\.\w+)"', text))
+            if folder == "obj":  # a model without a camera is framed by one, whatever its format
+                made.add("cameras.PerspectiveCamera")
+            listed = set()
+            for line in re.findall(r"(\w+): +([\w ]+)", words):
+                listed |= {f"{line[0]}.{name}" for name in line[1].split()}
+            self.assertEqual(listed, made, folder)
+
     def test_limits_of_the_language(self):
         rows = table("docs/language.md", "`limit.all`")
         local = row(rows, "a local variable or parameter")

@@ -72,6 +72,10 @@ class Mistakes(ImageCase):
               void constructor(rt_Texture raw) { other = raw; }
               void shade() { rt_SampleColor = file.lookup() + other.lookup(); }
             };
+            class Hung : rt_Material {
+              public rt_Texture file;
+              void shade() { rt_SampleColor = file.lookup(); }
+            };
             class Eye : rt_Camera { void generateRay() { rt_RayOrigin = vec3(0.0, 0.0, 5.0); rt_RayDirection = vec3(0.0, 0.0, -1.0); } };""",
         )
         self.write("wall.obj", "v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")
@@ -84,9 +88,15 @@ class Mistakes(ImageCase):
                     "camera": {"class": "Eye"},
                     "textures": {"raw": {"class": "Flat"}, "slices": {"class": "Flat"}},
                     "materials": {
-                        "file": {"class": "Wall", "constructor": {"raw": "raw"}, "file": "slices"}
+                        "file": {"class": "Wall", "constructor": {"raw": "raw"}, "file": "slices"},
+                        "hung": {"class": "Hung"},
                     },
-                    "nodes": {"raw": {"mesh": "wall.obj", "material": "file"}},
+                    "nodes": {
+                        "wall": {"mesh": "wall.obj", "material": "file"},
+                        "hung": {"mesh": "wall.obj", "material": "hung"},
+                        "named": {"child": "hung", "variables": {"file": "slices"}},
+                        "raw": {"children": ["wall", "named"]},
+                    },
                     "roots": {"file": "raw"},
                     "render": {"size": [2, 2], "spp": 1},
                 }

@@ -409,6 +409,27 @@ class Mistakes(MotionCase):
         text = (self.folder / "scene.json").read_text().splitlines()
         self.assertIn("more.obj", text[second[0]["range"]["begin"]["line"] - 1])
 
+    def test_a_mesh_that_is_written_in_another_way(self):
+        keys = [{"time": 0, "file": "flat.obj"}, {"time": 0.25, "file": "bent.obj"}]
+        flag = '"keys": ["flat.obj", "bent.obj"]'
+        for mesh, what, note in (
+            (keys, "not a list", f'write `"mesh": {{{flag}, "times": [0, 0.25]}}`'),
+            (["flat.obj", {"file": "bent.obj"}], "not a list", f'write `"mesh": {{{flag}}}`'),
+            ({"file": "flat.obj"}, "not an object", 'write `"mesh": "flat.obj"`'),
+            (["flat.obj", 2], "not a list", None),
+        ):
+            node = {"mesh": mesh, "material": "paint"}
+            for place in (
+                scene({"one": node}, root="one"),
+                scene({"one": {"children": [node]}}, root="one"),
+                scene({"one": BALL}, root="one", objects=[node]),
+            ):
+                messages = self.mistakes(place)
+                self.assertEqual(len(messages), 1, (mesh, messages))
+                self.assertIn("`mesh` is the path of a file, or ", messages[0]["message"])
+                self.assertIn(what, messages[0]["message"])
+                self.assertEqual(messages[0].get("notes", []), [note] if note else [], mesh)
+
     def test_of_the_shutter(self):
         for shutter, part in (
             ([0.5], "`shutter`"),

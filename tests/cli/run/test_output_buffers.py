@@ -562,7 +562,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
             self.diagnose("run", "scene.json", "--out=distance=initial.npy")[0]["message"],
         )
         self.assert_message(
-            self.diagnose("run", "scene.json", "--out=cells=c.csv"),
+            self.diagnose("run", "scene.json", "--out=distance=d.npy", "--out=cells=c.csv"),
             "E0808",
             "its elements are structs",
         )

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import struct
+import subprocess
 import sys
 import tempfile
 
@@ -166,6 +167,12 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     write_model(pathlib.Path(name))
     run(models, "model.json", "model.exr")
     compare("model.exr", scene="model.json")
+    # A model of glass, whose class these shaders do not have.
+    pathlib.Path(name, "model.mtl").write_text("newmtl red\nillum 7\nNi 1.5\nnewmtl metal\n")
+    failed = subprocess.run([models, "model.json", "none.exr"], capture_output=True, text=True)
+    assert failed.returncode == 1, failed
+    assert "compile them with `std.materials.Dielectric`, `std.materials.Lambert`" in failed.stderr
+    assert not os.path.exists("none.exr")
     os.chdir(source)
 
 scene = {

@@ -33,12 +33,22 @@ def file_of(imported, folder):
     return pathlib.Path(source, "library", *imported.split(".")).with_suffix(".rtsl")
 
 
-def example(name):
+def with_paths(value, folder):
+    """The JSON with absolute paths of the folder's files."""
+    if isinstance(value, dict):
+        return {key: with_paths(member, folder) for key, member in value.items()}
+    if isinstance(value, list):
+        return [with_paths(element, folder) for element in value]
+    is_file = isinstance(value, str) and value and (folder / value).is_file()
+    return str(folder / value) if is_file else value
+
+
+def example(name, file="scene.json", spp=4):
     folder = pathlib.Path(source, "examples", name)
-    scene = json.loads((folder / "scene.json").read_text())
-    scene["import"] = [str(file_of(name, folder)) for name in scene["import"]]
-    scene["render"].update(size=[64, 36], spp=4)
-    return scene
+    scene = json.loads((folder / file).read_text())
+    imported = [str(file_of(name, folder)) for name in scene["import"]]
+    scene["render"].update(size=[64, 36], spp=spp)
+    return {**with_paths(scene, folder), "import": imported}
 
 
 def answers(engine):
@@ -431,6 +441,8 @@ SPACES = [
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal")]),
+    ("g++", ["-O1"], [], [example("forest", "forest.json", spp=1)]),
+    ("clang++-22", ["-O1"], [], [example("line-of-sight", "city.json", spp=1)]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
     ("g++", ["-O1"], ["--exceptions"], [events(False), events(True), late(), beyond()]),

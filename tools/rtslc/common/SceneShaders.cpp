@@ -52,27 +52,29 @@ static scene::SceneDescription requireOneLaunch(scene::SceneDescription descript
 
 /// The scene of library/models around a glTF file.
 static scene::SceneDescription sceneOfModel(const std::string &file,
-                                            const std::vector<std::string> &overrides) {
+                                            const std::vector<std::string> &overrides,
+                                            const std::shared_ptr<scene::KeptFiles> &kept) {
   const std::string path = '"' + std::regex_replace(file, std::regex(R"(["\\])"), R"(\$&)") + '"';
   std::vector<std::string> all{"camera.model=" + path, "objects.0.model=" + path};
   all.insert(all.end(), overrides.begin(), overrides.end());
-  return scene::readSceneFile(libraryFolder() + "/models/scene.json", all);
+  return scene::readSceneFile(libraryFolder() + "/models/scene.json", all, kept);
 }
 
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
-                                  const char *command) {
+                                  const char *command,
+                                  const std::shared_ptr<scene::KeptFiles> &kept) {
   if (hasEnding(file, ".rtsl"))
     refuseShaders(file, command);
   if (scene::gltf::isModel(file))
-    return requireOneLaunch(sceneOfModel(file, overrides), command);
+    return requireOneLaunch(sceneOfModel(file, overrides, kept), command);
   if (file == "-") {
     const char *const name = "<stdin>";
     const std::string text = readFile(file);
     messages.sources.add(name, text); // messages show it
-    return requireOneLaunch(scene::parseScene(text, name, overrides), command);
+    return requireOneLaunch(scene::parseScene(text, name, overrides, kept), command);
   }
-  return requireOneLaunch(scene::readSceneFile(file, overrides), command);
+  return requireOneLaunch(scene::readSceneFile(file, overrides, kept), command);
 }
 
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {

@@ -14,10 +14,11 @@ namespace rtsl::tool {
 bool isScene(const std::string &file);
 
 /// Reads a scene file, or makes a scene of a glTF file; "-" is standard input. Throws with a hint
-/// if it is given RTSL; `command` is for that.
+/// if it is given RTSL; `command` is for that. `kept`: files of scenes before this one.
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
-                                  const char *command);
+                                  const char *command,
+                                  const std::shared_ptr<scene::KeptFiles> &kept = nullptr);
 
 /// Adds --set.
 void addSetOption(CLI::App &command, std::vector<std::string> &overrides);

@@ -6,7 +6,7 @@
 #include "codegen/driver/CodeCache.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
-#include "scenefile/files/KeptMeshes.h"
+#include "scenefile/files/KeptFiles.h"
 #include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
@@ -88,12 +88,12 @@ int render(const RenderCommandOptions &options) {
     RenderCommandOptions several = options;
     several.common.compile.codeCache = std::make_shared<CodeCache>();
     several.keptTrees = std::make_shared<KeptTrees>();
-    several.keptMeshes = std::make_shared<scene::KeptMeshes>();
+    several.keptFiles = std::make_shared<scene::KeptFiles>();
     return options.watches ? watch(several) : renderFrames(several);
   }
   RenderCommandOptions one = options;
   if (!options.aovs.empty())
-    one.keptMeshes = std::make_shared<scene::KeptMeshes>();
+    one.keptFiles = std::make_shared<scene::KeptFiles>();
   Rendering rendering;
   const ExitStatus status = render(one, nullptr, rendering);
   return statusAfterInterruption(status);

@@ -54,9 +54,9 @@ struct RenderCommandOptions {
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
   GpuOptions gpu;
-  bool countsSteps = false;                      // --lane-use
-  std::shared_ptr<KeptTrees> keptTrees;          // null: there is one picture
-  std::shared_ptr<scene::KeptMeshes> keptMeshes; // null: there is one picture, of one view
+  bool countsSteps = false;                    // --lane-use
+  std::shared_ptr<KeptTrees> keptTrees;        // null: there is one picture
+  std::shared_ptr<scene::KeptFiles> keptFiles; // null: there is one picture, of one view
 };
 
 /// Renders unless there are errors, and gives whether a picture was written. `files` gets those

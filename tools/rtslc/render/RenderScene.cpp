@@ -70,7 +70,9 @@ std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &
     return makePreview({options.scene, options.className, overridesOf(options)}, options.common,
                        messages);
   return Preview{
-      readScene(options.scene, overridesOf(options), messages, "render"), options.scene, {}};
+      readScene(options.scene, overridesOf(options), messages, "render", options.keptFiles),
+      options.scene,
+      {}};
 }
 
 const char *nameOfStop() {
@@ -199,7 +201,7 @@ private:
     input = readInput(options, messages);
     if (!input)
       return false;
-    input->description.keptMeshes = options.keptMeshes;
+    input->description.keptFiles = options.keptFiles;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
     target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu);

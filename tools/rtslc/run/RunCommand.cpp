@@ -8,7 +8,7 @@
 #include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"
-#include "scenefile/files/KeptMeshes.h"
+#include "scenefile/files/KeptFiles.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
@@ -82,10 +82,12 @@ scene::SceneDescription readInputs(const RunOptions &options, Messages &messages
   return readScene(options.scene, overrides, messages, "run");
 }
 
-/// Rejects names of --out that stand for no buffer, before anything runs.
-void checkNames(const RunOptions &options, const scene::SceneDescription &description,
-                const typed::Module &module) {
+/// Rejects, before anything runs, names of --out that stand for no buffer, and files whose format
+/// has no place for its elements.
+void checkBuffers(const RunOptions &options, const scene::SceneDescription &description,
+                  const typed::Module &module) {
   std::set<std::string> names;
+  std::map<std::string, const Type *> elements; // by those of the names that are known to have one
   for (const auto &buffer : description.buffers)
     names.insert(buffer.first);
   for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
@@ -94,8 +96,13 @@ void checkNames(const RunOptions &options, const scene::SceneDescription &descri
     const typed::Class *one = start ? module.findClass(start->className.text) : nullptr;
     for (; one; one = one->base)
       for (const auto &member : one->members)
-        if (member->type->is(TypeKind::Buffer) && member->type->mode != BufferMode::Read)
+        if (member->type->is(TypeKind::Buffer) && member->type->mode != BufferMode::Read) {
           names.insert(member->name);
+          elements[member->name] = member->type->element;
+          for (const auto &[name, value] : start->members)
+            if (name.text == member->name && value->kind == scene::JsonValue::Kind::String)
+              elements[value->string] = member->type->element;
+        }
   }
   for (const BufferFile &output : options.outputs)
     if (!names.count(output.name)) {
@@ -107,6 +114,10 @@ void checkNames(const RunOptions &options, const scene::SceneDescription &descri
         error.note(fmt::format("it has `{}`", fmt::join(names, "`, `")));
       throw error;
     }
+  for (const BufferFile &output : options.outputs)
+    if (const auto known = elements.find(output.name); known != elements.end())
+      runtime::checkBufferFile(output.file, output.name, known->second->is(TypeKind::Struct),
+                               toString(known->second));
 }
 
 runtime::RenderOptions renderOptions(const RunOptions &options,
@@ -130,10 +141,10 @@ public:
   /// Nothing if there were errors, which are reported.
   bool run(const scene::SceneDescription &description) {
     const std::size_t count = scene::launchCount(description);
-    const auto meshes = count > 1 ? std::make_shared<scene::KeptMeshes>() : nullptr;
+    const auto meshes = count > 1 ? std::make_shared<scene::KeptFiles>() : nullptr;
     for (std::size_t i = 0; i < count; ++i) {
       scene::SceneDescription launch = scene::launchOf(description, i);
-      launch.keptMeshes = meshes;
+      launch.keptFiles = meshes;
       if (!runOne(launch, i, count))
         return false;
     }
@@ -349,7 +360,7 @@ void runScene(const RunOptions &options, Messages &messages) {
   filesRead = withFiles(description, filesRead);
   for (const std::string &file : files)
     checkOutputs(file, {}, {options.scene}, filesRead);
-  checkNames(options, description, *module);
+  checkBuffers(options, description, *module);
 
   Launches launches(options, *module, messages);
   if (!launches.run(description))
