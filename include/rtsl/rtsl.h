@@ -51,7 +51,7 @@ void rtslSceneDestroy(RtslScene *scene);
  *   cameras:   PerspectiveCamera OrthographicCamera
  * and of OBJ files:
  *   materials: Lambert Principled Dielectric ThinGlass NormalMap BumpMap Cutout
- *   textures:  ImageTexture ImageChannel ImageSlope TransformedPattern
+ *   textures:  ImageTexture ImageChannel ImageSlope TransformedPattern ExponentRoughness
  *   cameras:   PerspectiveCamera
  * and for images std.images.sampler2D and std.images.sampler3D. */
 RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
