@@ -184,6 +184,10 @@ int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t verte
 
 /* Loads a mesh file for instances that share it; returns its number, or -1. */
 int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path);
+/* The same for a mesh that moves: files with the same triangles at `count` >= 2 times, which ascend
+ * in [0, 1]. Between them its vertices are interpolated linearly. */
+int32_t rtslSceneLoadMovingMesh(RtslScene *scene, const char *const *paths, const float *times,
+                                uint32_t count);
 /* Another instance of a mesh: of rtslSceneLoadMesh's, or of the n-th that was added, from 0. */
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material);
 

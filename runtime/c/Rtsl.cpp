@@ -84,9 +84,10 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
 }
 
 /// Throws OutOfRange unless they are the times of keys.
-static std::vector<float> keyTimes(const float *first, std::uint32_t count, std::size_t stride) {
+static std::vector<float> keyTimes(const char *what, const float *first, std::uint32_t count,
+                                   std::size_t stride) {
   if (count < 2)
-    throw rtsl::Error(rtsl::message::transformNeedsKeys());
+    throw rtsl::Error(rtsl::message::tooFewKeys(what));
   std::vector<float> times;
   for (std::uint32_t i = 0; i < count; ++i) {
     float time;
@@ -102,7 +103,7 @@ int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *tim
                     uint32_t mask) {
   return guarded(0, [&] {
     runtime::MotionFactor factor;
-    factor.times = keyTimes(times, count, sizeof *times);
+    factor.times = keyTimes("a transform", times, count, sizeof *times);
     for (std::uint32_t i = 0; i < count; ++i)
       factor.maps.push_back(rtsl::c::finiteTransform(transforms + 12 * std::size_t(i)));
     scene->placement.transform = runtime::MovingTransform(std::move(factor));
@@ -115,7 +116,7 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
                      uint32_t mask) {
   return guarded(0, [&] {
     runtime::MotionFactor scale, rotation, translation;
-    const std::vector<float> times = keyTimes(&keys->time, count, sizeof *keys);
+    const std::vector<float> times = keyTimes("a transform", &keys->time, count, sizeof *keys);
     scale.times = rotation.times = translation.times = times;
     const auto orientation = [](const RtslPlacementKey &key) {
       const double *q = key.rotation; // x, y, z, w
@@ -231,6 +232,19 @@ int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
     runtime::Mesh mesh = scene->loadMesh(path);
     scene->giveAttributes(mesh, path);
     return static_cast<int32_t>(scene->scene.addMesh(std::move(mesh), path));
+  });
+}
+
+int32_t rtslSceneLoadMovingMesh(RtslScene *scene, const char *const *paths, const float *times,
+                                uint32_t count) {
+  return guarded<int32_t>(-1, [&] {
+    std::vector<float> ofKeys = keyTimes("a mesh", times, count, sizeof *times);
+    std::vector<runtime::Mesh> keys;
+    for (std::uint32_t i = 0; i < count; ++i)
+      keys.push_back(scene->loadMesh(paths[i]));
+    scene->giveAttributes(keys.front(), paths[0]);
+    return static_cast<int32_t>(scene->scene.addMesh(
+        runtime::movingMesh(std::move(keys), std::move(ofKeys), {paths, paths + count}), paths[0]));
   });
 }
 

@@ -251,6 +251,21 @@ static void files(void) {
   rtslSceneDestroy(scene);
 }
 
+/* A mesh that moves, as moving.json has it. */
+static void movingMesh(void) {
+  const char *keys[] = {"flat.obj", "bent.obj"};
+  const float times[] = {0.25f, 1};
+  RtslScene *scene = rtslSceneCreate(launches_shaders());
+  RtslRenderSettings settings = rtslRenderDefaults();
+  const int32_t mesh = rtslSceneLoadMovingMesh(scene, keys, times, 2);
+  need(mesh >= 0, "a mesh that moves");
+  need(rtslSceneAddMeshInstance(scene, mesh, rtslSceneAddObject(scene, "Lit")), "its instance");
+  need(rtslSceneSetCamera(scene, rtslSceneAddObject(scene, "Eye")), "a camera");
+  settings.width = 48, settings.height = 32, settings.samplesPerPixel = 4;
+  need(rtslRenderToFile(scene, &settings, "moving.exr"), "moving.exr");
+  rtslSceneDestroy(scene);
+}
+
 /* Two passes of a file: the second one adds what the first one has found, and again. */
 static void passesOfFile(void) {
   RtslScene *scene = rtslSceneLoad(launches_shaders(), "passes.json", NULL, 0);
@@ -329,6 +344,7 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneReload(scene, NULL, 0));
   EXPECT_FAILURE(rtslSceneFind(scene, "nothing"));
   EXPECT_FAILURE(rtslSceneOutput(scene, "nothing", found));
+  EXPECT_FAILURE(rtslSceneLoadMovingMesh(scene, &nowhere, &texel, 1) >= 0);
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
   rtslSceneDestroy(scene);
@@ -341,6 +357,7 @@ int main(int count, char **arguments) {
   passes();
   images(arguments[1], atoi(arguments[2]));
   files();
+  movingMesh();
   passesOfFile();
   mistakes();
   return 0;

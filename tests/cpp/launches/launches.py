@@ -44,6 +44,7 @@ WORDS = (
     "the scene is of no file",
     "no object of the scene is named `nothing`",
     "no output buffer `nothing`",
+    "a mesh that moves needs at least two keys",
 )
 
 
@@ -99,6 +100,17 @@ def write_scenes(folder):
             },
             "root": "all",
         },
+        "moving.json": {
+            **start,
+            "camera": {"class": "Eye"},
+            "objects": [
+                {
+                    "mesh": {"keys": ["flat.obj", "bent.obj"], "times": [0.25, 1]},
+                    "material": {"class": "Lit"},
+                }
+            ],
+            "render": {"size": [48, 32], "spp": 4},
+        },
         "rays.json": {
             **start,
             "materials": {"clay": {"class": "Marked"}},
@@ -117,6 +129,8 @@ def write_scenes(folder):
             ],
         },
     }
+    for name, corner in (("flat", "0 2 0"), ("bent", "1.5 2.5 3")):
+        (folder / f"{name}.obj").write_text(f"v -2 -1 0\nv 2 -1 0\nv {corner}\nf 1 2 3\n")
     for name, document in scenes.items():
         (folder / name).write_text(json.dumps(document))
 
@@ -164,6 +178,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     compare("level.exr", "--camera=side", "--frame=1", "--set=materials.clay.level=0.25")
     compare("second.exr", "--camera=front", "--frame=2")
     compare("same.exr", "--camera=front", "--frame=2")
+    compare("moving.exr", scene="moving.json")
     write_model(pathlib.Path(name))
     run(models, "model.json", "model.exr")
     compare("model.exr", scene="model.json")
