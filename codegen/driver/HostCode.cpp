@@ -191,7 +191,10 @@ LlvmCode PartCompiler::rest() {
   const bool isWavefront = isMegakernel && options.organisation == Organisation::Wavefront;
   if (isWavefront)
     beginWavefront(code, program);
-  linkDeviceCode(code, bitcodes, exports);
+  std::vector<std::string_view> linked = bitcodes;
+  if (!isMegakernel && hasList(code))
+    linked = {runtime::deviceBitcode(), runtime::listTraversalBitcode(), runtime::deviceBitcode()};
+  linkDeviceCode(code, linked, exports);
   if (isWavefront)
     endWavefront(code, program);
   code.options.isMegakernel = isMegakernel;
@@ -273,7 +276,8 @@ void compileHostCode(Compilation &compilation) {
   const bool isMegakernel = options.target == Target::HostMegakernel;
   std::vector<codegen::HostSymbol> symbols;
   if (!isMegakernel) {
-    symbols.push_back({"rtsl_traverse", reinterpret_cast<void *>(&rtsl_traverse)});
+    for (const char *name : {"rtsl_traverse", "rtsl_traverse_tree"})
+      symbols.push_back({name, reinterpret_cast<void *>(&rtsl_traverse)});
     symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
   std::vector<std::string> exports = entries(program, options);

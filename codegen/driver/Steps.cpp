@@ -168,6 +168,10 @@ static bool hasTree(const llvm::Module &module) {
   return codegen::knownConstant(module, "rtsl_listed_instances").value_or(0) == 0;
 }
 
+bool hasList(const LlvmCode &code) {
+  return !hasTree(*code.module);
+}
+
 /// docs/gpu.md compares the schedules.
 static Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program,
                             const llvm::Module &module) {

@@ -79,6 +79,9 @@ struct LlvmCode {
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
                    std::vector<Place> *numberPlaces = nullptr);
 
+/// Is the program bound to a scene whose few primitives are tested one after the other?
+bool hasList(const LlvmCode &code);
+
 /// Defines constants with which the device code omits unused parts.
 void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
 

@@ -252,18 +252,29 @@ llvm::Error linkDeviceCode(llvm::Module &module, llvm::ArrayRef<std::string_view
   return llvm::Error::success();
 }
 
+namespace {
+
 /// Splits vectors, also in memory. A vec3 in a register of four lanes would compute on a lane with
 /// whatever follows it in memory, and if that is a denormal number each product costs over a
 /// hundred cycles; its load would be 16 bytes wide and wait for the three stores of 4 that wrote
 /// it. LLVM's SLP pass combines scalars that fill a register.
+struct SplitVectors : llvm::PassInfoMixin<SplitVectors> {
+  llvm::PreservedAnalyses run(llvm::Function &function, llvm::FunctionAnalysisManager &analyses) {
+    if (function.getName() == "rtsl_entered_boxes") // its vectors fill registers
+      return llvm::PreservedAnalyses::all();
+    llvm::ScalarizerPassOptions options;
+    options.ScalarizeLoadStore = true;
+    return llvm::ScalarizerPass(options).run(function, analyses);
+  }
+};
+
+} // namespace
+
 static void addScalarization(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {
-        if (level == llvm::OptimizationLevel::O0)
-          return;
-        llvm::ScalarizerPassOptions options;
-        options.ScalarizeLoadStore = true;
-        passes.addPass(llvm::createModuleToFunctionPassAdaptor(llvm::ScalarizerPass(options)));
+        if (level != llvm::OptimizationLevel::O0)
+          passes.addPass(llvm::createModuleToFunctionPassAdaptor(SplitVectors()));
       });
 }
 

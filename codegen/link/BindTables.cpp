@@ -1,8 +1,8 @@
 //===- BindTables.cpp - the tables of a small scene, in its program -------===//
 //
 // The records and the instances of a small scene are constants of its program: what is loaded from
-// them at a constant place folds. If the scene has only a few primitives, a GPU tests them one
-// after the other: no tree, and `intersect` of each has the members of its object as constants.
+// them at a constant place folds. If the scene has only a few primitives, rays test them one after
+// the other: no tree, and `intersect` of each has the members of its object as constants.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindTables.h"

@@ -12,6 +12,7 @@
 
 RTSL_EMBEDDED(deviceBitcode, rtslDevice_host)
 RTSL_EMBEDDED(gpuDeviceBitcode, rtslDevice_gpu)
+RTSL_EMBEDDED(listTraversalBitcode, rtslListTraversal)
 RTSL_EMBEDDED(megakernelBitcode, rtslMegakernel_host)
 RTSL_EMBEDDED(gpuMegakernelBitcode, rtslMegakernel_gpu)
 RTSL_EMBEDDED(wavefrontBitcode, rtslWavefront_host)

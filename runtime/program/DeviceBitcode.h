@@ -15,6 +15,10 @@ namespace rtsl::runtime {
 std::string_view deviceBitcode();
 std::string_view gpuDeviceBitcode();
 
+/// rtsl_traverse of the host in scenes of a few primitives
+/// (runtime/device/engines/ListTraversal.cpp).
+std::string_view listTraversalBitcode();
+
 /// rtsl_traverse and the functions that run lanes: for self-contained programs
 /// (runtime/device/engines/Megakernel.h).
 std::string_view megakernelBitcode();

@@ -1,0 +1,103 @@
+"""Scenes of a few primitives, which need no tree on the host: the bits are those of trees."""
+
+import json
+import random
+import unittest
+
+from harness import Case
+
+WAYS = (
+    ("--keep=tree",),
+    ("--traversal=device",),
+    ("--trace=split",),
+    ("--target=host-megakernel",),
+)
+
+
+class Lists(Case):
+    def scene(self, count, camera=(0, 0, 9), **render):
+        """A heap of so many primitives, some of which are moved, around a lamp."""
+        dice = random.Random(count)
+
+        def one(number):
+            place = [dice.uniform(-2, 2) for _ in range(3)]
+            kinds = (
+                {"class": "Sphere", "center": place, "radius": dice.uniform(0.2, 1)},
+                {"class": "Parallelogram", "constructor": [place, [1, 0.3, 0], [0, 1, 0.5]]},
+                {"class": "Box", "low": place, "high": [x + 0.7 for x in place]},
+            )
+            made = {"primitive": kinds[number % 3], "material": "clay"}
+            if number % 4 == 3:
+                made["transform"] = {"scale": [1, 0.5, 2], "rotate": [0, 20 * number, 0]}
+            return made
+
+        lamp = {"class": "Sphere", "center": [0, 4, 2], "radius": 0.5}
+        self.write(
+            "scene.json",
+            json.dumps(
+                {
+                    "rtsl": 1,
+                    "import": ["std"],
+                    "camera": {
+                        "class": "PerspectiveCamera",
+                        "constructor": {"eye": camera, "target": [0, 0, 0], "up": [0, 1, 0]},
+                    },
+                    "materials": {
+                        "clay": {"class": "Lambert"},
+                        "lamp": {"class": "Emitter", "radiance": 9},
+                    },
+                    "objects": [
+                        {"primitive": lamp, "material": "lamp"},
+                        *(one(number) for number in range(count - 1)),
+                    ],
+                    "lights": [{"class": "PointLight", "position": [3, 5, 4]}],
+                    "background": 0.1,
+                    "render": {"engine": "path", "size": [24, 24], "spp": 4, **render},
+                }
+            ),
+        )
+
+    def render(self, picture, *arguments):
+        out, _ = self.run_rtslc(
+            *("render", "scene.json", "-o", picture, "-q", "-O0", "--json", *arguments)
+        )
+        return json.loads(out)
+
+    def test_every_way_gives_the_same_bits(self):
+        for count in (1, 8, 13, 32, 33):
+            self.scene(count)
+            self.render("a.exr")
+            for way in WAYS if count == 13 else WAYS[:1]:
+                self.render("b.exr", *way)
+                self.assert_same_bits("a.exr", "b.exr", (count, way))
+
+    def test_other_engines_and_precisions(self):
+        self.scene(13)
+        for arguments in (("--engine=classic",), ("--fp=double",), ("--engine=occlusion",)):
+            self.render("a.exr", *arguments)
+            self.render("b.exr", "--keep=tree", *arguments)
+            self.assert_same_bits("a.exr", "b.exr", arguments)
+
+    def test_no_ray_is_fitted_to_embree(self):
+        """Rays whose directions are so short that Embree would get scaled ones."""
+        self.write(
+            "short.rtsl",
+            "class Short : rt_Camera {\n"
+            "  void generateRay() {\n"
+            "    rt_RayOrigin = vec3(4.0 * rt_ScreenCoord - vec2(2.0), 9.0);\n"
+            "    rt_RayDirection = vec3(0.0, 0.0, -1e-12);\n"
+            "  }\n"
+            "};\n",
+        )
+        self.scene(13)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("short.rtsl")
+        scene["camera"] = {"class": "Short"}
+        self.write("scene.json", json.dumps(scene))
+        self.assertEqual(self.render("a.exr")["rescaledRays"], 0)
+        self.assertEqual(self.render("b.exr", "--keep=tree")["rescaledRays"], 24 * 24 * 4)
+        self.assert_same_bits("a.exr", "b.exr")
+
+
+if __name__ == "__main__":
+    unittest.main()
