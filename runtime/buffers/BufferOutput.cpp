@@ -9,6 +9,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -59,8 +60,8 @@ std::string numpyType(const ValueType &type, bool isInStruct = false) {
   }
 }
 
-std::string npyOf(const OutputBuffer &buffer) {
-  const bool isBool = buffer.type.kind == ValueType::Kind::Bool;
+/// What comes before the elements in a .npy file.
+std::string npyHeader(const OutputBuffer &buffer) {
   std::vector<std::uint32_t> shape = buffer.sizes;
   for (const std::uint32_t size : elementShape(buffer.type, buffer.type.elementSize))
     shape.push_back(size);
@@ -71,12 +72,15 @@ std::string npyOf(const OutputBuffer &buffer) {
   header += '\n';
   std::string file = "\x93NUMPY";
   file += {1, 0, static_cast<char>(header.size() & 0xff), static_cast<char>(header.size() >> 8)};
-  file += header;
-  if (!isBool)
-    return file.append(reinterpret_cast<const char *>(buffer.elements), buffer.bytes);
+  return file + header;
+}
+
+/// Bools, a byte each, as .npy has them.
+std::string bytesOfBools(const OutputBuffer &buffer) {
+  std::string bytes;
   for (std::size_t i = 0; i < buffer.bytes; i += 4)
-    file += static_cast<char>(buffer.elements[i] != 0);
-  return file;
+    bytes += static_cast<char>(buffer.elements[i] != 0);
+  return bytes;
 }
 
 std::string csvOf(const OutputBuffer &buffer) {
@@ -117,11 +121,16 @@ void writeBuffer(const std::string &path, const OutputBuffer &buffer) {
   const std::string extension = std::filesystem::path(path).extension().string();
   checkBufferFile(path, buffer.member, buffer.type.kind == ValueType::Kind::Struct,
                   buffer.type.name);
-  writeFileAtomically(
-      path, extension == ".npy" ? npyOf(buffer)
-            : extension == ".csv"
-                ? csvOf(buffer)
-                : std::string(reinterpret_cast<const char *>(buffer.elements), buffer.bytes));
+  if (extension == ".csv")
+    return writeFileAtomically(path, csvOf(buffer));
+  // The elements are written from where they lie: there may be no memory for another copy.
+  const std::string_view elements(reinterpret_cast<const char *>(buffer.elements), buffer.bytes);
+  if (extension != ".npy")
+    return writeFileAtomically(path, elements);
+  const std::string header = npyHeader(buffer);
+  if (buffer.type.kind == ValueType::Kind::Bool)
+    return writeFileAtomically(path, header + bytesOfBools(buffer));
+  writeFileAtomically(path, std::vector<std::string_view>{header, elements});
 }
 
 } // namespace rtsl::runtime

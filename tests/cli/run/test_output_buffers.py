@@ -3,11 +3,13 @@ buffers, and what is wrong."""
 
 import json
 import math
+import os
 import re
 import struct
+import subprocess
 import unittest
 
-from harness import DIAGNOSED, EXAMPLES, USAGE, Case
+from harness import DIAGNOSED, EXAMPLES, FINE, RTSLC, USAGE, Case
 from numpy_files import npy, read_npy
 
 SHADERS = (EXAMPLES.parent / "tests/cpp/scenes/Outputs.rtsl").read_text()  # of C++ programs too
@@ -544,6 +546,20 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
                 "not enough memory for member `distance`",
                 self.diagnose("run", "scene.json")[0]["message"],
             )
+
+    def test_elements_are_written_from_where_they_lie(self):
+        """Without a copy of them: 48 MB."""
+        start = {"class": "Probe", "histogram": "histogram", "most": "most"}
+        self.scene(start={**start, "distance": {"size": [3000, 4000]}})
+        most = []
+        for out in ([], ["--out=distance=d.npy"], ["--out=distance=d.raw"]):
+            process = subprocess.Popen([RTSLC, "run", "scene.json", "-q", *out], cwd=self.folder)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, FINE)
+            most.append(usage.ru_maxrss)  # KiB
+        for kibibytes in most[1:]:
+            self.assertLess(kibibytes - most[0], 24 << 10, most)
 
     def test_what_is_wrong_on_the_command_line(self):
         self.scene()
