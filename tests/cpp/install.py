@@ -27,6 +27,9 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
         "share/rtslc/library/preview/material.json",
     ):
         assert (prefix / expected).exists(), expected
+    # Where rtsl_add_shaders finds modules of the library.
+    package = next(prefix.rglob("rtslConfig.cmake")).read_text()
+    assert 'RTSL_LIBRARY "${PACKAGE_PREFIX_DIR}/share/rtslc/library"' in package, package
 
     # find_package and rtsl_add_shaders, with shaders of our own copy so that one can change.
     glass = folder / "glass"
