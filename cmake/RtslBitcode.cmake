@@ -63,7 +63,8 @@ asm(".section .rodata.@symbol@, \"a\", @progbits\n"
 ]] @ONLY)
   # Without ccache, which does not see what .incbin reads and would return an object with earlier
   # bytes. The launcher is a property of targets only.
-  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${file}")
+  set_source_files_properties("${embedding}" PROPERTIES OBJECT_DEPENDS "${file}"
+    SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(${symbol}Bytes OBJECT "${embedding}")
   set_target_properties(${symbol}Bytes PROPERTIES CXX_COMPILER_LAUNCHER "")
   target_sources(${library} PRIVATE $<TARGET_OBJECTS:${symbol}Bytes>)

@@ -53,9 +53,9 @@ void markIncluded(JsonValue &value) {
   }
 }
 
-class Expansion {
+class IncludeExpansion {
 public:
-  explicit Expansion(ErrorCollector &errors) : errors(errors) {}
+  explicit IncludeExpansion(ErrorCollector &errors) : errors(errors) {}
 
   void expand(JsonValue &root, const std::string &file) {
     const auto found = std::find_if(root.members.begin(), root.members.end(),
@@ -197,7 +197,7 @@ void checkVersion(const JsonValue &root) {
 
 std::vector<std::string> expandIncludes(JsonValue &root, const std::string &file,
                                         ErrorCollector &errors) {
-  Expansion expansion(errors);
+  IncludeExpansion expansion(errors);
   expansion.expand(root, file);
   return std::move(expansion.files);
 }

@@ -54,9 +54,9 @@ ModelFiles &modelsOf(SceneDescription &scene) {
 
 namespace {
 
-class Expansion {
+class ModelExpansion {
 public:
-  Expansion(JsonValue &root, SceneDescription &scene, ErrorCollector &errors)
+  ModelExpansion(JsonValue &root, SceneDescription &scene, ErrorCollector &errors)
       : root(root), scene(scene), errors(errors) {}
 
   void run() {
@@ -272,7 +272,7 @@ private:
 } // namespace
 
 void expandModels(JsonValue &root, SceneDescription &scene, ErrorCollector &errors) {
-  Expansion(root, scene, errors).run();
+  ModelExpansion(root, scene, errors).run();
 }
 
 } // namespace rtsl::scene

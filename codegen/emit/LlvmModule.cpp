@@ -6,6 +6,7 @@
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
+#include "codegen/emit/rewrites/UnrollLoops.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"
@@ -29,6 +30,10 @@
 #include "llvm/Transforms/IPO/Internalize.h"
 #include "llvm/Transforms/InstCombine/InstCombine.h"
 #include "llvm/Transforms/Scalar/EarlyCSE.h"
+#include "llvm/Transforms/Scalar/InstSimplifyPass.h"
+#include "llvm/Transforms/Scalar/LoopPassManager.h"
+#include "llvm/Transforms/Scalar/LoopRotation.h"
+#include "llvm/Transforms/Scalar/LoopUnrollPass.h"
 #include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Scalar/Scalarizer.h"
 #include "llvm/Transforms/Scalar/SimplifyCFG.h"
@@ -314,6 +319,25 @@ static void addRecordPacking(llvm::PassBuilder &builder) {
       });
 }
 
+/// Before calls are inlined, which are folded then.
+static void addUnrolling(llvm::PassBuilder &builder) {
+  builder.registerPipelineStartEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {
+        if (level == llvm::OptimizationLevel::O0)
+          return;
+        llvm::FunctionPassManager functions;
+        functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
+        functions.addPass(UnrollLoopsPass());
+        llvm::LoopPassManager loops;
+        loops.addPass(llvm::LoopRotatePass());
+        functions.addPass(llvm::createFunctionToLoopPassAdaptor(std::move(loops)));
+        functions.addPass(llvm::createFunctionToLoopPassAdaptor(
+            llvm::LoopFullUnrollPass(int(level.getSpeedupLevel()), /*OnlyWhenForced=*/true)));
+        functions.addPass(llvm::InstSimplifyPass());
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));
+      });
+}
+
 /// After LLVM's simplification, which would move the division behind the choice.
 static void addDivisionOfZeros(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
@@ -355,6 +379,7 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
 
   if (module.getFunction("rtsl_record_store"))
     addRecordPacking(builder);
+  addUnrolling(builder);
 
   static constexpr const llvm::OptimizationLevel *levels[] = {
       &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,

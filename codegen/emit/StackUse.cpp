@@ -53,7 +53,8 @@ struct CollectFrames : llvm::DiagnosticHandler {
 
 /// Tarjan's strongly connected components of the nodes in `chosen`, callees before callers. Chains
 /// of calls may be long, so the walk uses an explicit stack.
-std::vector<std::vector<Index>> componentsOf(const Graph &graph, const std::vector<bool> &chosen) {
+std::vector<std::vector<Index>> stronglyConnected(const Graph &graph,
+                                                  const std::vector<bool> &chosen) {
   constexpr Index none = ~Index(0);
   struct Step {
     Index node, next;
@@ -121,7 +122,7 @@ template <typename Weigh>
 std::uint64_t longestPath(const Graph &graph, const std::vector<bool> &chosen, Weigh weigh) {
   std::vector<std::uint64_t> below(graph.size(), 0); // from a node on, including itself
   std::uint64_t longest = 0;
-  for (const std::vector<Index> &component : componentsOf(graph, chosen)) {
+  for (const std::vector<Index> &component : stronglyConnected(graph, chosen)) {
     std::uint64_t deepest = 0;
     for (Index node : component)
       for (Index callee : graph[node].callees)
@@ -228,7 +229,7 @@ std::uint64_t StackUse::bytes(std::uint64_t rays, std::uint64_t referenceChain) 
   // At the end of the last ray's traversal the runtime calls methods: `intersect`, `anyHit`.
   std::vector<bool> leaves(known.size(), false);
   std::vector<bool> recurses(known.size(), false);
-  for (const std::vector<Index> &component : componentsOf(known, all)) {
+  for (const std::vector<Index> &component : stronglyConnected(known, all)) {
     bool leads = isCycle(known, component);
     for (Index node : component)
       for (Index callee : known[node].callees)

@@ -7,7 +7,7 @@ namespace rtsl {
 
 using Json = nlohmann::ordered_json;
 
-static Json describe(const StepReport &step) {
+static Json jsonOf(const StepReport &step) {
   return {{"after", step.step},
           {"savedBytes", step.savedBytes},
           {"storedBytes", step.traffic.stored.most},
@@ -16,7 +16,7 @@ static Json describe(const StepReport &step) {
           {"restoredBytesLeast", step.traffic.restored.least}};
 }
 
-static Json describe(const ExtraReport &extra) {
+static Json jsonOf(const ExtraReport &extra) {
   return {{"recomputedOperations", extra.recomputed},
           {"stores", extra.stores},
           {"loads", extra.loads},
@@ -30,7 +30,7 @@ static Json namesOf(const std::vector<LiveValue> &values) {
   return names;
 }
 
-static Json describe(const TraceReport &trace) {
+static Json jsonOf(const TraceReport &trace) {
   Json json = {{"location", trace.place.text()}};
   if (trace.isJoin)
     json["join"] = true;
@@ -45,14 +45,14 @@ static Json describe(const TraceReport &trace) {
   json["rematerialisedBytes"] = trace.rematerialisedBytes;
   json["steps"] = Json::array();
   for (const StepReport &step : trace.steps)
-    json["steps"].push_back(describe(step));
-  json["extra"] = describe(trace.extra);
-  json["extraOfPlainLiveness"] = describe(trace.plainly);
+    json["steps"].push_back(jsonOf(step));
+  json["extra"] = jsonOf(trace.extra);
+  json["extraOfPlainLiveness"] = jsonOf(trace.plainly);
   json["onlyScalesAndAdds"] = trace.onlyScalesAndAdds;
   return json;
 }
 
-static Json describe(const continuation::FrameSlot &slot) {
+static Json jsonOf(const continuation::FrameSlot &slot) {
   Json json = {{"name", slot.name}, {"offset", slot.offset}, {"size", slot.size}};
   if (slot.bit >= 0)
     json["bit"] = slot.bit;
@@ -61,7 +61,7 @@ static Json describe(const continuation::FrameSlot &slot) {
   return json;
 }
 
-static Json describe(const FunctionReport &function) {
+static Json jsonOf(const FunctionReport &function) {
   Json json = {{"name", function.name},
                {"frameSize", function.frame.size},
                {"frameSizeUnshared", function.frame.unshared},
@@ -75,9 +75,9 @@ static Json describe(const FunctionReport &function) {
   for (const TracePlace &last : function.tailTraces)
     json["lastTraces"].push_back(last.text());
   for (const TraceReport &trace : function.traces)
-    json["traces"].push_back(describe(trace));
+    json["traces"].push_back(jsonOf(trace));
   for (const continuation::FrameSlot &slot : function.frame.slots)
-    json["slots"].push_back(describe(slot));
+    json["slots"].push_back(jsonOf(slot));
   return json;
 }
 
@@ -93,7 +93,7 @@ static Json describeStack(const SplitReport &report) {
   return json;
 }
 
-Json describe(const SplitReport &report) {
+Json jsonOf(const SplitReport &report) {
   Json json = {{"version", 1},
                {"frameSize", report.frameSize()},
                {"stack", describeStack(report)},
@@ -110,12 +110,12 @@ Json describe(const SplitReport &report) {
                             {"waitsFor", report.rays.names(kind.sent)},
                             {"givesPlaceTo", report.rays.names(kind.sentLast)}});
   for (const FunctionReport &function : report.functions)
-    json["functions"].push_back(describe(function));
+    json["functions"].push_back(jsonOf(function));
   return json;
 }
 
 std::string toJson(const SplitReport &report) {
-  return describe(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return jsonOf(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 } // namespace rtsl

@@ -8,7 +8,7 @@
 namespace rtsl {
 
 /// The report for other programs: {"version": 1, "frameSize": ..., "functions": [...]}.
-nlohmann::ordered_json describe(const SplitReport &report);
+nlohmann::ordered_json jsonOf(const SplitReport &report);
 
 /// That as text.
 std::string toJson(const SplitReport &report);

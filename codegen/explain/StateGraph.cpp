@@ -75,7 +75,7 @@ std::string escaped(llvm::StringRef text, llvm::StringRef special,
   return result;
 }
 
-std::string quoted(const std::string &text) {
+std::string inQuotes(const std::string &text) {
   return "\"" + escaped(text, "\"\\", {"\\\"", "\\\\"}) + "\"";
 }
 
@@ -98,7 +98,7 @@ static void writeNodes(llvm::raw_ostream &out, const FunctionReport &function) {
     std::string label;
     for (const std::string &line : linesOf(function, state))
       label += escaped(line, "\"\\", {"\\\"", "\\\\"}) + "\\l";
-    out << "    " << quoted(state) << " [label=\"" << label << '"'
+    out << "    " << inQuotes(state) << " [label=\"" << label << '"'
         << (&state == &function.states.front() ? ", class=\"first\"" : "") << "];\n";
   }
 }
@@ -109,12 +109,12 @@ static void writeEdges(llvm::raw_ostream &out, const FunctionReport &function) {
     if (to.empty()) { // the function ends: in a tail trace, or by returning
       const bool isTailTrace = transition.kind == TransitionReport::Last;
       to = transition.from + (isTailTrace ? " last" : " done");
-      out << "    " << quoted(to)
+      out << "    " << inQuotes(to)
           << (isTailTrace ? " [shape=circle, label=\"\", width=0.12];\n" : " [shape=point];\n");
-      out << "    " << quoted(transition.from) << " -> " << quoted(to) << ";\n";
+      out << "    " << inQuotes(transition.from) << " -> " << inQuotes(to) << ";\n";
       continue;
     }
-    out << "    " << quoted(transition.from) << " -> " << quoted(to) << " ["
+    out << "    " << inQuotes(transition.from) << " -> " << inQuotes(to) << " ["
         << attributesOf(transition.kind) << "];\n";
   }
 }
@@ -129,8 +129,8 @@ std::string toDot(const SplitReport &report) {
   if (report.functions.empty())
     out << "  none [shape=plaintext, label=\"No function traces a ray.\"];\n";
   for (const FunctionReport &function : report.functions) {
-    out << "  subgraph " << quoted("cluster " + function.name) << " {\n";
-    out << "    label=" << quoted(titleOf(function)) << ";\n";
+    out << "  subgraph " << inQuotes("cluster " + function.name) << " {\n";
+    out << "    label=" << inQuotes(titleOf(function)) << ";\n";
     writeNodes(out, function);
     writeEdges(out, function);
     out << "  }\n";

@@ -1,6 +1,8 @@
 //===- SyntaxErrors.cpp - reporting and recovering from syntax errors -----===//
 #include "frontend/syntax/SyntaxErrors.h"
 
+#include "frontend/syntax/ForeignWords.h"
+
 #include "grammar/RtslLexer.h"
 #include "grammar/RtslParser.h"
 
@@ -22,11 +24,6 @@ std::size_t ruleOf(antlr4::Parser *parser) {
 
 std::size_t startOf(antlr4::Parser *parser) {
   return parser->getContext()->start->getTokenIndex();
-}
-
-bool isClosing(unsigned type) {
-  return type == RtslLexer::RIGHT_PAREN || type == RtslLexer::RIGHT_BRACKET ||
-         type == RtslLexer::RIGHT_BRACE;
 }
 
 /// Keywords that can only be at the beginning of a statement or declaration.

@@ -68,9 +68,9 @@ std::vector<std::size_t> choose(const ply::Element &element,
 }
 
 /// Reads the values of a file, in their order.
-class Reader {
+class ColumnReader {
 public:
-  Reader(const std::string &path, std::string_view bytes, const ply::Header &header)
+  ColumnReader(const std::string &path, std::string_view bytes, const ply::Header &header)
       : path(path), bytes(bytes), body(bytes, header) {}
 
   /// Appends those of the chosen properties to `numbers`, an element a row.
@@ -127,7 +127,7 @@ NumberArray readPly(const std::string &path, const std::string &element,
   const ply::Element &read = find(header, element, path);
   const std::vector<std::size_t> chosen = choose(read, columns, path);
   NumberArray array;
-  Reader reader(path, bytes, header);
+  ColumnReader reader(path, bytes, header);
   for (const ply::Element &other : header.elements) {
     if (&other == &read)
       reader.read(other, chosen, array.numbers);

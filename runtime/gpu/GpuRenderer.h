@@ -55,6 +55,9 @@ private:
   void own(Address address) override { memory.push_back(address); }
   Address clearedPixels() override;
   void fetchPixels() override;
+  std::uint64_t samplesInFlight() const override {
+    return std::uint64_t(figures.blocks) * figures.threadsPerBlock;
+  }
   std::uint64_t sliceBytes() override;
   double launchSeconds() const override;
   RtslPixelSums placeSums(PixelSums &sums) override;

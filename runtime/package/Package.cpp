@@ -147,9 +147,9 @@ std::string serialize(const Package &package) {
 
 namespace {
 
-class Reader {
+class PackageReader {
 public:
-  Reader(std::string_view file, const std::string &name) : file(file), name(name) {}
+  PackageReader(std::string_view file, const std::string &name) : file(file), name(name) {}
 
   Package read() {
     checkFile();
@@ -280,7 +280,7 @@ private:
 } // namespace
 
 Package parsePackage(std::string_view bytes, const std::string &name) {
-  return Reader(bytes, name).read();
+  return PackageReader(bytes, name).read();
 }
 
 Package readPackage(const std::string &path) {

@@ -1,7 +1,10 @@
 #include "runtime/program/PrintLog.h"
 
+#include "runtime/device/engines/PrintedLines.h"
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <mutex>
 #include <tuple>
@@ -43,7 +46,8 @@ std::string valueText(const PrintItem &item, const std::uint32_t *words) {
   return text + ")";
 }
 
-/// Each item, preceded by a space.
+} // namespace
+
 std::string itemsText(const PrintFormat &format, const std::uint32_t *words) {
   std::string text;
   for (const PrintItem &item : format) {
@@ -52,6 +56,8 @@ std::string itemsText(const PrintFormat &format, const std::uint32_t *words) {
   }
   return text;
 }
+
+namespace {
 
 std::string lineText(const PrintedLine &line, const std::vector<PrintFormat> &formats) {
   const std::string where =
@@ -72,12 +78,33 @@ void PrintLog::add(PrintedLine line) {
   lines.add(std::move(line));
 }
 
+void PrintLog::add(const RtslPrintedLines &printed, const std::uint32_t *words) {
+  const std::uint32_t *const end = words + std::min(printed.reserved, printed.capacity);
+  while (words != end && *words != 0) {
+    device::LineHeader header;
+    std::memcpy(&header, words, sizeof header);
+    const std::uint32_t *const next = words + header.words;
+    add({header.x,
+         header.y,
+         header.sample,
+         header.order,
+         header.format,
+         {words + device::headerWords, next}});
+    words = next;
+  }
+  lost += printed.lost;
+}
+
 std::vector<std::string> PrintLog::texts(const std::vector<PrintFormat> &formats) {
   std::vector<std::string> texts;
   for (const PrintedLine &line : lines.take())
     texts.push_back(lineText(line, formats));
   if (lines.total() > texts.size())
     texts.push_back(fmt::format("... and {} more lines", lines.total() - texts.size()));
+  if (lost > 0)
+    texts.push_back(fmt::format("... and {} lines anywhere between these, which did not fit in the "
+                                "memory of the device: print less in each sample",
+                                lost));
   return texts;
 }
 
@@ -101,27 +128,16 @@ PrintLog takePrintLog() {
   return std::exchange(shared.log, PrintLog());
 }
 
-/// Printing takes a lock; it need not be fast.
-static void add(const RtslState &state, PrintedLine line) {
-  if (RtslEvents *events = state.events) {
-    line.x = events->x;
-    line.y = events->y;
-    line.sample = events->sample;
-    line.order = events->printed++;
-  }
+void addPrinted(const RtslPrintedLines &printed, const std::uint32_t *words) {
+  SharedLog &shared = sharedLog();
+  std::lock_guard<std::mutex> lock(shared.mutex);
+  shared.log.add(printed, words);
+}
+
+void addPrinted(PrintedLine line) {
   SharedLog &shared = sharedLog();
   std::lock_guard<std::mutex> lock(shared.mutex);
   shared.log.add(std::move(line));
 }
 
-void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words) {
-  add(*state, {0, 0, PrintedLine::noSample, 0, 0, {}, itemsText(format, words.data())});
-}
-
 } // namespace rtsl::runtime
-
-extern "C" void rtsl_print(RtslState *state, std::uint32_t format, const std::uint32_t *words,
-                           std::uint32_t count) {
-  using rtsl::runtime::PrintedLine;
-  rtsl::runtime::add(*state, {0, 0, PrintedLine::noSample, 0, format, {words, words + count}});
-}

@@ -32,9 +32,12 @@ public:
   static constexpr std::size_t mostLines = 100000;
 
   void add(PrintedLine line);
+  /// The lines that a device has printed. `words` has at least those that they reserved, as far as
+  /// their capacity goes.
+  void add(const RtslPrintedLines &printed, const std::uint32_t *words);
 
   /// The lines as text, in order, each with the pixel and the sample that printed it; at the end
-  /// the number of further lines.
+  /// the number of further lines, and of those that a device had no memory for.
   std::vector<std::string> texts(const std::vector<PrintFormat> &formats);
 
 private:
@@ -42,10 +45,18 @@ private:
     bool operator()(const PrintedLine &a, const PrintedLine &b) const;
   };
   FirstFew<PrintedLine, ComesFirst> lines{mostLines};
+  std::uint64_t lost = 0;
 };
 
 /// `print` for shaders in C++.
 void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words);
+
+/// The values as text, each preceded by a space.
+std::string itemsText(const PrintFormat &format, const std::uint32_t *words);
+
+// Add to the output of the process: a line, and the lines of a device.
+void addPrinted(PrintedLine line);
+void addPrinted(const RtslPrintedLines &printed, const std::uint32_t *words);
 
 /// Takes the output since the last call, of all threads of the process.
 PrintLog takePrintLog();

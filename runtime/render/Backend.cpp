@@ -34,6 +34,7 @@ void addEvents(const RtslStatus &status, RenderStatistics &statistics) {
   statistics.raysTooDeep += status.raysTooDeep;
   for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
     statistics.exceptions[i] += status.exceptions[i];
+  add(status.visits, statistics.visits);
 }
 
 Image Backend::render(RenderStatistics *statistics) {

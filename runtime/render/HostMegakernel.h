@@ -36,6 +36,7 @@ private:
   void own(Address address) override;
   Address clearedPixels() override;
   void fetchPixels() override {} // they are there
+  std::uint64_t samplesInFlight() const override { return threads.count(); }
   std::uint64_t sliceBytes() override { return std::uint64_t(64) << 20; }
   double launchSeconds() const override { return std::numeric_limits<double>::infinity(); }
   RtslPixelSums placeSums(PixelSums &sums) override { return sums.pointers(); }

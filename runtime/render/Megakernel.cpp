@@ -1,6 +1,7 @@
 #include "runtime/render/Megakernel.h"
 
 #include "runtime/device/engines/Slice.h"
+#include "runtime/program/PrintLog.h"
 #include "runtime/render/Watch.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
@@ -79,12 +80,37 @@ void Megakernel::prepare() {
   if (options.wantsPicture)
     job.samples = reinterpret_cast<float *>(allocate(bytesAtOnce * ofPixel, "samples"));
   job.lanes = reinterpret_cast<std::uint8_t *>(allocate(raysBytes(job), "rays in flight"));
+  if (options.prints)
+    allocatePrinted();
   jobAddress = allocate(sizeof job, "the launch");
   if (options.countedStates) {
     stepCounts.resize(options.countedStates + stepsBesideStates);
     job.stepCounts = reinterpret_cast<RtslStepCount *>(
         allocate(stepCounts.size() * sizeof stepCounts[0], "the counts of steps"));
   }
+}
+
+/// For some lines of each sample in flight.
+void Megakernel::allocatePrinted() {
+  constexpr std::uint64_t ofSample = 1024, least = std::uint64_t(1) << 20,
+                          most = std::uint64_t(1) << 30;
+  const std::uint64_t bytes = std::clamp(samplesInFlight() * ofSample, least, most);
+  printedAddress = allocate(sizeof printed, "lines of `print`");
+  printed.capacity = bytes / sizeof *printed.words;
+  printed.words = reinterpret_cast<std::uint32_t *>(allocate(bytes, "lines of `print`"));
+  upload(printedAddress, &printed, sizeof printed);
+}
+
+/// Those of a launch that is over.
+void Megakernel::takePrinted() {
+  RtslPrintedLines lines;
+  download(&lines, printedAddress, sizeof lines);
+  std::vector<std::uint32_t> words(std::min(lines.reserved, lines.capacity));
+  if (words.empty())
+    return;
+  download(words.data(), reinterpret_cast<Address>(lines.words), words.size() * sizeof words[0]);
+  upload(printedAddress, &printed, sizeof printed);
+  addPrinted(lines, words.data());
 }
 
 void Megakernel::setWindow(const Window &window) {
@@ -134,7 +160,8 @@ void Megakernel::begin() {
 
 void Megakernel::beginAt(float *to) {
   pixels = to;
-  const RtslStatus nothing{};
+  RtslStatus nothing{};
+  nothing.printed = reinterpret_cast<RtslPrintedLines *>(printedAddress);
   upload(statusAddress, &nothing, sizeof nothing);
   if (!stepCounts.empty()) {
     stepCounts.assign(stepCounts.size(), {});
@@ -197,6 +224,8 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
           [&] { set(statusAddress + offsetof(RtslStatus, stop), 1); });
       kernelSeconds += runLanes(jobAddress);
     }
+    if (printedAddress)
+      takePrinted();
     RtslStatus status;
     download(&status, statusAddress, sizeof status);
     const std::uint64_t rendered = std::min(status.nextSample, all);

@@ -80,6 +80,8 @@ private:
   virtual Address clearedPixels() = 0;
   /// Copies them to `pixels`.
   virtual void fetchPixels() = 0;
+  /// How many samples are in flight at once, after raysBytes().
+  virtual std::uint64_t samplesInFlight() const = 0;
   /// The bytes that the samples of a slice may take.
   virtual std::uint64_t sliceBytes() = 0;
   /// A launch takes no samples any more after this time.
@@ -106,6 +108,8 @@ private:
   /// `share` gives what is done of the run, for a number of samples of the slice.
   void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
   void placeOpenPixels();
+  void allocatePrinted();
+  void takePrinted();
   std::uint32_t samplesAtOnce(std::uint64_t pixels) const;
   void buildTreesAt(Address sceneAddress);
 
@@ -113,6 +117,8 @@ private:
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0, placesAddress = 0;
+  Address printedAddress = 0; // if the program prints
+  RtslPrintedLines printed{}; // what is there at the beginning of a launch
   RtslJob job{};
   std::uint64_t windowPixels = 0; // of the job
   std::uint64_t mostInMemory = 1; // samples of a slice

@@ -16,6 +16,12 @@ static void checkRange(const char *what, std::uint64_t value, std::uint64_t lowe
     throw Error(message::optionOutOfRange(what, lowest, highest, value));
 }
 
+void add(const RtslTreeVisits &part, RtslTreeVisits &all) {
+  all.rays += part.rays;
+  all.nodes += part.nodes;
+  all.items += part.items;
+}
+
 void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met) {
   met.badRays += part.badRays;
   met.retracedRays += part.retracedRays;
@@ -23,6 +29,7 @@ void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met) {
   met.raysTooDeep += part.raysTooDeep;
   for (std::uint32_t i = 0; i < RTSL_EXCEPTIONS; ++i)
     met.exceptions[i] += part.exceptions[i];
+  add(part.visits, met.visits);
   met.notFinite.insert(met.notFinite.end(), part.notFinite.begin(), part.notFinite.end());
   std::sort(met.notFinite.begin(), met.notFinite.end());
   met.notFinite.resize(std::min(met.notFinite.size(), most));

@@ -63,6 +63,9 @@ struct RenderOptions {
   /// where there are none.
   bool keepsUnfinished = false;
 
+  /// The program has code for `print`.
+  bool prints = false;
+
   /// For a megakernel that counts its steps: the number of its states. 0: it does not.
   std::size_t countedStates = 0;
 
@@ -102,9 +105,12 @@ struct RenderStatistics {
   std::uint64_t pixelsWithoutSample = 0; // black, for none of their samples was finite
   std::vector<SampleId> notFinite;       // the first samples that are not finite
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
+  RtslTreeVisits visits{};                        // of the traversal of GPUs, if steps are counted
   std::vector<RtslStepCount>
       steps; // of warps, by placeOfStep (runtime/device/engines/StepCounts.h)
 };
+
+void add(const RtslTreeVisits &part, RtslTreeVisits &all);
 
 /// Adds what a part of the rendering has met: its rays, its exceptions, and the first `most` of its
 /// samples that are not finite.

@@ -24,11 +24,6 @@ constexpr double degrees = 180 / pi;
 constexpr double framingField = 40; // degrees
 constexpr double framingFrom[3] = {0.45, 0.35, 0.82};
 
-std::string nameOf(const JsonValue &element) {
-  const JsonValue *name = element.find("name");
-  return name && name->kind == Kind::String ? name->string : std::string();
-}
-
 JsonValue viewCamera(const JsonValue &source, const char *className,
                      const std::array<double, 3> &eye, const std::array<double, 3> &target,
                      const std::array<double, 3> &up, Modules &modules) {

@@ -161,7 +161,7 @@ Motion motionOf(const JsonValue &node, const std::string &what) {
   return motion;
 }
 
-static std::string nameOf(const JsonValue &element) {
+std::string nameOf(const JsonValue &element) {
   const JsonValue *name = element.find("name");
   return name && name->kind == Kind::String ? name->string : std::string();
 }

@@ -40,6 +40,9 @@ struct Motion {
 /// The motion of a node without a matrix. Throws WrongType, OutOfRange.
 Motion motionOf(const JsonValue &node, const std::string &what);
 
+/// The `name` of an element; empty: it has none.
+std::string nameOf(const JsonValue &element);
+
 /// What the elements of a list are called: their name if no other has it, and else their place,
 /// such as "nodes.3".
 class Labels {

@@ -51,11 +51,25 @@ GRAPH_ITEMS = (
 )
 
 
-def example_scenes(half=None):
-    """The scenes of the examples; with a half, 0 or 1, every second one, but for `make deep`, which
-    sets RTSL_DEEP. A scene takes seconds, and tests of the same code take different halves."""
+def example_scenes(part=None, parts=4):
+    """The scenes of the examples; with a part, 0 to parts - 1, that share of them, but for `make
+    deep`, which sets RTSL_DEEP. A scene takes seconds, and tests of the same code take different
+    ones."""
     scenes = sorted(EXAMPLES.glob("*/scene.json"))
-    return scenes if half is None or "RTSL_DEEP" in os.environ else scenes[half::2]
+    return scenes if part is None or "RTSL_DEEP" in os.environ else scenes[part::parts]
+
+
+def has_gpu():
+    try:
+        driver = ctypes.CDLL("libcuda.so.1")
+    except OSError:
+        return False
+    count = ctypes.c_int(0)
+    return (
+        driver.cuInit(0) == 0
+        and driver.cuDeviceGetCount(ctypes.byref(count)) == 0
+        and count.value > 0
+    )
 
 
 def bounded():

@@ -221,7 +221,7 @@ Reflection::Reflection(const Compilation &compilation) {
 Reflection::~Reflection() = default;
 
 void Reflection::addStates(const SplitReport &report) {
-  (*json)["tracing"] = rtsl::describe(report);
+  (*json)["tracing"] = jsonOf(report);
 }
 
 std::string Reflection::text() const {

@@ -22,10 +22,6 @@ using mlir::Value;
 
 namespace {
 
-mlir::Type pointee(Value address) {
-  return llvm::cast<ir::PtrType>(address.getType()).getPointee();
-}
-
 bool isBool(mlir::Type type) {
   return mlir::getElementTypeOrSelf(type).isInteger(1);
 }
@@ -74,7 +70,7 @@ struct ConvertVar : ConvertOpToLLVMPattern<ir::VarOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::VarOp op, OpAdaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    uint32_t size = ir::sizeInBytes(pointee(op.getResult()));
+    uint32_t size = ir::sizeInBytes(ir::pointee(op.getResult()));
     Value slot = stackSlot(rewriter, op.getLoc(), size);
     fillWithZeros(rewriter, op.getLoc(), slot, size);
     rewriter.replaceOp(op, slot);
@@ -87,7 +83,7 @@ struct ConvertClear : ConvertOpToLLVMPattern<ir::ClearOp> {
   LogicalResult matchAndRewrite(ir::ClearOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     fillWithZeros(rewriter, op.getLoc(), adaptor.getAddress(),
-                  ir::sizeInBytes(pointee(op.getAddress())));
+                  ir::sizeInBytes(ir::pointee(op.getAddress())));
     rewriter.eraseOp(op);
     return mlir::success();
   }
@@ -129,7 +125,7 @@ struct ConvertStore : ConvertOpToLLVMPattern<ir::StoreOp> {
     if (isBool(value.getType()))
       value = LLVM::ZExtOp::create(rewriter, op.getLoc(), ir::intLike(value.getType()), value);
     Value address = whereToStore(rewriter, op.getLoc(), op.getAddress(), adaptor.getAddress(),
-                                 ir::sizeInBytes(pointee(op.getAddress())));
+                                 ir::sizeInBytes(ir::pointee(op.getAddress())));
     rewriter.replaceOpWithNewOp<LLVM::StoreOp>(op, value, address, ir::memoryAlignment);
     return mlir::success();
   }
@@ -139,7 +135,7 @@ struct ConvertCopy : ConvertOpToLLVMPattern<ir::CopyOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::CopyOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    uint32_t size = ir::sizeInBytes(pointee(op.getSource()));
+    uint32_t size = ir::sizeInBytes(ir::pointee(op.getSource()));
     Value length =
         LLVM::ConstantOp::create(rewriter, op.getLoc(), rewriter.getI64IntegerAttr(size));
     Value target = whereToStore(rewriter, op.getLoc(), op.getTarget(), adaptor.getTarget(), size);
@@ -205,7 +201,7 @@ struct ConvertField : ConvertOpToLLVMPattern<ir::FieldOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::FieldOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    auto type = llvm::cast<ir::StructType>(pointee(op.getBase()));
+    auto type = llvm::cast<ir::StructType>(ir::pointee(op.getBase()));
     uint32_t offset = ir::fieldOffset(type, *type.fieldIndex(op.getField()));
     rewriter.replaceOp(op, offsetAddress(rewriter, op.getLoc(), adaptor.getBase(), offset));
     return mlir::success();
@@ -216,7 +212,7 @@ struct ConvertElement : ConvertOpToLLVMPattern<ir::ElementOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::ElementOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
-    uint32_t size = ir::sizeInBytes(pointee(op.getResult()));
+    uint32_t size = ir::sizeInBytes(ir::pointee(op.getResult()));
     Value index = widen(rewriter, op.getLoc(), adaptor.getIndex());
     rewriter.replaceOp(op, indexedAddress(rewriter, op.getLoc(), adaptor.getBase(), index, size));
     return mlir::success();
@@ -357,7 +353,7 @@ struct ConvertBufferElement : ConvertOpToLLVMPattern<ir::BufferElementOp> {
       index = LLVM::AddOp::create(rewriter, location, index, widen(rewriter, location, next));
     }
     rewriter.replaceOp(op, indexedAddress(rewriter, location, base, index,
-                                          ir::sizeInBytes(pointee(op.getResult()))));
+                                          ir::sizeInBytes(ir::pointee(op.getResult()))));
     return mlir::success();
   }
 };

@@ -26,10 +26,6 @@ using UsedIndices = llvm::SmallPtrSetImpl<mlir::Attribute> &;
 using SafeSlots = llvm::SmallVectorImpl<MemorySlot> &;
 using Subslots = llvm::DenseMap<mlir::Attribute, MemorySlot>;
 
-static mlir::Type pointee(Value address) {
-  return llvm::cast<PtrType>(address.getType()).getPointee();
-}
-
 /// The indices of an aggregate's parts, in order.
 static llvm::SmallVector<mlir::Attribute> partIndices(mlir::Type type) {
   llvm::SmallVector<mlir::Attribute> indices;

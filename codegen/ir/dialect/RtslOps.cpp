@@ -91,7 +91,7 @@ Value createZero(mlir::OpBuilder &builder, mlir::Location location, mlir::Type t
   return mlir::arith::ConstantOp::create(builder, location, builder.getZeroAttr(type));
 }
 
-static mlir::Type pointee(Value address) {
+mlir::Type pointee(Value address) {
   return llvm::cast<PtrType>(address.getType()).getPointee();
 }
 

@@ -26,6 +26,9 @@ class MemberDeclOp;
 struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
   llvm::StringRef getName() final { return "Frame"; }
 };
+/// What the address, of a !rtsl.ptr, points to.
+mlir::Type pointee(mlir::Value address);
+
 } // namespace rtsl::ir
 
 #define GET_OP_CLASSES

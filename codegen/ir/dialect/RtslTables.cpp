@@ -15,10 +15,6 @@
 
 namespace rtsl::ir {
 
-static mlir::Type pointee(mlir::Value address) {
-  return llvm::cast<PtrType>(address.getType()).getPointee();
-}
-
 bool isNumbers(mlir::Type type) {
   if (auto structure = llvm::dyn_cast<StructType>(type))
     return llvm::all_of(structure.getFieldTypes(),

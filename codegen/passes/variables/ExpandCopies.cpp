@@ -19,10 +19,6 @@ namespace {
 
 constexpr unsigned mostLeaves = 64;
 
-mlir::Type pointee(Value address) {
-  return llvm::cast<ir::PtrType>(address.getType()).getPointee();
-}
-
 bool holdsBuffer(mlir::Type type) {
   if (auto array = llvm::dyn_cast<ir::ArrayType>(type))
     return holdsBuffer(array.getElement());
@@ -48,7 +44,7 @@ bool staysWhole(Value address) {
 /// the same for all of them.
 void forEachLeaf(OpBuilder &builder, Location location, llvm::ArrayRef<Value> addresses,
                  llvm::function_ref<void(llvm::ArrayRef<Value>)> visit) {
-  mlir::Type type = pointee(addresses.front());
+  mlir::Type type = ir::pointee(addresses.front());
   llvm::SmallVector<Value, 2> parts;
   if (auto structure = llvm::dyn_cast<ir::StructType>(type)) {
     for (mlir::StringAttr field : structure.getFieldNames()) {
@@ -83,7 +79,7 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
     auto module = getOperation()->getParentOfType<mlir::ModuleOp>();
     const bool isForCpp = module && ir::attr::source.isOn(module);
     getOperation().walk([&](ir::CopyOp copy) {
-      if (!isSmall(pointee(copy.getSource())) ||
+      if (!isSmall(ir::pointee(copy.getSource())) ||
           (isForCpp && staysWhole(copy.getSource()) && staysWhole(copy.getTarget())))
         return;
       builder.setInsertionPoint(copy);
@@ -95,11 +91,11 @@ struct ExpandCopies : mlir::PassWrapper<ExpandCopies, mlir::OperationPass<mlir::
       copy.erase();
     });
     getOperation().walk([&](ir::ClearOp clear) {
-      if (!isSmall(pointee(clear.getAddress())) || (isForCpp && staysWhole(clear.getAddress())))
+      if (!isSmall(ir::pointee(clear.getAddress())) || (isForCpp && staysWhole(clear.getAddress())))
         return;
       builder.setInsertionPoint(clear);
       forEachLeaf(builder, clear.getLoc(), {clear.getAddress()}, [&](llvm::ArrayRef<Value> leaf) {
-        Value zero = ir::createZero(builder, clear.getLoc(), pointee(leaf[0]));
+        Value zero = ir::createZero(builder, clear.getLoc(), ir::pointee(leaf[0]));
         ir::StoreOp::create(builder, clear.getLoc(), zero, leaf[0]);
       });
       clear.erase();

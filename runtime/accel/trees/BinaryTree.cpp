@@ -166,7 +166,7 @@ Split bestSplit(Iterator begin, Iterator end, const Bounds &all, unsigned thread
 }
 
 /// Builds the tree of a range of boxes, and reorders these.
-class Builder {
+class TopDownBuilder {
 public:
   using Nodes = std::vector<BinaryTree::Node>;
   /// A subtree to be built later, in place of a node.
@@ -177,7 +177,7 @@ public:
 
   /// Subtrees of up to `smallest` boxes are left out. What other threads run meanwhile has no
   /// effect on the tree.
-  Builder(std::vector<NumberedBox> &boxes, std::size_t smallest, unsigned threads)
+  TopDownBuilder(std::vector<NumberedBox> &boxes, std::size_t smallest, unsigned threads)
       : boxes(boxes), smallest(smallest), threads(threads) {}
 
   /// Builds the node of these boxes, one or more; returns its index.
@@ -252,7 +252,7 @@ private:
 };
 
 /// Puts a subtree, whose root is the first of its nodes, in the place of a node.
-void insert(BinaryTree &tree, std::uint32_t place, const Builder::Nodes &subtree) {
+void insert(BinaryTree &tree, std::uint32_t place, const TopDownBuilder::Nodes &subtree) {
   const auto moved = std::uint32_t(tree.nodes.size()) - 1; // all but the root
   for (std::size_t i = 0; i < subtree.size(); ++i) {
     BinaryTree::Node node = subtree[i];
@@ -274,14 +274,14 @@ BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads) {
   if (tree.boxes.empty())
     return tree;
   // The upper part by all threads together, then each subtree by one of them.
-  Builder top(tree.boxes, largestForOneThread(tree.boxes.size()), threads);
+  TopDownBuilder top(tree.boxes, largestForOneThread(tree.boxes.size()), threads);
   top.node(tree.boxes.begin(), tree.boxes.end(), 0);
   tree.nodes = std::move(top.nodes);
-  std::vector<Builder::Nodes> subtrees(top.later.size());
+  std::vector<TopDownBuilder::Nodes> subtrees(top.later.size());
   forEachInParallel(threads, subtrees.size(), [&](std::size_t i) {
     const BinaryTree::Node &root = tree.nodes[top.later[i].node];
     const Iterator first = tree.boxes.begin() + root.first;
-    Builder builder(tree.boxes, 0, 1);
+    TopDownBuilder builder(tree.boxes, 0, 1);
     builder.node(first, first + root.count, top.later[i].depth);
     subtrees[i] = std::move(builder.nodes);
   });

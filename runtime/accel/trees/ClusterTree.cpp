@@ -58,9 +58,9 @@ std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
 /// Usual are 20 to 70.
 constexpr std::uint32_t manyRounds = 150;
 
-class Builder {
+class ClusterBuilder {
 public:
-  Builder(BuildDevice &device, const Items &items) : device(device) {
+  ClusterBuilder(BuildDevice &device, const Items &items) : device(device) {
     build.items = items;
     build.count = items.count;
     const std::size_t bytes = placeArrays(build, 0);
@@ -69,9 +69,9 @@ public:
     address = scratch + bytes;
     device.upload(address, &build, sizeof build);
   }
-  ~Builder() { device.release(scratch); }
-  Builder(const Builder &) = delete;
-  Builder &operator=(const Builder &) = delete;
+  ~ClusterBuilder() { device.release(scratch); }
+  ClusterBuilder(const ClusterBuilder &) = delete;
+  ClusterBuilder &operator=(const ClusterBuilder &) = delete;
 
   void setBoxes(const RtslBox *boxes) {
     device.upload(addressOf(build.boxes + build.count), boxes, build.count * sizeof *boxes);
@@ -191,7 +191,7 @@ private:
 } // namespace
 
 ClusterTree buildClusterTree(BuildDevice &device, const Items &items, const RtslBox *boxes) {
-  Builder builder(device, items);
+  ClusterBuilder builder(device, items);
   if (boxes)
     builder.setBoxes(boxes);
   else

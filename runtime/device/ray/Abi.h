@@ -253,6 +253,21 @@ typedef struct RtslLaunch {
 /// image.
 #define RTSL_FIRST_NOT_FINITE 8
 
+/// The lines that `print` has written on a device since the host took them
+/// (runtime/device/engines/PrintedLines.h).
+typedef struct RtslPrintedLines {
+  uint64_t capacity; // of `words`
+  uint64_t reserved; // words for all lines, also for those that did not fit
+  uint64_t lost;     // lines that did not fit
+  uint32_t *words;
+} RtslPrintedLines;
+
+/// What searches of the trees visit, of programs that count their steps.
+typedef struct RtslTreeVisits {
+  uint64_t rays;         // searches from the root of the world
+  uint64_t nodes, items; // of all of them, also in the trees of meshes
+} RtslTreeVisits;
+
 /// What all lanes of a job write, atomically. The host clears it before.
 typedef struct RtslStatus {
   uint64_t nextSample;          // the first of the slice that no lane has taken
@@ -262,8 +277,11 @@ typedef struct RtslStatus {
   uint64_t pixelsWithoutSample; // black, because none of their samples was finite
   uint64_t firstNotFinite[RTSL_FIRST_NOT_FINITE]; // ~(sample + pixel * 2^32), descending; 0: none
   uint64_t exceptions[RTSL_EXCEPTIONS];           // samples that ended with each exception
+  RtslTreeVisits visits;
   uint32_t stop;    // set by the host or a lane: no lane takes samples any more
   uint32_t problem; // RTSL_PROBLEM_*
+  RtslPrintedLines
+      *printed; // null: the program prints nothing, or the host takes each line at once
 } RtslStatus;
 
 #define RTSL_PROBLEM_NONE 0u
@@ -568,7 +586,8 @@ void rtsl_raise(RtslState *state, uint32_t exception);
 /// Has an exception ended the sample? Then it no longer writes to output buffers.
 uint32_t rtsl_is_abandoned(RtslState *state);
 
-/// Defined by the host: `print` number `format` of the program, with the words of its values.
+/// `print` number `format` of the program, with the words of its values. On CPUs it is defined by
+/// the host.
 void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
 
 /// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents

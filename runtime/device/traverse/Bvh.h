@@ -11,6 +11,7 @@
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/BoxRange.h"
+#include "runtime/device/traverse/TreeVisits.h"
 #include "runtime/device/traverse/Triangle.h"
 
 namespace rtsl::device {
@@ -192,6 +193,7 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
   const uint32_t flipped = flippedSlots(ray);
   const RtslBvhNode *const nodes = launch.nodes;
   const RtslTreeItem *const treeItems = launch.treeItems;
+  TreeVisits visits(launch, root);
   Open stack[maxBvhDepth + mostPutOff];
   int top = 0;
   Open open = {root, 1u << (24 + flipped)};
@@ -205,6 +207,7 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
       open.bits &= ~(1u << next);
       if (open.hasNodes())
         stack[top++] = open;
+      visits.node();
       const NodeWords node(inMemory);
       const uint32_t entered = enteredChildren(node, inMemory, ray, flipped, tMin, tMax() * slack);
       firstItem = node.firstItem();
@@ -218,6 +221,7 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
         stack[top++] = {firstItem, items};
         break;
       }
+      visits.item();
       if (test(treeItems[firstItem + uint32_t(__builtin_ctz(items))]))
         return true;
     }

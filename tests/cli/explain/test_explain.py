@@ -266,7 +266,7 @@ class Explain(Case):
         ]
         rows += [
             (scene, f"--trace={traces[number % 2]}")
-            for number, scene in enumerate(example_scenes(half=1))
+            for number, scene in enumerate(example_scenes(part=1))
         ]
         for scene, *options in rows:
             for picture, kept in (("a.exr", []), ("b.exr", ["--keep=all"])):
@@ -352,7 +352,7 @@ class Explain(Case):
 
     def test_what_is_left_out_can_change_without_changing_the_program(self):
         changed = 0
-        for example in example_scenes(half=0):
+        for example in example_scenes(part=2):
             for old in self.folder.iterdir():
                 shutil.rmtree(old) if old.is_dir() else old.unlink()
             shutil.copytree(example.parent, self.folder, dirs_exist_ok=True)

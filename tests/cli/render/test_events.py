@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from harness import EXAMPLES, Case
+from harness import EXAMPLES, Case, has_gpu
 
 SHADERS = """
 struct P { float depth; };
@@ -89,6 +89,19 @@ class Events(Case):
                 self.assertEqual(
                     self.render("scene.json", "b.exr", "--print", *arguments)["printed"], said
                 )
+                self.assert_same("a.exr", "b.exr")
+
+    def test_more_lines_than_the_memory_of_a_launch(self):
+        many = json.loads(json.dumps(SCENE).replace('"size": [4, 3]', '"size": [100, 100]'))
+        self.write("shaders.rtsl", SHADERS.replace("x == 1u ||", "x % 2u == 1u ||"))
+        self.write("scene.json", json.dumps(many))
+        said = self.render("scene.json", "a.exr", "--print")["printed"]
+        self.assertEqual(len(said), 2 * (50 * 100 + 50))
+        targets = ["host-megakernel"] + (["gpu"] if has_gpu() else [])
+        for target in targets:
+            with self.subTest(target=target):
+                again = self.render("scene.json", "b.exr", "--print", "--target", target)
+                self.assertEqual(again["printed"], said)
                 self.assert_same("a.exr", "b.exr")
 
     def test_nothing_is_printed_unless_asked(self):

@@ -14,14 +14,8 @@ HOST = "--target=host-megakernel"
 WAVE = "--organisation=wavefront"
 SMALL = ("--size=24x18", "--spp=3", "-q")
 
-# Recursion with a stack; payloads; random paths; motion; variables of the graph.
-SCENES = (
-    "glass/scene.json",
-    "whitted-programs/scene.json",
-    "cornell/scene.json",
-    "whirligig/whirligig.json",
-    "inherit/inherit.json",
-)
+# Recursion with a stack and payloads; motion; random paths, and variables of the graph.
+SCENES = ("whitted-programs/scene.json", "whirligig/whirligig.json", "inherit/inherit.json")
 
 
 class Organisations(Case):

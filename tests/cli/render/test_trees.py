@@ -40,7 +40,7 @@ class Trees(Case):
         self.write("scene.json", json.dumps(scene))
 
     def test_the_examples_have_the_same_bits(self):
-        for scene in example_scenes(half=0):
+        for scene in example_scenes(part=0):
             with self.subTest(scene=scene):
                 self.run_rtslc("pack", str(scene), "-o", "x.rtslpkg", "-q", "-O0")
                 self.render("--target=host", "--tree=good")
@@ -67,6 +67,26 @@ class Trees(Case):
         self.assertIsNone(self.tree_of("--target=host", "--compare", "first.exr"))
         again = self.tree_of("--target=host", "--tree=fast", "--compare", "first.exr")
         self.assertEqual(again["nodes"], fast["nodes"])
+
+    def test_visits_are_counted_with_the_steps(self):
+        self.bumpy_scene()
+        counted = ("render", "scene.json", "-o", "a.exr", *SMALL, "--target=host-megakernel")
+        out, _ = self.run_rtslc(*counted, "--json", "--lane-use")
+        document = json.loads(out)
+        tree = document["tree"]
+        steps = {one["step"]: one["steps"] for one in document["steps"]}
+        self.assertEqual(tree["rays"], steps["traversal"])
+        for visited in ("nodes", "items"):
+            self.assertGreater(tree[visited + "PerRay"], 0.5)
+            self.assertLess(tree[visited + "PerRay"], tree[visited] / 2)
+        _, error = self.run_rtslc(*counted, "--lane-use")
+        self.assertIn(
+            f"{tree['rays']} rays in the tree: {tree['nodesPerRay']:.1f} nodes and "
+            f"{tree['itemsPerRay']:.1f} items each",
+            error,
+        )
+        out, _ = self.run_rtslc(*counted, "--json")
+        self.assertNotIn("rays", json.loads(out)["tree"])
 
     def test_every_target_says_what_it_built(self):
         self.bumpy_scene()

@@ -66,10 +66,9 @@ const std::vector<Configuration> &fastConfigurations() {
 
 const std::vector<Configuration> &doubleConfigurations() {
   static const std::vector<Configuration> table = {
-      {"double_recurse_O0_nan", undefined(inDouble(options(TraceMode::Recurse, 0)), asNan)},
       {"double_recurse_O2_bound", inDouble(options(TraceMode::Recurse, 2)),
        runtime::Traversal::Embree, true},
-      {"double_split_O0", inDouble(options(TraceMode::Split, 0))},
+      {"double_split_O0_nan", undefined(inDouble(options(TraceMode::Split, 0)), asNan)},
   };
   return table;
 }

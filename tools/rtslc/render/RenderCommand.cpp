@@ -171,10 +171,6 @@ void addAovOption(CLI::App &command, std::vector<std::string> &aovs) {
 
 /// Rejects options that a GPU cannot support.
 void rejectWithoutGpuSupport(const RenderCommandOptions &options) {
-  if (options.prints)
-    throw CLI::ValidationError("--print",
-                               "a GPU cannot print; `--target=host-megakernel` prints, and renders "
-                               "the same picture");
   if (options.common.compile.floatingPoint == FloatingPoint::Double)
     throw CLI::ValidationError("--fp",
                                "shaders on a GPU compute in single precision; give strict or fast");

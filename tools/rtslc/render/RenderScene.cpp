@@ -246,7 +246,7 @@ private:
     request.features |= features(options.prints, options.exceptions);
     keep(options.common.keep, request, compileOptions);
     compileOptions.countsSteps = options.countsSteps;
-    if (options.common.keep.has(Item::Events) && options.target != TargetName::Gpu)
+    if (options.common.keep.has(Item::Events))
       request.features |= RTSL_FEATURE_PRINT; // the lines are thrown away
     scene = target->compile(*module, request, compileOptions, messages.diagnostics,
                             [&](const auto &program) {
@@ -274,6 +274,7 @@ private:
         renderOptions(options, input->description.render);
     render.samplesPerPixel = samples.value_or(render.samplesPerPixel);
     render.cancel = stop ? stop : catchInterruptions();
+    render.prints = request.features & RTSL_FEATURE_PRINT;
     if (options.countsSteps) {
       summary.stateNames = target->stateNames(*scene);
       render.countedStates = summary.stateNames.size();

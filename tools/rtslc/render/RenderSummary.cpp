@@ -88,6 +88,11 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
       document["exceptions"][exceptionNames[i]] = statistics.exceptions[i];
   if (statistics.tree)
     document["tree"] = tool::toJson(*statistics.tree);
+  if (const RtslTreeVisits &visits = statistics.visits; visits.rays > 0) {
+    document["tree"]["rays"] = visits.rays;
+    document["tree"]["nodesPerRay"] = double(visits.nodes) / double(visits.rays);
+    document["tree"]["itemsPerRay"] = double(visits.items) / double(visits.rays);
+  }
   for (std::size_t i = 0; i < statistics.steps.size(); ++i)
     document["steps"].push_back({{"step", nameOfStep(summary, i)},
                                  {"steps", statistics.steps[i].steps},
@@ -99,6 +104,14 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
     for (const runtime::GpuStatistics &gpu : summary.gpus)
       document["gpus"].push_back(tool::toJson(gpu));
   return document.dump(2) + "\n";
+}
+
+/// Empty if they were not counted.
+std::string visitsText(const RtslTreeVisits &visits) {
+  return visits.rays == 0 ? ""
+                          : fmt::format("{} rays in the tree: {:.1f} nodes and {:.1f} items each\n",
+                                        visits.rays, double(visits.nodes) / double(visits.rays),
+                                        double(visits.items) / double(visits.rays));
 }
 
 /// A line for each step that was taken, the most frequent first; empty if they were not counted.
@@ -156,7 +169,7 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
     fmt::print(stderr, "{}\n", gpuText(gpu));
   if (statistics.tree)
     fmt::print(stderr, "{}\n", treeText(*statistics.tree));
-  fmt::print(stderr, "{}", stepsText(summary));
+  fmt::print(stderr, "{}{}", visitsText(statistics.visits), stepsText(summary));
   for (const std::string &text : exceptionTexts(statistics, render))
     fmt::print(stderr, "{}\n", text);
   if (const std::string text = tool::badRaysText(statistics); !text.empty())

@@ -110,9 +110,9 @@ llvm::StringRef symbolOf(FuncOp function) {
   return function ? function.getSymName() : llvm::StringRef();
 }
 
-class Finder {
+class KeptStateFinder {
 public:
-  explicit Finder(mlir::ModuleOp module);
+  explicit KeptStateFinder(mlir::ModuleOp module);
   Fields run();
 
 private:
@@ -132,7 +132,7 @@ private:
   llvm::StringMap<Fields> live;      // at the beginnings of states
 };
 
-Finder::Finder(mlir::ModuleOp module)
+KeptStateFinder::KeptStateFinder(mlir::ModuleOp module)
     : module(module), illumination(symbolOf(ir::entryPoint(module, ir::slot::illumination))),
       exception(symbolOf(ir::entryPoint(module, ir::slot::exception))) {
   module.walk([&](mlir::Operation *op) {
@@ -144,7 +144,7 @@ Finder::Finder(mlir::ModuleOp module)
 }
 
 /// The fields that the runtime reads to execute an operation.
-Fields Finder::implicitReads(mlir::Operation *op) const {
+Fields KeptStateFinder::implicitReads(mlir::Operation *op) const {
   Fields inherited; // by a ray that is sent; without payloads these are the same for all rays
   if (sendsPayloads)
     inherited = Fields::of({device::keptTime, device::keptRayMask, device::keptRayRoot});
@@ -177,7 +177,7 @@ Fields Finder::implicitReads(mlir::Operation *op) const {
 }
 
 /// The fields that an operation reads, directly or through calls.
-Fields Finder::reads(mlir::Operation *op) const {
+Fields KeptStateFinder::reads(mlir::Operation *op) const {
   Fields fields = implicitReads(op);
   if (llvm::isa<ir::FieldOp, ir::ElementOp>(op))
     return fields; // only computes an address
@@ -207,13 +207,13 @@ Fields written(mlir::Operation *op) {
   return fieldsAt(address);
 }
 
-Fields Finder::ofFunction(llvm::StringRef name) const {
+Fields KeptStateFinder::ofFunction(llvm::StringRef name) const {
   const auto known = functions.find(name);
   return known == functions.end() ? Fields::all() : known->second;
 }
 
 /// The fields that functions read; declared ones may read all.
-void Finder::summarise() {
+void KeptStateFinder::summarise() {
   for (FuncOp function : module.getOps<FuncOp>())
     functions[function.getSymName()] = function.isExternal() ? Fields::all() : Fields();
   bool changed = true;
@@ -235,7 +235,7 @@ bool bringsColor(FuncOp state) {
 }
 
 /// The fields that are live after a state with this end.
-Fields Finder::after(ir::NextOp next) const {
+Fields KeptStateFinder::after(ir::NextOp next) const {
   Fields fields;
   if (sendsPayloads) // whether a color is returned to the sender
     fields.add(Fields::of({device::keptRayType}));
@@ -260,7 +260,7 @@ Fields Finder::after(ir::NextOp next) const {
   return fields;
 }
 
-Fields Finder::atEnd(FuncOp state, ir::EndOp end) const {
+Fields KeptStateFinder::atEnd(FuncOp state, ir::EndOp end) const {
   if (auto next = end.getNext().getDefiningOp<ir::NextOp>())
     return after(next);
   Fields fields; // either of several
@@ -269,7 +269,7 @@ Fields Finder::atEnd(FuncOp state, ir::EndOp end) const {
 }
 
 /// Liveness within a state. True if fields were added to those live at its beginning.
-bool Finder::update(FuncOp state) {
+bool KeptStateFinder::update(FuncOp state) {
   llvm::DenseMap<mlir::Block *, Fields> liveIn;
   bool changed = true;
   while (changed) {
@@ -290,7 +290,7 @@ bool Finder::update(FuncOp state) {
   return live[state.getSymName()].add(liveIn.lookup(&state.getBody().front()));
 }
 
-Fields Finder::run() {
+Fields KeptStateFinder::run() {
   Fields kept;
   if (hasOpenCalls) {
     kept = Fields::all();
@@ -326,7 +326,7 @@ std::uint32_t KeptState::words(std::uint32_t colorComponents) const {
 }
 
 KeptState findKeptState(mlir::ModuleOp module) {
-  const Fields fields = Finder(module).run();
+  const Fields fields = KeptStateFinder(module).run();
   return {fields.fields, fields.attributes};
 }
 

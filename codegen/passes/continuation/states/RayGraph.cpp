@@ -17,9 +17,9 @@ namespace rtsl {
 
 namespace {
 
-class Finder {
+class RayFinder {
 public:
-  explicit Finder(mlir::ModuleOp module) : module(module) { graph.kinds.push_back({"color"}); }
+  explicit RayFinder(mlir::ModuleOp module) : module(module) { graph.kinds.push_back({"color"}); }
   RayGraph run();
 
 private:
@@ -48,7 +48,7 @@ bool isState(mlir::func::FuncOp function) {
 }
 
 /// The kind of rays with this payload: its number in a linked program, otherwise the next one.
-std::uint32_t Finder::payload(llvm::StringRef name, std::optional<std::uint32_t> number) {
+std::uint32_t RayFinder::payload(llvm::StringRef name, std::optional<std::uint32_t> number) {
   auto known = std::find_if(graph.kinds.begin() + 1, graph.kinds.end(),
                             [&](const RayGraph::Kind &kind) { return kind.name == name; });
   if (!number && known != graph.kinds.end())
@@ -60,19 +60,19 @@ std::uint32_t Finder::payload(llvm::StringRef name, std::optional<std::uint32_t>
   return kind;
 }
 
-void Finder::numberPayloads() {
+void RayFinder::numberPayloads() {
   for (auto state : module.getOps<mlir::func::FuncOp>())
     if (isState(state))
       state.walk(
           [&](ir::SpawnPayloadOp spawn) { payload(payloadName(spawn), spawn.getRayType()); });
 }
 
-std::uint32_t Finder::allPayloads() const {
+std::uint32_t RayFinder::allPayloads() const {
   const std::uint32_t end = graph.kinds.size() - (graph.hasGenerate ? 1 : 0);
   return ((1ull << end) - 1) & ~1ull;
 }
 
-void Finder::findCallers() {
+void RayFinder::findCallers() {
   bool changed = true;
   while (changed) {
     changed = false;
@@ -88,7 +88,7 @@ void Finder::findCallers() {
 }
 
 /// The kinds of rays that may run this state, as bits.
-std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
+std::uint32_t RayFinder::kindsOf(mlir::func::FuncOp state) const {
   if (continuation::isFramed(state))
     return kindsOfCallers.lookup(state.getSymName().rsplit(".state").first);
   llvm::StringRef method;
@@ -112,7 +112,7 @@ std::uint32_t Finder::kindsOf(mlir::func::FuncOp state) const {
   return !slot.empty() || ir::attr::dispatch.isOn(state) ? allPayloads() : 0;
 }
 
-void Finder::addRays(mlir::func::FuncOp state) {
+void RayFinder::addRays(mlir::func::FuncOp state) {
   std::uint32_t sent = 0, sentLast = 0;
   auto add = [&](std::uint32_t kind, bool isLast) { (isLast ? sentLast : sent) |= 1u << kind; };
   state.walk([&](mlir::Operation *op) {
@@ -129,7 +129,7 @@ void Finder::addRays(mlir::func::FuncOp state) {
     }
 }
 
-bool Finder::waitsOnce() {
+bool RayFinder::waitsOnce() {
   const std::size_t generate = graph.hasGenerate ? graph.kinds.size() - 1 : graph.kinds.size();
   for (std::size_t kind = 0; kind < graph.kinds.size(); ++kind)
     if (graph.kinds[kind].sent != 0 && kind != generate)
@@ -154,7 +154,7 @@ bool sends(mlir::func::FuncOp state) {
       state, [](mlir::Operation *op) { return llvm::isa<ir::SpawnOp, ir::SpawnPayloadOp>(op); });
 }
 
-bool Finder::raysReplace() {
+bool RayFinder::raysReplace() {
   auto followsTrace = [](mlir::func::FuncOp state) {
     return !ir::attr::entry.isOn(state) && ir::attr::state.of(state).getInt() > 0;
   };
@@ -164,7 +164,7 @@ bool Finder::raysReplace() {
          });
 }
 
-RayGraph Finder::run() {
+RayGraph RayFinder::run() {
   numberPayloads();
   for (auto state : module.getOps<mlir::func::FuncOp>())
     graph.hasGenerate |= isState(state) && isOfGenerate(state);
@@ -213,7 +213,7 @@ bool isOfGenerate(mlir::func::FuncOp state) {
 }
 
 RayGraph findRays(mlir::ModuleOp module) {
-  return Finder(module).run();
+  return RayFinder(module).run();
 }
 
 } // namespace rtsl
