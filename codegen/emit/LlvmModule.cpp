@@ -3,6 +3,7 @@
 
 #include "codegen/emit/rewrites/DivideZeros.h"
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
+#include "codegen/emit/rewrites/FoldKnownCalls.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
@@ -319,7 +320,7 @@ static void addRecordPacking(llvm::PassBuilder &builder) {
       });
 }
 
-/// Before calls are inlined, which are folded then.
+/// Before functions are inlined: which calls have constants is known then.
 static void addUnrolling(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {
@@ -334,6 +335,7 @@ static void addUnrolling(llvm::PassBuilder &builder) {
         functions.addPass(llvm::createFunctionToLoopPassAdaptor(
             llvm::LoopFullUnrollPass(int(level.getSpeedupLevel()), /*OnlyWhenForced=*/true)));
         functions.addPass(llvm::InstSimplifyPass());
+        functions.addPass(FoldKnownCallsPass());
         passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));
       });
 }

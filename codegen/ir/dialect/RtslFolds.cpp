@@ -24,7 +24,7 @@ using mlir::OpFoldResult;
 // Elementary functions
 //===----------------------------------------------------------------------===//
 
-static float evaluate(Elementary function, llvm::ArrayRef<float> x) {
+float evaluate(Elementary function, llvm::ArrayRef<float> x) {
   switch (function) {
 #define RTSL_ELEMENTARY_UNARY(Id, name)                                                            \
   case Elementary::Id:                                                                             \

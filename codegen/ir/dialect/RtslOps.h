@@ -26,6 +26,9 @@ class MemberDeclOp;
 struct FrameResource : mlir::SideEffects::Resource::Base<FrameResource> {
   llvm::StringRef getName() final { return "Frame"; }
 };
+/// The value of an elementary function of one argument or two.
+float evaluate(Elementary function, llvm::ArrayRef<float> x);
+
 /// What the address, of a !rtsl.ptr, points to.
 mlir::Type pointee(mlir::Value address);
 

@@ -271,9 +271,7 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
   const auto *boxes =
       static_cast<const RtslListedBox *>(__builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
   uint32_t entered = 0; // bit i: instance i
-#ifdef __NVPTX__
-#pragma clang loop unroll(full)
-#elif defined(__clang__)
+#ifdef __clang__
 #pragma clang loop unroll_count(2) vectorize(disable)
 #endif
   for (uint32_t i = 0; i < count; ++i) {
