@@ -75,7 +75,7 @@ std::vector<PathPart> splitPath(const std::string &path) {
   }
 }
 
-std::vector<std::string> keysOf(const JsonValue &object) {
+std::vector<std::string> namesOfMembers(const JsonValue &object) {
   std::vector<std::string> keys;
   for (const auto &member : object.members)
     keys.push_back(member.first.text);
@@ -120,7 +120,7 @@ private:
     // A section of the file may be missing; deeper down a missing name is more likely a mistake.
     if (!last && !first) {
       Error error(message::overrideKeyUnknown(walked, part.text), place);
-      if (const std::string near = closestName(part.text, keysOf(from)); !near.empty())
+      if (const std::string near = closestName(part.text, namesOfMembers(from)); !near.empty())
         error.fix(near);
       throw error;
     }
