@@ -32,9 +32,6 @@
 #include "llvm/Transforms/InstCombine/InstCombine.h"
 #include "llvm/Transforms/Scalar/EarlyCSE.h"
 #include "llvm/Transforms/Scalar/InstSimplifyPass.h"
-#include "llvm/Transforms/Scalar/LoopPassManager.h"
-#include "llvm/Transforms/Scalar/LoopRotation.h"
-#include "llvm/Transforms/Scalar/LoopUnrollPass.h"
 #include "llvm/Transforms/Scalar/SROA.h"
 #include "llvm/Transforms/Scalar/Scalarizer.h"
 #include "llvm/Transforms/Scalar/SimplifyCFG.h"
@@ -329,11 +326,6 @@ static void addUnrolling(llvm::PassBuilder &builder) {
         llvm::FunctionPassManager functions;
         functions.addPass(llvm::SROAPass(llvm::SROAOptions::ModifyCFG));
         functions.addPass(UnrollLoopsPass());
-        llvm::LoopPassManager loops;
-        loops.addPass(llvm::LoopRotatePass());
-        functions.addPass(llvm::createFunctionToLoopPassAdaptor(std::move(loops)));
-        functions.addPass(llvm::createFunctionToLoopPassAdaptor(
-            llvm::LoopFullUnrollPass(int(level.getSpeedupLevel()), /*OnlyWhenForced=*/true)));
         functions.addPass(llvm::InstSimplifyPass());
         functions.addPass(FoldKnownCallsPass());
         passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(functions)));

@@ -2,13 +2,23 @@
 #include "codegen/emit/rewrites/UnrollLoops.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/Analysis/AssumptionCache.h"
+#include "llvm/Analysis/InstructionSimplify.h"
 #include "llvm/Analysis/LoopInfo.h"
+#include "llvm/Analysis/OptimizationRemarkEmitter.h"
 #include "llvm/Analysis/ScalarEvolution.h"
 #include "llvm/Analysis/ScalarEvolutionExpressions.h"
+#include "llvm/Analysis/TargetTransformInfo.h"
 #include "llvm/Analysis/ValueTracking.h"
+#include "llvm/IR/Dominators.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
+#include "llvm/Transforms/Utils/LoopRotationUtils.h"
+#include "llvm/Transforms/Utils/LoopSimplify.h"
 #include "llvm/Transforms/Utils/LoopUtils.h"
+#include "llvm/Transforms/Utils/UnrollLoop.h"
+
+#include <vector>
 
 namespace rtsl::codegen {
 
@@ -106,18 +116,62 @@ private:
 
 } // namespace
 
+namespace {
+
+/// The analyses that unrolling needs and keeps up to date.
+struct Unroller {
+  llvm::LoopInfo &loops;
+  llvm::ScalarEvolution &evolution;
+  llvm::DominatorTree &dominators;
+  llvm::AssumptionCache &assumptions;
+  llvm::TargetTransformInfo &target;
+  llvm::OptimizationRemarkEmitter &remarks;
+
+  Unroller(llvm::Function &function, llvm::FunctionAnalysisManager &analyses)
+      : loops(analyses.getResult<llvm::LoopAnalysis>(function)),
+        evolution(analyses.getResult<llvm::ScalarEvolutionAnalysis>(function)),
+        dominators(analyses.getResult<llvm::DominatorTreeAnalysis>(function)),
+        assumptions(analyses.getResult<llvm::AssumptionAnalysis>(function)),
+        target(analyses.getResult<llvm::TargetIRAnalysis>(function)),
+        remarks(analyses.getResult<llvm::OptimizationRemarkEmitterAnalysis>(function)) {}
+
+  std::vector<llvm::Loop *> chosen() {
+    std::vector<llvm::Loop *> chosen;
+    for (llvm::Loop *loop : loops.getLoopsInPreorder()) {
+      CountedLoop counted(*loop, evolution);
+      if (loop->isInnermost() && counted.isShort() && counted.hasKnownValues())
+        chosen.push_back(loop);
+    }
+    return chosen;
+  }
+
+  void unroll(llvm::Loop *loop) {
+    llvm::simplifyLoop(loop, &dominators, &loops, &evolution, &assumptions, nullptr,
+                       /*PreserveLCSSA=*/false);
+    llvm::formLCSSARecursively(*loop->getOutermostLoop(), dominators, &loops, &evolution);
+    const llvm::SimplifyQuery query(loop->getHeader()->getDataLayout());
+    llvm::LoopRotation(loop, &loops, &target, &assumptions, &dominators, &evolution, nullptr, query,
+                       /*RotationOnly=*/true, /*Threshold=*/~0u, /*IsUtilMode=*/true);
+    llvm::UnrollLoopOptions options{};
+    options.Count = evolution.getSmallConstantTripCount(loop);
+    options.Force = true;
+    if (options.Count > 1)
+      llvm::UnrollLoop(loop, options, &loops, &evolution, &dominators, &assumptions, &target,
+                       &remarks, /*PreserveLCSSA=*/true);
+  }
+};
+
+} // namespace
+
 llvm::PreservedAnalyses UnrollLoopsPass::run(llvm::Function &function,
                                              llvm::FunctionAnalysisManager &analyses) {
-  auto &loops = analyses.getResult<llvm::LoopAnalysis>(function);
-  if (loops.empty())
+  if (analyses.getResult<llvm::LoopAnalysis>(function).empty())
     return llvm::PreservedAnalyses::all();
-  auto &evolution = analyses.getResult<llvm::ScalarEvolutionAnalysis>(function);
-  for (llvm::Loop *loop : loops.getLoopsInPreorder()) {
-    CountedLoop counted(*loop, evolution);
-    if (loop->isInnermost() && counted.isShort() && counted.hasKnownValues())
-      llvm::addStringMetadataToLoop(loop, "llvm.loop.unroll.full");
-  }
-  return llvm::PreservedAnalyses::all();
+  Unroller unroller(function, analyses);
+  const std::vector<llvm::Loop *> chosen = unroller.chosen();
+  for (llvm::Loop *loop : chosen)
+    unroller.unroll(loop);
+  return chosen.empty() ? llvm::PreservedAnalyses::all() : llvm::PreservedAnalyses::none();
 }
 
 } // namespace rtsl::codegen

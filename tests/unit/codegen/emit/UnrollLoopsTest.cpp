@@ -4,9 +4,10 @@
 #include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/LLVMContext.h"
 #include "llvm/IR/Module.h"
+#include "llvm/IR/Verifier.h"
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Support/SourceMgr.h"
-#include "llvm/Transforms/Utils/LoopUtils.h"
+#include "llvm/Support/raw_ostream.h"
 
 #include <gtest/gtest.h>
 
@@ -56,9 +57,9 @@ bool isUnrolled(const std::string &body, const std::string &trips = "16") {
   builder.registerLoopAnalyses(loops);
   builder.crossRegisterProxies(loops, functions, components, modules);
   llvm::Function &function = *module->getFunction("f");
-  UnrollLoopsPass().run(function, functions);
-  const llvm::Loop &loop = **functions.getResult<llvm::LoopAnalysis>(function).begin();
-  return llvm::findOptionMDForLoop(&loop, "llvm.loop.unroll.full") != nullptr;
+  functions.invalidate(function, UnrollLoopsPass().run(function, functions));
+  EXPECT_FALSE(llvm::verifyFunction(function, &llvm::errs()));
+  return functions.getResult<llvm::LoopAnalysis>(function).empty();
 }
 
 /// A body that calls a function with a value.
