@@ -7,7 +7,6 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Classic.h"
 #include "runtime/device/engines/LaunchFacts.cpp"
-#include "runtime/device/engines/PrintedLines.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/HitError.h"
 #include "runtime/device/traverse/Selector.h"
@@ -64,12 +63,6 @@ void rtsl_visit_child(RtslState *state, int32_t child) {
 void rtsl_raise(RtslState *state, uint32_t exception) {
   device::raise(*state, exception);
 }
-
-#ifdef __NVPTX__
-void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count) {
-  device::printLine(*state->launch->status, *state->events, format, words, count);
-}
-#endif
 
 uint32_t rtsl_is_abandoned(RtslState *state) {
   return device::isAbandoned(*state);

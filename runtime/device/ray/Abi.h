@@ -586,8 +586,8 @@ void rtsl_raise(RtslState *state, uint32_t exception);
 /// Has an exception ended the sample? Then it no longer writes to output buffers.
 uint32_t rtsl_is_abandoned(RtslState *state);
 
-/// `print` number `format` of the program, with the words of its values. On CPUs it is defined by
-/// the host.
+/// `print` number `format` of the program, with the words of its values. Defined by the host if it
+/// can be called, and else by the device code.
 void rtsl_print(RtslState *state, uint32_t format, const uint32_t *words, uint32_t count);
 
 /// One sample of one pixel of the classic engine: camera ray, trace, color. Writes colorComponents

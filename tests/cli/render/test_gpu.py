@@ -221,7 +221,17 @@ class Gpu(Case):
     def test_events_are_kept(self):
         self.render(*SMALL, "-q", "--keep=all")
         self.render(*SMALL, "-q", "--exceptions")
-        self.render(*SMALL, "-q", "--print")
+        self.write(
+            "tells.rtsl",
+            "class Tells : rt_Camera { void generateRay() { print(rt_ScreenCoord); } };",
+        )
+        self.render(
+            *SMALL,
+            "-q",
+            "--print",
+            "-O0",
+            program=(RTSLC, "render", str(self.folder / "tells.rtsl")),
+        )
 
     @unittest.skipUnless(has_gpu(), "this machine has no GPU")
     def test_the_bits_of_the_host_megakernel(self):
