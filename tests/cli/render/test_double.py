@@ -96,14 +96,15 @@ class Double(Case):
 
     def test_keeping_changes_no_picture(self):
         self.level = "-O0"  # what is kept is decided before machine code is optimised
-        for scene in ("scene.json", EXAMPLES / "glass" / "scene.json"):
-            for mode in ("strict", "double"):
-                expected = self.picture(scene, f"--fp={mode}")
-                for item in ITEMS:
-                    with self.subTest(scene=str(scene), mode=mode, item=item):
-                        self.assertEqual(
-                            self.picture(scene, f"--fp={mode}", f"--keep={item}"), expected
-                        )
+        scenes = ("scene.json", EXAMPLES / "glass" / "scene.json")
+        pairs = [(scene, mode) for mode in ("strict", "double") for scene in scenes]
+        for number, (scene, mode) in enumerate(pairs):
+            expected = self.picture(scene, f"--fp={mode}")
+            for item in ITEMS[number % 3 :: 3]:  # each in one pair at least
+                with self.subTest(scene=str(scene), mode=mode, item=item):
+                    self.assertEqual(
+                        self.picture(scene, f"--fp={mode}", f"--keep={item}"), expected
+                    )
 
     def test_what_is_kept_moves_roundings_alone_in_fast_mode(self):
         expected = EXAMPLES / "glass" / "scene.json"
