@@ -3,6 +3,7 @@
 the pictures, the printed lines and the counted exceptions of the compiler's own machine code, to
 the last bit."""
 import json
+import os
 import pathlib
 import shutil
 import sys
@@ -441,7 +442,6 @@ SPACES = [
 CASES = [
     ("g++", ["-O2"], ["--undefined=nan"], [example("whitted-programs"), example("quadrics")]),
     ("clang++-22", ["-O1"], ["--undefined=bytes"], [example("metal")]),
-    ("g++", ["-O1"], [], [example("forest", "forest.json", spp=1)]),
     ("clang++-22", ["-O1"], [], [example("line-of-sight", "city.json", spp=1)]),
     ("clang++-22", ["-O1"], ["--exceptions"], [answers("programs"), answers("classic")]),
     ("g++", ["-O1"], ["--print"], [events(False)]),
@@ -454,24 +454,29 @@ CASES = [
         ["--undefined=nan"],
         [chains(0, 2), chains(3, 2), chains(12, 0, branches=False)],
     ),
-    ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
     ("g++", ["-O1"], ["--undefined=nan"], [objects(3), objects(9)]),
-    ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
     ("g++", ["-O1"], [], [nothing()]),
-    ("clang++-22", ["-O0"], ["--trace=recurse"], [nothing()]),
     ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
     ("g++", ["-O1"], [], [images()]),
-    ("clang++-22", ["-O0"], ["--trace=recurse"], [images()]),
     ("g++", ["-O1"], ["--undefined=nan"], [outputs()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [outputs()]),
     ("g++", ["-O1"], ["--undefined=nan"], [graph()]),
-    ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [graph()]),
     ("g++", ["-O1"], ["--undefined=nan"], SPACES),
     ("clang++-22", ["-O0"], ["--trace=recurse"], SPACES),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),
     ("clang++-22", ["-O0"], ["--trace=split"], [names()]),
 ]
+# Each takes seconds, and others are like them.
+if "RTSL_DEEP" in os.environ:
+    CASES += [
+        ("g++", ["-O1"], [], [example("forest", "forest.json", spp=1)]),
+        ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
+        ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
+        ("clang++-22", ["-O0"], ["--trace=recurse"], [nothing()]),
+        ("clang++-22", ["-O0"], ["--trace=recurse"], [images()]),
+        ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [graph()]),
+    ]
 
 
 with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
