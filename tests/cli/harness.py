@@ -87,6 +87,10 @@ def obey_permissions():
             ctypes.CDLL(None).prctl(drop_from_bounding_set, capability, 0, 0, 0)
 
 
+# For tests that take long, and whose code others test too.
+deep = unittest.skipUnless("RTSL_DEEP" in os.environ, "`make deep` runs it")
+
+
 class Case(unittest.TestCase):
     # The level of optimisation of these commands where a test gives none; None: that of users, as
     # in `make deep`. No picture depends on it, which tests/render and the conformance suite check,

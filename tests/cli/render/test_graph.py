@@ -9,7 +9,7 @@ import shutil
 import struct
 import unittest
 
-from harness import EXAMPLES, GRAPH_ITEMS
+from harness import EXAMPLES, GRAPH_ITEMS, deep
 from graph_case import CLUSTER, SHADERS, SQUASHED, GraphCase, balls, scene
 
 
@@ -30,6 +30,7 @@ class EveryPath(GraphCase):
             picture, _ = self.render_scene(scene(), *options)
             self.assert_same_bits(picture, expected, options)
 
+    @deep
     def test_gives_the_same_forest(self):
         shutil.copytree(EXAMPLES / "forest", self.folder, dirs_exist_ok=True)
         first = None

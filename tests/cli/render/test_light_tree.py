@@ -7,7 +7,7 @@ import random
 import subprocess
 import unittest
 
-from harness import SECONDS
+from harness import SECONDS, deep
 from path_case import FLOOR, WAYS, PathCase
 
 RTSL_RUN = os.environ["RTSL_RUN"]
@@ -77,6 +77,7 @@ class Light(LightTreeCase):
         self.sampled_by("tree")
         self.assert_gray(900 * (0.1 / 3) ** 2, 0.02)
 
+    @deep
     def test_squares_however_they_are_described(self):
         """Nine squares at height 1 of which one is above the point, by the form factor of each:
         primitives that are flat, a mesh, and nodes with transforms that shear and mirror; on one
@@ -154,6 +155,7 @@ class Light(LightTreeCase):
             bright += self.mean()[0] > 0
         self.assertEqual(bright, 1)
 
+    @deep
     def test_objects_with_several_primitives_and_lamps_that_move(self):
         self.write(
             "many.rtsl",

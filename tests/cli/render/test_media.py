@@ -6,7 +6,7 @@ import statistics
 import struct
 import unittest
 
-from harness import Case
+from harness import Case, deep
 
 SLAB = ([-1000, -1000, -1], [1000, 1000, 0])
 CUBE = ([-1, -1, -1], [1, 1, 1])
@@ -192,6 +192,7 @@ class ClosedForms(MediaCase):
             self.scene(medium, depth=200, background=SKY, spp=256)
             self.assert_color([1, 1, 1], 0.01)
 
+    @deep
     def test_ways_to_find_light(self):
         """A lamp in the medium, found by the search and by chance; and one behind the boundary, by
         chance alone."""

@@ -9,7 +9,7 @@ import struct
 import unittest
 
 from exr_files import channels
-from harness import EXAMPLES, RTSLC
+from harness import EXAMPLES, RTSLC, deep
 from path_case import BALL, FLOOR, SHADERS, WAYS, PathCase
 
 
@@ -327,6 +327,7 @@ class ClosedForms(PathCase):
                 for one, other in zip(path, classic):
                     self.assertAlmostEqual(one, other, delta=2e-4 * other)
 
+    @deep
     def test_a_normal_of_its_own_stays_in_other_materials(self):
         """Materials made of one with a leaning normal look as it does, alone or as a part; half of
         it is half of the way."""

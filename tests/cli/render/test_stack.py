@@ -5,7 +5,7 @@ import json
 import resource
 import unittest
 
-from harness import DIAGNOSED, Case
+from harness import DIAGNOSED, Case, deep
 
 MIB = 1 << 20
 
@@ -103,6 +103,7 @@ class Stack(Case):
             "render", "scene.json", "-o", picture, "-q", "-Wno-all", *arguments, **more
         )
 
+    @deep
     def test_large_variables_and_deep_rays(self):
         for depth, sizes in (
             (8, {"shade": FLOATS}),

@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from harness import RTSLC, USAGE, Case
+from harness import RTSLC, USAGE, Case, deep
 
 SMALL = ("--size", "24x16", "--budget", "30ms", "--runs", "3")
 
@@ -124,6 +124,7 @@ class Report(Case):
         self.assertRegex(page, r"the reference, at an exposure of -\d+(\.5)? stops")
         self.assertIn("brighter than a screen", page)
 
+    @deep
     def test_goes_on_after_an_interruption(self):
         self.glass_scene()
         arguments = [
