@@ -317,7 +317,8 @@ static void addRecordPacking(llvm::PassBuilder &builder) {
       });
 }
 
-/// Before functions are inlined: which calls have constants is known then.
+/// Unrolls loops whose values are known, and folds their calls: before functions are inlined, and
+/// calls are gone.
 static void addUnrolling(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level) {

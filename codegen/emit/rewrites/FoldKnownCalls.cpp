@@ -7,6 +7,8 @@
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 
+#include <optional>
+
 namespace rtsl::codegen {
 
 /// The result of the call; null: it is not known.

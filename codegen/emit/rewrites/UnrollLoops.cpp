@@ -18,6 +18,7 @@
 #include "llvm/Transforms/Utils/LoopUtils.h"
 #include "llvm/Transforms/Utils/UnrollLoop.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace rtsl::codegen {
@@ -113,10 +114,6 @@ private:
   llvm::ScalarEvolution &evolution;
   llvm::DenseMap<llvm::Instruction *, Depends> ofInstruction;
 };
-
-} // namespace
-
-namespace {
 
 /// The analyses that unrolling needs and keeps up to date.
 struct Unroller {
