@@ -47,6 +47,10 @@ std::string nameOfStep(const PictureSummary &summary, std::size_t place) {
   return place == 0 ? "traversal" : place == 1 ? "begin samples" : summary.stateNames.at(place - 2);
 }
 
+double perRay(const RtslTreeVisits &visits, std::uint64_t count) {
+  return double(count) / double(visits.rays);
+}
+
 std::string toJson(const RenderCommandOptions &options, const PictureSummary &summary) {
   const runtime::RenderOptions &render = summary.render;
   const runtime::RenderStatistics &statistics = summary.statistics;
@@ -90,8 +94,8 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
     document["tree"] = tool::toJson(*statistics.tree);
   if (const RtslTreeVisits &visits = statistics.visits; visits.rays > 0) {
     document["tree"]["rays"] = visits.rays;
-    document["tree"]["nodesPerRay"] = double(visits.nodes) / double(visits.rays);
-    document["tree"]["itemsPerRay"] = double(visits.items) / double(visits.rays);
+    document["tree"]["nodesPerRay"] = perRay(visits, visits.nodes);
+    document["tree"]["itemsPerRay"] = perRay(visits, visits.items);
   }
   for (std::size_t i = 0; i < statistics.steps.size(); ++i)
     document["steps"].push_back({{"step", nameOfStep(summary, i)},
@@ -108,10 +112,10 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
 
 /// Empty if they were not counted.
 std::string visitsText(const RtslTreeVisits &visits) {
-  return visits.rays == 0 ? ""
-                          : fmt::format("{} rays in the tree: {:.1f} nodes and {:.1f} items each\n",
-                                        visits.rays, double(visits.nodes) / double(visits.rays),
-                                        double(visits.items) / double(visits.rays));
+  return visits.rays == 0
+             ? ""
+             : fmt::format("{} rays in the tree: {:.1f} nodes and {:.1f} items each\n", visits.rays,
+                           perRay(visits, visits.nodes), perRay(visits, visits.items));
 }
 
 /// A line for each step that was taken, the most frequent first; empty if they were not counted.

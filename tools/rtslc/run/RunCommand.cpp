@@ -141,10 +141,10 @@ public:
   /// Nothing if there were errors, which are reported.
   bool run(const scene::SceneDescription &description) {
     const std::size_t count = scene::launchCount(description);
-    const auto meshes = count > 1 ? std::make_shared<scene::KeptFiles>() : nullptr;
+    const auto kept = count > 1 ? std::make_shared<scene::KeptFiles>() : nullptr;
     for (std::size_t i = 0; i < count; ++i) {
       scene::SceneDescription launch = scene::launchOf(description, i);
-      launch.keptFiles = meshes;
+      launch.keptFiles = kept;
       if (!runOne(launch, i, count))
         return false;
     }
