@@ -2,8 +2,7 @@
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/device/trees/Widen.h"
-
-#include <chrono>
+#include "support/Clock.h"
 
 namespace rtsl::runtime {
 
@@ -127,11 +126,10 @@ void DeviceTrees::install(RtslLaunch &launch) const {
 
 DeviceTrees buildTrees(BuildDevice &device, TreeKind kind, const RtslLaunch &here,
                        BuildDevice::Address there, unsigned threads) {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   DeviceTrees made = Trees(device, kind, here, there, threads).build();
   device.wait();
-  made.figures.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  made.figures.seconds = secondsSince(start);
   return made;
 }
 

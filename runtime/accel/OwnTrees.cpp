@@ -2,21 +2,13 @@
 
 #include "runtime/accel/Refit.h"
 #include "runtime/accel/TreeItems.h"
+#include "support/Clock.h"
 
-#include <chrono>
 #include <utility>
 
 namespace rtsl::runtime {
 
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-} // namespace
+namespace {} // namespace
 
 void OwnTrees::build(const RtslLaunch &launch, unsigned threads, std::optional<TreeKind> kind) {
   const Clock::time_point start = Clock::now();

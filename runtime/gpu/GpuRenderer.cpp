@@ -1,25 +1,19 @@
 #include "runtime/gpu/GpuRenderer.h"
 
 #include "runtime/gpu/GpuBuildDevice.h"
+#include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <type_traits>
 
 namespace rtsl::runtime {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// As many blocks as run at once and as there is work and memory for. Throws OutOfMemory if that is
 /// none.

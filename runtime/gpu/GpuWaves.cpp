@@ -1,10 +1,10 @@
 #include "runtime/gpu/GpuWaves.h"
 
+#include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
 #include <algorithm>
-#include <chrono>
 #include <string>
 
 namespace rtsl::runtime {
@@ -53,7 +53,7 @@ void GpuWaves::launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, v
 }
 
 double GpuWaves::run(Address job, Address rays) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::vector<std::uint32_t> counts(memory.steps);
   const std::size_t countBytes = counts.size() * sizeof counts[0];
   device.clear(rays, 2 * countBytes);
@@ -70,7 +70,7 @@ double GpuWaves::run(Address job, Address rays) {
         launch(kernels[step], counts[step], arguments);
     device.clear(countsOfTurn, countBytes);
   }
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return secondsSince(start);
 }
 
 } // namespace rtsl::runtime

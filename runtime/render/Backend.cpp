@@ -1,10 +1,10 @@
 #include "runtime/render/Backend.h"
 
 #include "runtime/render/Watch.h"
+#include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
-#include <chrono>
 #include <utility>
 
 namespace rtsl::runtime {
@@ -38,7 +38,6 @@ void addEvents(const RtslStatus &status, RenderStatistics &statistics) {
 }
 
 Image Backend::render(RenderStatistics *statistics) {
-  using Clock = std::chrono::steady_clock;
   if (picture.pixels.empty())
     makePicture(channels());
   RenderStatistics said;
@@ -48,7 +47,7 @@ Image Backend::render(RenderStatistics *statistics) {
     Watch watch(options);
     const Clock::time_point start = Clock::now();
     run(watch);
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = secondsSince(start);
     said = finish();
     said.renderSeconds = seconds;
   } catch (...) { // a partial picture is not returned

@@ -11,8 +11,8 @@
 #include "runtime/image/Image.h"
 #include "runtime/render/RenderOptions.h"
 #include "runtime/render/passes/Passes.h"
+#include "support/Clock.h"
 
-#include <chrono>
 #include <functional>
 #include <memory>
 
@@ -84,8 +84,7 @@ private:
 
   void takeSums(PartialRendering &rendering);
   void measure(const PassOptions &passes, PartialRendering &rendering);
-  bool runPass(const PassOptions &passes, std::chrono::steady_clock::time_point pause,
-               RenderStatistics &met);
+  bool runPass(const PassOptions &passes, Clock::time_point pause, RenderStatistics &met);
   void runPasses(const PassOptions &passes, const std::function<void(const PassState &)> &progress,
                  PartialRendering &rendering);
 };

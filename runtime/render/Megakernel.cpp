@@ -3,13 +3,13 @@
 #include "runtime/device/engines/Slice.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/Watch.h"
+#include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <utility>
 
@@ -50,7 +50,6 @@ Megakernel::Megakernel(FlatScene scene, const RenderOptions &options)
       colorComponents(this->scene.launch().colorComponents) {}
 
 void Megakernel::prepare() {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   statusAddress = allocate(sizeof(RtslStatus), "the launch");
   setOptions(scene, options, reinterpret_cast<RtslStatus *>(statusAddress));
@@ -62,7 +61,7 @@ void Megakernel::prepare() {
     buildTreesAt(sceneAddress);
   outputs = std::move(scene.outputs);
   scene = {};
-  buildSeconds += std::chrono::duration<double>(Clock::now() - start).count();
+  buildSeconds += secondsSince(start);
 
   job.launch = reinterpret_cast<const RtslLaunch *>(sceneAddress);
   job.status = reinterpret_cast<RtslStatus *>(statusAddress);

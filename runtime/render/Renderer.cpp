@@ -4,11 +4,11 @@
 #include "runtime/embree/HostScene.h"
 #include "runtime/render/HostThreads.h"
 #include "runtime/render/Watch.h"
+#include "support/Clock.h"
 #include "support/ErrorMessages.h"
 #include "support/FirstFew.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <mutex>
@@ -131,7 +131,6 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options,
 Renderer::Renderer(const Scene &scene, const RenderOptions &options,
                    std::shared_ptr<HostScene> hostScene, std::shared_ptr<KeptTrees> kept)
     : Backend(options), self(std::make_unique<Implementation>(scene, this->options)) {
-  using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const RtslLaunch complete = scene.launch(); // or it throws
   const Program &program = scene.program();
@@ -152,7 +151,7 @@ Renderer::Renderer(const Scene &scene, const RenderOptions &options,
   self->window = windowOf(options);
   self->tilesAcross = (self->window.width() + tileSize - 1) / tileSize;
   self->tileCount = self->tilesAcross * ((self->window.height() + tileSize - 1) / tileSize);
-  buildSeconds = std::chrono::duration<double>(Clock::now() - start).count();
+  buildSeconds = secondsSince(start);
 }
 
 Renderer::~Renderer() = default;

@@ -1,5 +1,6 @@
 #include "runtime/render/Watch.h"
 
+#include "support/Clock.h"
 #include "support/Error.h"
 
 #include <algorithm>
@@ -36,10 +37,8 @@ Watch::Poll::~Poll() {
 void Watch::Poll::run() {
   constexpr std::chrono::milliseconds pause(10);
   bool hasStopped = false;
-  const auto start = std::chrono::steady_clock::now();
-  const auto isOverTime = [&] {
-    return std::chrono::steady_clock::now() - start >= std::chrono::duration<double>(seconds);
-  };
+  const auto start = Clock::now();
+  const auto isOverTime = [&] { return secondsSince(start) >= seconds; };
   try {
     std::unique_lock<std::mutex> lock(mutex);
     while (!isOver) {

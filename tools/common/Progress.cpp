@@ -65,10 +65,10 @@ PhaseProgress::~PhaseProgress() {
 }
 
 void PhaseProgress::run() {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::unique_lock<std::mutex> lock(mutex);
   do {
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    const std::chrono::duration<double> seconds = Clock::now() - start;
     fmt::print(stderr, "\r\033[K{}: {:.1f} s", what, seconds.count());
     std::fflush(stderr);
   } while (!changed.wait_for(lock, std::chrono::milliseconds(100), [this] { return isOver; }));

@@ -1,7 +1,8 @@
 //===- Progress.h - a progress line on the terminal ---------------------===//
 #pragma once
 
-#include <chrono>
+#include "support/Clock.h"
+
 #include <condition_variable>
 #include <mutex>
 #include <string>
@@ -22,7 +23,6 @@ public:
   void finish();
 
 private:
-  using Clock = std::chrono::steady_clock;
   bool isTime();
 
   std::string what;

@@ -3,7 +3,7 @@
 
 #include "support/ProgramFolder.h"
 #include "tools/rtslc/common/CommandLine.h"
-#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/SceneArguments.h"
 
 #include <fmt/format.h>
 

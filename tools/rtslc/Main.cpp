@@ -41,7 +41,7 @@ int main(int argc, char **argv) {
   addNewCommand(app, action);
   addCheckCommand(app, action, nullptr);
   addCompileCommand(app, action, nullptr);
-  addExplainCommand(app, action, nullptr, nullptr, nullptr);
+  addExplainCommand(app, action, nullptr);
   addHandedOverCommands(app);
   app.add_subcommand("help", "show the options of a command");
 

@@ -3,12 +3,10 @@
 // Started by rtslc (HandOver.h); it can be called as well.
 //
 //===----------------------------------------------------------------------===//
-#include "scenefile/SceneFile.h"
-#include "tools/rtslc/common/CommandLine.h"
-#include "tools/rtslc/explain/ExplainGpu.h"
-#include "tools/rtslc/explain/MeasureItems.h"
+#include "tools/rtslc/compile/CheckCommand.h"
+#include "tools/rtslc/compile/CompileCommand.h"
+#include "tools/rtslc/explain/ExplainCommand.h"
 
-using namespace rtsl;
 using namespace rtsl::tool;
 
 int main(int argc, char **argv) {
@@ -16,9 +14,9 @@ int main(int argc, char **argv) {
                "rtslc");
   app.require_subcommand(1);
   Action action;
-  addCheckCommand(app, action, &scene::buildScene);
-  addCompileCommand(app, action, &scene::buildScene);
-  addExplainCommand(app, action, &scene::buildScene, &measureItems, &explainGpu);
+  addCheckCommand(app, action, &checkScene);
+  addCompileCommand(app, action, &translateScene);
+  addExplainCommand(app, action, &explainScene);
   addRenderCommand(app, action);
   addRunCommand(app, action);
   addTraceCommand(app, action);

@@ -2,6 +2,7 @@
 #include "runtime/render/Backend.h"
 #include "runtime/render/Watch.h"
 #include "runtime/render/passes/Adaptive.h"
+#include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
@@ -16,12 +17,6 @@
 namespace rtsl::runtime {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point from) {
-  return std::chrono::duration<double>(Clock::now() - from).count();
-}
 
 Clock::time_point after(Clock::time_point from, double seconds) {
   constexpr double longest = 1e9; // further than any rendering, and not too far for the clock

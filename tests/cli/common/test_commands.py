@@ -1,10 +1,12 @@
 """The commands on good input."""
 
 import json
+import os
 import re
+import subprocess
 import unittest
 
-from harness import EXAMPLES, Case
+from harness import EXAMPLES, RTSLC, Case
 
 MATERIAL = "class Grey : rt_Material;\n\nvoid shade() {\n  rt_SampleColor = color(0.5);\n}\n"
 
@@ -20,6 +22,15 @@ class Commands(Case):
     def test_version(self):
         out, _ = self.run_rtslc("--version")
         self.assertRegex(out, r"^rtslc \d+\.\d+\.\d+\n$")
+
+    def test_checking_sources_loads_no_library_of_scenes(self):
+        done = subprocess.run(
+            [os.environ["READELF"], "-d", RTSLC], stdout=subprocess.PIPE, text=True, check=True
+        )
+        libraries = [line for line in done.stdout.splitlines() if "NEEDED" in line]
+        self.assertTrue(libraries)
+        for unwanted in ("embree", "assimp", "tbb", "OpenEXR", "png", "OpenImageIO", "z3"):
+            self.assertFalse([line for line in libraries if unwanted in line], libraries)
 
     def test_check_reads_standard_input(self):
         out, error = self.run_rtslc("check", "-", stdin=MATERIAL.encode())

@@ -198,6 +198,10 @@ void addProgramOptions(CLI::App &command, CommonOptions &options) {
   addMessageOptions(command, options);
 }
 
+std::uint32_t features(bool prints, bool exceptions) {
+  return (prints ? RTSL_FEATURE_PRINT : 0) | (exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
+}
+
 namespace {
 
 /// A first argument that is no command.

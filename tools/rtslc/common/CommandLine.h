@@ -7,18 +7,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-namespace rtsl::runtime {
-class Scene;
-} // namespace rtsl::runtime
-namespace rtsl::scene {
-struct SceneDescription;
-} // namespace rtsl::scene
 
 namespace rtsl::tool {
 
@@ -53,6 +47,9 @@ void addCompileOptions(CLI::App &command, CommonOptions &options);
 /// program of files or of a scene.
 void addProgramOptions(CLI::App &command, CommonOptions &options);
 
+/// RTSL_FEATURE_* of a program that is to print and to raise exceptions.
+std::uint32_t features(bool prints, bool exceptions);
+
 /// A command's name and its description in `rtslc --help`.
 struct Summary {
   const char *command;
@@ -72,26 +69,23 @@ constexpr Summary compareSummary = {
 /// What a command does once the arguments are read; gives the exit status.
 using Action = std::function<int()>;
 
-/// Makes a scene's objects: scene::buildScene. Null in rtslc, which hands over whatever binds a
-/// program to a scene.
-using SceneBuilder = runtime::Scene (*)(const scene::SceneDescription &,
-                                        std::shared_ptr<const runtime::Program>);
-
-/// Renders with items left out and kept: measureItems. Null in rtslc, too.
-struct MeasureRequest;
-struct ItemMeasurement;
-using ItemMeasurer = std::optional<std::vector<ItemMeasurement>> (*)(const MeasureRequest &,
-                                                                     Diagnostics &);
-
-/// What a program costs a GPU: explainGpu. Null in rtslc, too.
-struct GpuRequest;
-using GpuExplainer = std::optional<std::string> (*)(const GpuRequest &, Diagnostics &);
+/// What commands do with a scene: checkScene, translateScene, explainScene. Null in rtslc, which
+/// hands scenes over.
+struct CheckOptions;
+struct CompileCommandOptions;
+struct ExplainOptions;
+class Messages;
+using SceneChecker = void (*)(const std::string &file, const CheckOptions &, Messages &,
+                              std::vector<std::string> &filesRead);
+using SceneTranslator = std::optional<std::string> (*)(const CompileCommandOptions &, Messages &,
+                                                       std::vector<std::string> &filesRead);
+using SceneExplainer = std::optional<std::string> (*)(const ExplainOptions &, Messages &,
+                                                      std::vector<std::string> &filesRead);
 
 void addNewCommand(CLI::App &app, Action &action);
-void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
-void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene);
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure,
-                       GpuExplainer explainGpu);
+void addCheckCommand(CLI::App &app, Action &action, SceneChecker checkScene);
+void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene);
+void addExplainCommand(CLI::App &app, Action &action, SceneExplainer explainScene);
 void addRenderCommand(CLI::App &app, Action &action);
 void addRunCommand(CLI::App &app, Action &action);
 void addTraceCommand(CLI::App &app, Action &action);

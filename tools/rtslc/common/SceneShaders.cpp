@@ -21,11 +21,6 @@ namespace rtsl::tool {
 
 namespace {
 
-bool hasEnding(const std::string &file, const std::string &ending) {
-  return file.size() > ending.size() &&
-         file.compare(file.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 [[noreturn]] void refuseShaders(const std::string &file, const char *command) {
   Error error(message::shadersInsteadOfScene(file, command), Place{file});
   error.note(fmt::format("a scene is a file such as {{\"rtsl\": 1, \"import\": [\"{}\"], "
@@ -37,10 +32,6 @@ bool hasEnding(const std::string &file, const std::string &ending) {
 }
 
 } // namespace
-
-bool isScene(const std::string &file) {
-  return hasEnding(file, ".json") || scene::gltf::isModel(file);
-}
 
 /// Rejects passes, unless the command runs or checks them.
 static scene::SceneDescription requireOneLaunch(scene::SceneDescription description,
@@ -64,7 +55,7 @@ scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command,
                                   const std::shared_ptr<scene::KeptFiles> &kept) {
-  if (hasEnding(file, ".rtsl"))
+  if (std::filesystem::path(file).extension() == ".rtsl")
     refuseShaders(file, command);
   if (scene::gltf::isModel(file))
     return requireOneLaunch(sceneOfModel(file, overrides, kept), command);
@@ -75,20 +66,6 @@ scene::SceneDescription readScene(const std::string &file,
     return requireOneLaunch(scene::parseScene(text, name, overrides, kept), command);
   }
   return requireOneLaunch(scene::readSceneFile(file, overrides, kept), command);
-}
-
-void addSetOption(CLI::App &command, std::vector<std::string> &overrides) {
-  const auto check = [](const std::string &text) {
-    const std::size_t equals = text.find('=');
-    const bool isOverride = equals != std::string::npos && equals != 0;
-    return isOverride ? std::string() : "write `path.to.key=value`, not `" + text + "`";
-  };
-  command
-      .add_option("--set", overrides,
-                  "override a value of the scene file, such as objects.3.mesh=bunny.obj")
-      ->check(CLI::Validator(check, ""))
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
 }
 
 namespace {
@@ -222,10 +199,6 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
            material->className.text});
   }
   return request;
-}
-
-std::uint32_t features(bool prints, bool exceptions) {
-  return (prints ? RTSL_FEATURE_PRINT : 0) | (exceptions ? RTSL_FEATURE_EXCEPTIONS : 0);
 }
 
 } // namespace rtsl::tool

@@ -10,18 +10,12 @@
 
 namespace rtsl::tool {
 
-/// Whether a file is a scene, or a glTF file, and no shaders.
-bool isScene(const std::string &file);
-
 /// Reads a scene file, or makes a scene of a glTF file; "-" is standard input. Throws with a hint
 /// if it is given RTSL; `command` is for that. `kept`: files of scenes before this one.
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command,
                                   const std::shared_ptr<scene::KeptFiles> &kept = nullptr);
-
-/// Adds --set.
-void addSetOption(CLI::App &command, std::vector<std::string> &overrides);
 
 /// Reads and checks the files that the scene imports; null if there were errors. They find what
 /// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
@@ -38,8 +32,5 @@ std::vector<std::string> withFiles(const scene::SceneDescription &description,
 
 /// Which classes the scene has objects of, and which materials meet which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);
-
-/// RTSL_FEATURE_* of a program that is to print and to raise exceptions.
-std::uint32_t features(bool prints, bool exceptions);
 
 } // namespace rtsl::tool

@@ -1,28 +1,19 @@
 //===- CheckCommand.cpp - rtslc check -------------------------------------===//
-#include "codegen/driver/SceneProgram.h"
-#include "codegen/driver/Stages.h"
+#include "CheckCommand.h"
+
 #include "support/AtomicFile.h"
-#include "tools/rtslc/common/CommandLine.h"
-#include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/Messages.h"
-#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/Shaders.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 namespace rtsl::tool {
 
 namespace {
-
-struct CheckOptions {
-  CommonOptions common;
-  std::vector<std::string> files, overrides;
-  bool fix = false;
-};
 
 std::string count(std::size_t number, const char *noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
@@ -46,48 +37,9 @@ void writeFixes(const Messages &messages) {
   }
 }
 
-/// The shaders of a launch are linked, and its objects made.
-void checkLaunch(const scene::SceneDescription &launch, const typed::Module &module,
-                 const CheckOptions &options, SceneBuilder buildScene, Messages &messages) {
-  std::optional<runtime::Scene> scene;
-  const LinkRequest request = linkRequest(launch);
-  CompileInput input;
-  input.module = &module;
-  input.scene = &request;
-  input.makeObjects =
-      storeScene([&](const auto &constructors) { return buildScene(launch, constructors); }, scene);
-  emit(stage("ir"), input, options.common.compile, messages.diagnostics);
-  if (!scene)
-    return;
-  for (const Warning &warning : scene->warnings())
-    messages.report(warning);
-  if (!messages.diagnostics.hasErrors() && scattersByMethods(request, scene->program()))
-    for (const Warning &warning : tryMaterials(*scene, module, request, options.common.compile))
-      messages.report(warning);
-}
-
-/// Everything that happens to a scene before it is rendered, through any of its cameras.
-void checkScene(const std::string &file, const CheckOptions &options, SceneBuilder buildScene,
-                Messages &messages, std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
-  const std::unique_ptr<typed::Module> module =
-      loadShaders(description, options.common, messages, &filesRead);
-  if (!module)
-    return;
-  filesRead = withFiles(description, filesRead);
-  for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
-    scene::SceneDescription launch = scene::launchOf(description, i);
-    checkLaunch(launch, *module, options, buildScene, messages);
-    for (const auto &[name, camera] : description.cameras) {
-      launch.camera = camera; // messages that are reported again are the same
-      checkLaunch(launch, *module, options, buildScene, messages);
-    }
-  }
-}
-
 /// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were
 /// read.
-std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder buildScene,
+std::vector<std::string> checkFiles(const CheckOptions &options, SceneChecker checkScene,
                                     Messages &messages) {
   std::vector<std::string> sources, filesRead;
   for (const std::string &file : options.files) {
@@ -97,7 +49,7 @@ std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder bu
     }
     std::vector<std::string> ofScene;
     try {
-      checkScene(file, options, buildScene, messages, ofScene);
+      checkScene(file, options, messages, ofScene);
     } catch (const Error &error) {
       messages.report(error);
     }
@@ -111,11 +63,11 @@ std::vector<std::string> checkFiles(const CheckOptions &options, SceneBuilder bu
   return filesRead;
 }
 
-int check(const CheckOptions &options, SceneBuilder buildScene) {
+int check(const CheckOptions &options, SceneChecker checkScene) {
   Messages messages(options.common);
   if (options.fix)
     messages.diagnostics.errorLimit = 0; // what is not recorded cannot be fixed
-  const std::vector<std::string> filesRead = checkFiles(options, buildScene, messages);
+  const std::vector<std::string> filesRead = checkFiles(options, checkScene, messages);
   messages.print();
   if (options.fix || options.common.dependencies.isAsked)
     try {
@@ -133,7 +85,7 @@ int check(const CheckOptions &options, SceneBuilder buildScene) {
 
 } // namespace
 
-void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
+void addCheckCommand(CLI::App &app, Action &action, SceneChecker checkScene) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App *command = app.add_subcommand("check", "check RTSL files and scenes for mistakes");
   command
@@ -148,11 +100,11 @@ void addCheckCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
   addMessageOptions(*command, options->common);
   command->footer("examples:\n  rtslc check --diagnostics=json Glass.rtsl Sphere.rtsl\n  rtslc "
                   "check scene.json");
-  command->callback([options, buildScene, &action] {
+  command->callback([options, checkScene, &action] {
     if (!options->overrides.empty() &&
         std::none_of(options->files.begin(), options->files.end(), isScene))
       throw CLI::ValidationError("--set", "changes a scene, and no scene is given");
-    action = [options, buildScene] { return check(*options, buildScene); };
+    action = [options, checkScene] { return check(*options, checkScene); };
   });
 }
 

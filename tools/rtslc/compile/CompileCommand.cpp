@@ -1,12 +1,12 @@
 //===- CompileCommand.cpp - rtslc compile ---------------------------------===//
+#include "CompileCommand.h"
+
 #include "codegen/cpp/EmitCpp.h"
-#include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "support/AtomicFile.h"
 #include "tools/common/OptionValues.h"
-#include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
-#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/Shaders.h"
 
 #include <algorithm>
@@ -15,46 +15,6 @@
 namespace rtsl::tool {
 
 namespace {
-
-struct CompileCommandOptions {
-  CommonOptions common;
-  std::vector<std::string> files;
-  const Stage *stage = nullptr;
-  std::vector<std::string> overrides;
-  std::string output = "-";
-  bool lineDirectives = false;
-  bool prints = false, exceptions = false;
-  std::optional<TraceMode> trace; // if it was given
-};
-
-/// The text of the requested stage of a whole scene; nothing if there were errors.
-std::optional<std::string> translateScene(const CompileCommandOptions &options,
-                                          SceneBuilder buildScene, Messages &messages,
-                                          std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description =
-      readScene(options.files.front(), options.overrides, messages, "compile");
-  const std::unique_ptr<typed::Module> module =
-      loadShaders(description, options.common, messages, &filesRead);
-  if (!module)
-    return std::nullopt;
-  filesRead = withFiles(description, filesRead);
-  CompileOptions compile = options.common.compile;
-  LinkRequest request = linkRequest(description);
-  request.features |= features(options.prints, options.exceptions);
-  keep(options.common.keep, request, compile);
-  std::optional<runtime::Scene> scene;
-  CompileInput input;
-  input.module = module.get();
-  input.scene = &request;
-  input.makeObjects = storeScene(
-      [&](const auto &constructors) { return buildScene(description, constructors); }, scene);
-  const std::optional<std::string> text =
-      emit(*options.stage, input, compile, messages.diagnostics);
-  if (scene)
-    for (const Warning &warning : scene->warnings())
-      messages.report(warning);
-  return text;
-}
 
 /// The text of the requested stage of RTSL files; nothing if there were errors.
 std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages,
@@ -107,14 +67,14 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
 }
 
-int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
+int compile(const CompileCommandOptions &options, SceneTranslator translateScene) {
   Messages messages(options.common);
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text =
-        isScene(options.files.front()) ? translateScene(options, buildScene, messages, filesRead)
-                                       : translate(options, messages, filesRead);
+    const std::optional<std::string> text = isScene(options.files.front())
+                                                ? translateScene(options, messages, filesRead)
+                                                : translate(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       // First what names the output: where that cannot be written, the old output stays.
@@ -129,7 +89,7 @@ int compile(const CompileCommandOptions &options, SceneBuilder buildScene) {
 
 } // namespace
 
-void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
+void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene) {
   auto options = std::make_shared<CompileCommandOptions>();
   CLI::App *command = app.add_subcommand("compile", "compile RTSL files, and print any stage");
   command
@@ -158,11 +118,11 @@ void addCompileCommand(CLI::App &app, Action &action, SceneBuilder buildScene) {
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
                   "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"
                   "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
-  command->callback([options, command, buildScene, &action] {
+  command->callback([options, command, translateScene, &action] {
     if (command->count("--trace") > 0)
       options->trace = options->common.compile.trace;
     checkInputs(*options);
-    action = [options, buildScene] { return compile(*options, buildScene); };
+    action = [options, translateScene] { return compile(*options, translateScene); };
   });
 }
 

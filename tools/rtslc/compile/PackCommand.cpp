@@ -9,6 +9,7 @@
 #include "tools/common/PictureOptions.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/ScenePackage.h"
 #include "tools/rtslc/common/SceneShaders.h"
 

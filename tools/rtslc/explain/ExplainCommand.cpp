@@ -1,17 +1,12 @@
 //===- ExplainCommand.cpp - rtslc explain ---------------------------------===//
-#include "ExplainGpu.h"
-#include "Explanation.h"
-#include "MeasureItems.h"
-#include "codegen/driver/SceneProgram.h"
-#include "scenefile/SceneFile.h"
+#include "ExplainCommand.h"
+
 #include "support/AtomicFile.h"
 #include "tools/common/GpuOptions.h"
 #include "tools/common/OptionValues.h"
 #include "tools/common/PictureOptions.h"
-#include "tools/common/Progress.h"
-#include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
-#include "tools/rtslc/common/SceneShaders.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/Shaders.h"
 
 #include <algorithm>
@@ -20,18 +15,6 @@
 namespace rtsl::tool {
 
 namespace {
-
-struct ExplainOptions {
-  CommonOptions common;
-  std::vector<std::string> files, overrides;
-  std::string output = "-";
-  bool states = false, measure = false, noSavings = false, gpu = false;
-  GpuOptions gpuOptions;
-  unsigned pairs = 11;
-  std::optional<PictureSize> size; // of pictures that are measured
-  std::uint32_t samples = 1;
-  ReportFormat format = ReportFormat::Text;
-};
 
 std::optional<std::string> explainFiles(const ExplainOptions &options, Messages &messages,
                                         std::vector<std::string> &filesRead) {
@@ -43,140 +26,13 @@ std::optional<std::string> explainFiles(const ExplainOptions &options, Messages 
   return explainStates(*module, options.common.compile, options.format, messages.diagnostics);
 }
 
-/// A scene, its shaders, and how to make its objects.
-struct LoadedScene {
-  LoadedScene(const ExplainOptions &options, SceneBuilder buildScene, Messages &messages,
-              std::vector<std::string> &filesRead)
-      : description(readScene(options.files.front(), options.overrides, messages, "explain")),
-        module(loadShaders(description, options.common, messages, &filesRead)),
-        request(linkRequest(description)), compile(options.common.compile),
-        makeObjects(storeScene(
-            [this, buildScene](const auto &constructors) {
-              return buildScene(description, constructors);
-            },
-            scene)) {
-    keep(options.common.keep, request, compile);
-    filesRead = withFiles(description, filesRead);
-  }
-  LoadedScene(const LoadedScene &) = delete;
-
-  scene::SceneDescription description;
-  std::unique_ptr<typed::Module> module; // null if there were errors
-  LinkRequest request;
-  CompileOptions compile;
-  std::optional<runtime::Scene> scene; // once makeObjects was called
-  MakeObjects makeObjects;
-};
-
-std::optional<std::string> explainStates(const ExplainOptions &options, LoadedScene &loaded,
-                                         Messages &messages) {
-  return explainSceneStates(*loaded.module, loaded.request,
-                            scene::renderOptions(loaded.description.render).maxDepth,
-                            loaded.compile, options.format, messages.diagnostics);
-}
-
-std::optional<std::string> explainOnGpu(const ExplainOptions &options, LoadedScene &loaded,
-                                        SceneBuilder buildScene, GpuExplainer explain,
-                                        Messages &messages) {
-  const BuildScene build = [&](const auto &program) {
-    return buildScene(loaded.description, program);
-  };
-  return explain({options.files.front(), *loaded.module, loaded.request, loaded.compile, build,
-                  scene::renderOptions(loaded.description.render).maxDepth,
-                  options.gpuOptions.maxRegisters, options.format == ReportFormat::Json},
-                 messages.diagnostics);
-}
-
-/// Renders the scene with each item kept that something was left out for, and with everything kept.
-std::optional<std::vector<ItemMeasurement>> measureScene(const ExplainOptions &options,
-                                                         const SceneExplanation &explanation,
-                                                         LoadedScene &loaded,
-                                                         SceneBuilder buildScene,
-                                                         ItemMeasurer measure, Messages &messages) {
-  const BuildScene build = [&](const auto &program) {
-    return buildScene(loaded.description, program);
-  };
-  MeasureRequest what{*loaded.module,
-                      loaded.request,
-                      loaded.compile,
-                      build,
-                      scene::renderOptions(loaded.description.render),
-                      {},
-                      {},
-                      options.pairs,
-                      {}};
-  options.size.value_or(PictureSize{320, 180}).apply(what.render);
-  what.render.samplesPerPixel = options.samples;
-  what.render.threads = 1;
-  for (Item item : allItems) {
-    const auto isLeftOut = [&](const Finding &finding) {
-      return finding.item == item && !finding.isNeeded;
-    };
-    const auto &ofMeshes = loaded.scene->meshAttributes();
-    const bool inMeshes = std::any_of(ofMeshes.begin(), ofMeshes.end(), [&](const auto &attribute) {
-      return itemOf(attribute) == item;
-    });
-    if (loaded.request.keep.has(item) ||
-        (!inMeshes &&
-         std::none_of(explanation.findings.begin(), explanation.findings.end(), isLeftOut)))
-      continue;
-    what.kept.push_back(ItemSet::only(item));
-    what.names.push_back(nameOf(item));
-  }
-  what.kept.push_back(ItemSet::all());
-  what.names.push_back("all");
-  Progress progress("measuring");
-  what.progress = [&](double share) { progress.update(share); };
-  return measure(what, messages.diagnostics);
-}
-
-std::optional<std::string> explainNeeds(const ExplainOptions &options, LoadedScene &loaded,
-                                        SceneBuilder buildScene, ItemMeasurer measure,
-                                        Messages &messages) {
-  const std::optional<SceneExplanation> explanation =
-      explainScene(*loaded.module, loaded.request, loaded.compile, messages.diagnostics,
-                   loaded.makeObjects, !options.noSavings);
-  if (!explanation)
-    return std::nullopt;
-  for (const Warning &warning : loaded.scene->warnings())
-    messages.report(warning);
-  loaded.scene->useProgram(explanation->program);
-  Explanation whole(loaded.description.file, *explanation, loaded.scene->meshAttributes());
-  if (options.measure) {
-    const auto measurements =
-        measureScene(options, *explanation, loaded, buildScene, measure, messages);
-    if (!measurements)
-      return std::nullopt;
-    whole.add(*measurements);
-  }
-  return options.format == ReportFormat::Json ? whole.json() : whole.text();
-}
-
-/// What explains a scene; null in a program that binds no scene.
-struct Explainers {
-  SceneBuilder buildScene;
-  ItemMeasurer measure;
-  GpuExplainer gpu;
-};
-
-std::optional<std::string> explainScene(const ExplainOptions &options, const Explainers &by,
-                                        Messages &messages, std::vector<std::string> &filesRead) {
-  LoadedScene loaded(options, by.buildScene, messages, filesRead);
-  if (!loaded.module)
-    return std::nullopt;
-  if (options.gpu)
-    return explainOnGpu(options, loaded, by.buildScene, by.gpu, messages);
-  return options.states ? explainStates(options, loaded, messages)
-                        : explainNeeds(options, loaded, by.buildScene, by.measure, messages);
-}
-
-int explain(const ExplainOptions &options, const Explainers &by) {
+int explain(const ExplainOptions &options, SceneExplainer explainScene) {
   Messages messages(options.common);
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
     const std::optional<std::string> text = isScene(options.files.front())
-                                                ? explainScene(options, by, messages, filesRead)
+                                                ? explainScene(options, messages, filesRead)
                                                 : explainFiles(options, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
@@ -191,8 +47,7 @@ int explain(const ExplainOptions &options, const Explainers &by) {
 
 } // namespace
 
-void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, ItemMeasurer measure,
-                       GpuExplainer explainGpu) {
+void addExplainCommand(CLI::App &app, Action &action, SceneExplainer explainScene) {
   auto options = std::make_shared<ExplainOptions>();
   CLI::App *command =
       app.add_subcommand("explain", "explain what the compiler kept, left out and saved, and why");
@@ -237,8 +92,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
                   "rtslc explain scene.json --gpu --gpu-arch=sm_90\n  "
                   "rtslc explain --states Glass.rtsl\n  rtslc explain --states scene.json\n  rtslc "
                   "explain --states --format=svg Glass.rtsl -o states.svg");
-  const Explainers by = {buildScene, measure, explainGpu};
-  command->callback([options, by, command, &action] {
+  command->callback([options, explainScene, command, &action] {
     const auto scenes = std::count_if(options->files.begin(), options->files.end(), isScene);
     if (scenes > 0 && options->files.size() > 1)
       throw CLI::ValidationError("FILE", "give RTSL files or one scene");
@@ -265,7 +119,7 @@ void addExplainCommand(CLI::App &app, Action &action, SceneBuilder buildScene, I
     if (!options->states &&
         (options->format == ReportFormat::Dot || options->format == ReportFormat::Svg))
       throw CLI::ValidationError("--format", "only --states has pictures");
-    action = [options, by] { return explain(*options, by); };
+    action = [options, explainScene] { return explain(*options, explainScene); };
   });
 }
 

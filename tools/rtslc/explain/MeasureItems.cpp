@@ -64,7 +64,7 @@ double processorSeconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-struct Rendering {
+struct TimedRendering {
   double seconds = 0;
   std::optional<std::uint64_t> instructions;
   std::vector<float> pixels;
@@ -76,8 +76,8 @@ public:
   Subject(runtime::Scene made, const runtime::RenderOptions &options)
       : scene(std::make_unique<runtime::Scene>(std::move(made))), renderer(*scene, options) {}
 
-  Rendering render(const InstructionCounter &counter) {
-    Rendering rendering;
+  TimedRendering render(const InstructionCounter &counter) {
+    TimedRendering rendering;
     const double start = processorSeconds();
     counter.start();
     const runtime::Image image = renderer.render();
@@ -120,7 +120,7 @@ ItemMeasurement compare(Subject &leftOut, Subject &kept, const MeasureRequest &w
   leftOut.render(counter); // caches and clocks warm up
   kept.render(counter);
   for (unsigned pair = 0; pair < what.pairs; ++pair) {
-    Rendering without, with;
+    TimedRendering without, with;
     if (pair % 2 == 0)
       without = leftOut.render(counter), with = kept.render(counter);
     else

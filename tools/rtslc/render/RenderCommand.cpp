@@ -10,6 +10,7 @@
 #include "support/AtomicFile.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include "runtime/image/Layers.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/MachineStack.h"
+#include "support/Clock.h"
 #include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OutOfMemory.h"
@@ -17,19 +18,12 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 namespace rtsl::tool {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// What the command line changes in the scene: `--set`, and options that decide what is compiled.
 std::vector<std::string> overridesOf(const RenderCommandOptions &options) {

@@ -16,6 +16,7 @@
 #include "runtime/render/Renderer.h"
 #include "scenefile/SceneFile.h"
 #include "support/AtomicFile.h"
+#include "support/Clock.h"
 #include "support/ErrorMessages.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/OptionValues.h"
@@ -24,6 +25,7 @@
 #include "tools/common/Progress.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
@@ -40,8 +42,6 @@
 namespace rtsl::tool {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct ReportOptions {
   CommonOptions common;

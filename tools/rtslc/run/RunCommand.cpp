@@ -10,6 +10,7 @@
 #include "scenefile/SceneFile.h"
 #include "scenefile/files/KeptFiles.h"
 #include "support/AtomicFile.h"
+#include "support/Clock.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
 #include "tools/common/BufferOptions.h"
@@ -20,6 +21,7 @@
 #include "tools/common/PictureOptions.h"
 #include "tools/common/Progress.h"
 #include "tools/rtslc/common/Messages.h"
+#include "tools/rtslc/common/SceneArguments.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
 #include <fmt/format.h>
@@ -27,7 +29,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -40,7 +41,6 @@ namespace {
 
 constexpr std::uint32_t mostRepeats = 1000000;
 
-using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
 /// One launch, when it is over.
@@ -57,10 +57,6 @@ struct Launch {
 /// Of the launch alone: by the clock of the GPU, if that runs it.
 double secondsOf(const runtime::RenderStatistics &statistics) {
   return statistics.kernelSeconds > 0 ? statistics.kernelSeconds : statistics.renderSeconds;
-}
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// The scene, with the buffers of --in.

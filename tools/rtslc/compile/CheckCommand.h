@@ -1,0 +1,22 @@
+//===- CheckCommand.h - what rtslc check is asked for ---------------------===//
+#pragma once
+
+#include "tools/rtslc/common/CommandLine.h"
+#include "tools/rtslc/common/Messages.h"
+
+#include <string>
+#include <vector>
+
+namespace rtsl::tool {
+
+struct CheckOptions {
+  CommonOptions common;
+  std::vector<std::string> files, overrides;
+  bool fix = false;
+};
+
+/// Everything that happens to a scene before it is rendered, through any of its cameras.
+void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
+                std::vector<std::string> &filesRead);
+
+} // namespace rtsl::tool
