@@ -7,9 +7,11 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "support/MachineMemory.h"
 
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -28,6 +30,7 @@ struct FlatScene {
     std::uint8_t *elements;
   };
   std::vector<Output> outputs;
+  std::shared_ptr<const MemoryReservation> reservation; // of the buffers
 
   RtslLaunch launch() const {
     RtslLaunch launch;
@@ -52,7 +55,7 @@ struct FlatScene {
 };
 
 /// The scene, without trees. Width, height, depth and seed of its launch are 0, and nothing depends
-/// on addresses: the same scene gives the same bytes.
+/// on addresses: the same scene gives the same bytes. Throws OutOfMemory.
 FlatScene flatten(const Scene &scene);
 
 /// With trees for the device traversal, at its end. Nor do these depend on anything else.

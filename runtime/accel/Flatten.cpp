@@ -2,8 +2,12 @@
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/scene/Scene.h"
+#include "support/ErrorMessages.h"
+#include "support/MachineMemory.h"
 
 #include <algorithm>
+#include <memory>
+#include <new>
 
 namespace rtsl::runtime {
 
@@ -38,6 +42,19 @@ public:
     }
     std::memcpy(flat.bytes.data() + place, &start, sizeof start);
     return start;
+  }
+
+  /// Makes room for buffers, which may be most of the memory. Throws OutOfMemory.
+  void reserve(const std::vector<Scene::BufferPlace> &buffers) {
+    std::uint64_t bytes = 0;
+    for (const Scene::BufferPlace &buffer : buffers)
+      bytes += buffer.bytes + alignment;
+    try {
+      flat.reservation = std::make_shared<const MemoryReservation>(bytes);
+      flat.bytes.reserve(flat.bytes.size() + bytes);
+    } catch (const std::bad_alloc &) {
+      throw Error(message::noMemoryFor("a copy of the buffers", bytes));
+    }
   }
 
   void addOutput(const FlatScene::Output &output) { flat.outputs.push_back(output); }
@@ -98,7 +115,9 @@ static FlatScene flatten(const Scene &scene, const Bvh *bvh) {
     }
   }
   static_assert(offsetof(RtslBuffer, addressHigh) == offsetof(RtslBuffer, addressLow) + 4);
-  for (const Scene::BufferPlace &buffer : scene.buffers()) {
+  const std::vector<Scene::BufferPlace> buffers = scene.buffers();
+  flattener.reserve(buffers);
+  for (const Scene::BufferPlace &buffer : buffers) {
     std::uint64_t elements;
     std::memcpy(&elements, launch.records + buffer.offset, sizeof elements);
     const std::uint64_t start = flattener.addAt(

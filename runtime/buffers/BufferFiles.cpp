@@ -60,21 +60,21 @@ std::uint32_t wordOf(double number, const ValueType &type, const std::string &wh
 std::shared_ptr<Value::Words> wordsOf(const std::vector<double> &numbers, std::size_t given,
                                       const ValueType &type, std::uint32_t colorComponents,
                                       const std::string &what) {
-  auto words = std::make_shared<Value::Words>();
+  std::vector<std::uint32_t> words;
   const bool isColor = type.kind == ValueType::Kind::Color && given != colorComponents;
-  words->reserve(isColor ? numbers.size() / given * colorComponents : numbers.size());
+  words.reserve(isColor ? numbers.size() / given * colorComponents : numbers.size());
   for (std::size_t i = 0; i < numbers.size(); i += isColor ? given : 1) {
     if (!isColor) {
-      words->push_back(wordOf(numbers[i], type, what));
+      words.push_back(wordOf(numbers[i], type, what));
       continue;
     }
     std::vector<float> color;
     for (std::size_t j = 0; j < given; ++j)
       color.push_back(static_cast<float>(numbers[i + j]));
     for (const float component : colorFromNumbers(color, colorComponents))
-      words->push_back(wordOf(double(component), type, what));
+      words.push_back(wordOf(double(component), type, what));
   }
-  return words;
+  return std::make_shared<Value::Words>(std::move(words));
 }
 
 std::vector<std::uint32_t> sizesOf(const std::vector<std::size_t> &shape, std::size_t rank,
@@ -153,13 +153,15 @@ Value zeros(const std::vector<std::uint32_t> &sizes, const ValueType &type,
                                         type.bufferRank == 1 ? "" : "s", sizes.size()));
   const double bytes = std::accumulate(sizes.begin(), sizes.end(), double(type.elementSize),
                                        [](double a, std::uint32_t b) { return a * double(b); });
+  constexpr double gibibyte = 1 << 30;
   try {
     if (bytes > double(std::numeric_limits<std::int64_t>::max()))
       throw std::bad_alloc();
     auto words = std::make_shared<Value::Words>(static_cast<std::size_t>(bytes) / 4);
     return Value::block(std::move(words), sizes);
   } catch (const std::bad_alloc &) {
-    throw Error(message::noMemoryForBuffer(what, bytes / (1 << 30)));
+    throw Error(message::noMemoryForBuffer(what, bytes / gibibyte,
+                                           double(MemoryReservation::all()) / gibibyte));
   }
 }
 

@@ -83,7 +83,7 @@ RtslBufferNumber rtslSceneAddBuffer(RtslScene *scene, size_t words) {
   return guarded<RtslBufferNumber>(0, [&] {
     try {
       scene->buffers.push_back(std::make_shared<runtime::Value::Words>(words));
-    } catch (const std::exception &) { // bad_alloc, or more than a vector can have
+    } catch (const std::bad_alloc &) {
       throw rtsl::Error(rtsl::message::bufferTooLarge(words));
     }
     return RtslBufferNumber(scene->buffers.size());

@@ -4,6 +4,7 @@
 #include "runtime/image/ImageFormats.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
+#include "support/MachineMemory.h"
 
 #include <fmt/format.h>
 
@@ -37,11 +38,12 @@ PictureFormat formatOf(const std::string &path, PictureFormat requested) {
 } // namespace
 
 Image newImage(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+  const std::uint64_t bytes = std::uint64_t(width) * height * channels * sizeof(float);
   try {
+    const MemoryReservation check(bytes);
     return Image(width, height, channels);
   } catch (const std::bad_alloc &) {
-    throw Error(
-        message::noMemoryForPicture(std::uint64_t(width) * height * channels * sizeof(float)));
+    throw Error(message::noMemoryForPicture(bytes));
   }
 }
 

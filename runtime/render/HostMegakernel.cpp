@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
+#include <utility>
 
 namespace rtsl::runtime {
 
@@ -42,10 +44,17 @@ std::uint64_t HostMegakernel::laneBytes(const RtslLaunch &launch) {
 }
 
 Megakernel::Address HostMegakernel::allocate(std::uint64_t bytes, const char *what) {
-  memory.emplace_back(static_cast<std::uint8_t *>(std::aligned_alloc(cacheLine, inLines(bytes))));
-  if (!memory.back())
+  try {
+    Allocation allocation{MemoryReservation(inLines(bytes)), nullptr};
+    allocation.bytes.reset(
+        static_cast<std::uint8_t *>(std::aligned_alloc(cacheLine, inLines(bytes))));
+    if (!allocation.bytes)
+      throw std::bad_alloc();
+    memory.push_back(std::move(allocation));
+  } catch (const std::bad_alloc &) {
     throw Error(message::noMemoryFor(what, bytes));
-  return reinterpret_cast<Address>(memory.back().get());
+  }
+  return reinterpret_cast<Address>(memory.back().bytes.get());
 }
 
 void HostMegakernel::upload(Address to, const void *from, std::uint64_t bytes) {
@@ -61,7 +70,9 @@ std::unique_ptr<BuildDevice> HostMegakernel::buildDevice() {
 }
 
 void HostMegakernel::own(Address address) {
-  memory.emplace_back(reinterpret_cast<std::uint8_t *>(address));
+  Allocation allocation; // which was counted when it was made
+  allocation.bytes.reset(reinterpret_cast<std::uint8_t *>(address));
+  memory.push_back(std::move(allocation));
 }
 
 Megakernel::Address HostMegakernel::clearedPixels() {

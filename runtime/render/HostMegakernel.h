@@ -9,6 +9,7 @@
 #include "runtime/program/Program.h"
 #include "runtime/render/HostThreads.h"
 #include "runtime/render/Megakernel.h"
+#include "support/MachineMemory.h"
 
 #include <cstdlib>
 #include <limits>
@@ -49,10 +50,14 @@ private:
   struct Free {
     void operator()(void *memory) const { std::free(memory); }
   };
+  struct Allocation {
+    MemoryReservation reservation;
+    std::unique_ptr<std::uint8_t, Free> bytes;
+  };
 
   const MegakernelCode code;
   const HostThreads threads;
-  std::vector<std::unique_ptr<std::uint8_t, Free>> memory;
+  std::vector<Allocation> memory;
   PixelSums ownSums; // of clearedSums
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/scene/Words.h"
 #include "support/Error.h"
 
 #include <cstdint>
@@ -20,7 +21,7 @@ namespace rtsl::runtime {
 class Value {
 public:
   enum class Kind : std::uint8_t { Number, Boolean, Reference, List, Block };
-  using Words = std::vector<std::uint32_t>;
+  using Words = runtime::Words;
 
   Value(double number) : kind(Kind::Number), number(number) {}
   Value(float number) : Value(double(number)) {}
