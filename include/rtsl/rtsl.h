@@ -137,6 +137,9 @@ int rtslSetRoots(RtslScene *scene, uint32_t roots);
 /* Whether rays meet triangles of the meshes that are added next along rt_GeometricNormal; 1 unless
  * it is set. */
 int rtslSetBackFaces(RtslScene *scene, int areHit);
+/* Whether texture coordinates of the meshes that are loaded next are (0,0), (1,0), (0,1) in each
+ * triangle, in place of those of their files; 0 unless it is set. */
+int rtslSetBarycentric(RtslScene *scene, int areBarycentric);
 
 /* Enters a new node, whose transform is what rtslPlace, rtslPlaceMoving or rtslPlaceTurning has
  * set. Instances and selectors that are added from here on are in its space, and so are nodes that
@@ -188,6 +191,16 @@ int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path);
  * in [0, 1]. Between them its vertices are interpolated linearly. */
 int32_t rtslSceneLoadMovingMesh(RtslScene *scene, const char *const *paths, const float *times,
                                 uint32_t count);
+/* Loads a primitive of a glTF file, such as "meshes.0.primitives.1", without its material, for
+ * instances that share it; returns its number, or -1. `weights`: one for each of its morph targets;
+ * null and 0: all are 0. */
+int32_t rtslSceneLoadMeshPart(RtslScene *scene, const char *path, const char *part,
+                              const double *weights, size_t targets);
+/* The same for one that moves: `targets` weights for each of `count` >= 2 times, which ascend in
+ * [0, 1]. Between them its vertices are interpolated linearly. */
+int32_t rtslSceneLoadMovingMeshPart(RtslScene *scene, const char *path, const char *part,
+                                    const double *weights, size_t targets, const float *times,
+                                    uint32_t count);
 /* Another instance of a mesh: of rtslSceneLoadMesh's, or of the n-th that was added, from 0. */
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material);
 
@@ -212,6 +225,14 @@ int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const
 int rtslSetMemberObject(RtslScene *scene, RtslObject object, const char *member, RtslObject value);
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
+/* How `illuminate(P)` chooses one of the surfaces that shine: by power, by a light tree, or by a
+ * tree where there are many; RTSL_LIGHTS_AUTO unless it is set. */
+typedef enum RtslLightSampler {
+  RTSL_LIGHTS_AUTO,
+  RTSL_LIGHTS_BY_POWER,
+  RTSL_LIGHTS_BY_TREE
+} RtslLightSampler;
+int rtslSceneSetLightSampler(RtslScene *scene, RtslLightSampler sampler);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
 /* Samples have times between these two, 0 <= open <= close <= 1. Without it they have times from 0
  * to 1 if something moves. */
@@ -237,7 +258,8 @@ typedef struct RtslRenderSettings {
 /* 960 x 540, 16 samples, depth 8, seed 1, all cores, one slice. */
 RtslRenderSettings rtslRenderDefaults(void);
 
-/* The same but for what the file of the scene (rtslSceneLoad) says. */
+/* The same but for what the file of the scene (rtslSceneLoad) says. A pass that says nothing has 1
+ * sample. */
 RtslRenderSettings rtslSceneSettings(const RtslScene *scene);
 
 /* How many launches the file of the scene has: its passes, or one. 0 for a scene of no file. */

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace runtime = rtsl::runtime;
 
@@ -13,10 +14,21 @@ runtime::Placement RtslScene::takePlacement() {
   return taken;
 }
 
-runtime::Mesh RtslScene::loadMesh(const char *path) const {
+runtime::MeshRequest RtslScene::meshRequest() const {
   runtime::MeshRequest request = runtime::requestOf(scene.program());
   request.keepsOrder = !attributes.empty();
-  return runtime::loadMesh(path, request);
+  return request;
+}
+
+runtime::Mesh RtslScene::loadMesh(const char *path) const {
+  runtime::Mesh mesh = runtime::loadMesh(path, meshRequest());
+  setTextureCoordinates(mesh);
+  return mesh;
+}
+
+void RtslScene::setTextureCoordinates(runtime::Mesh &mesh) const {
+  if (areBarycentric)
+    mesh.uvs.clear();
 }
 
 void RtslScene::giveAttributes(runtime::Mesh &mesh, const char *name) {
@@ -40,6 +52,21 @@ runtime::Value valueOf(const double *numbers, std::size_t count) {
   if (count == 1)
     return runtime::Value(numbers[0]);
   return runtime::Value(std::vector<runtime::Value>(numbers, numbers + count));
+}
+
+std::vector<float> keyTimes(const char *what, const float *first, std::uint32_t count,
+                            std::size_t stride) {
+  if (count < 2)
+    throw Error(message::tooFewKeys(what));
+  std::vector<float> times;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    float time;
+    std::memcpy(&time, reinterpret_cast<const char *>(first) + i * stride, sizeof time);
+    if (!(time >= 0 && time <= 1) || (i > 0 && !(time > times.back())))
+      throw Error(message::keyTimesNotAscending());
+    times.push_back(time);
+  }
+  return times;
 }
 
 runtime::Transform transformOf(const double *numbers) {

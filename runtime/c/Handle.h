@@ -12,6 +12,10 @@
 #include <utility>
 #include <vector>
 
+namespace rtsl::scene {
+class ModelFiles;
+}
+
 struct RtslScene {
   explicit RtslScene(std::shared_ptr<const rtsl::runtime::Program> program)
       : scene(std::move(program)) {}
@@ -21,11 +25,16 @@ struct RtslScene {
   std::vector<rtsl::runtime::NamedValue> arguments, members; // of the next object
   rtsl::runtime::Placement placement;                        // of the next instance
   std::uint32_t roots = 1;                                   // of the next instances
-  std::vector<rtsl::runtime::NamedAttribute> attributes;     // of the next mesh
+  bool areBarycentric = false; // the texture coordinates of the next meshes
+  std::vector<rtsl::runtime::NamedAttribute> attributes; // of the next mesh
 
   /// The placement of the instance that is being added; the one after it has none.
   rtsl::runtime::Placement takePlacement();
+  /// What of the files of meshes the shaders read.
+  rtsl::runtime::MeshRequest meshRequest() const;
   rtsl::runtime::Mesh loadMesh(const char *path) const;
+  /// Leaves out those of its file where they are barycentric.
+  void setTextureCoordinates(rtsl::runtime::Mesh &mesh) const;
   /// Gives a mesh the attributes that were set for it. `name` is for messages.
   void giveAttributes(rtsl::runtime::Mesh &mesh, const char *name);
   /// Adds an instance below the node that is entered.
@@ -69,6 +78,7 @@ struct RtslScene {
   // Scene files (SceneFile.cpp)
   //===--------------------------------------------------------------------===//
 
+  std::shared_ptr<rtsl::scene::ModelFiles> models;       // of parts of meshes; null: none yet
   std::string file;                                      // empty: the scene is of none
   std::shared_ptr<const rtsl::runtime::Program> program; // of such a scene
   std::vector<RtslRenderSettings> passes;                // of its launches
@@ -97,6 +107,10 @@ Result guarded(Result failed, Work work) {
 
 /// One number, or a list of them.
 runtime::Value valueOf(const double *numbers, std::size_t count);
+/// `count` of them, `stride` bytes apart. `what` moves by keys at these times, for messages. Throws
+/// OutOfRange.
+std::vector<float> keyTimes(const char *what, const float *first, std::uint32_t count,
+                            std::size_t stride);
 /// Of 12 numbers, four columns of three.
 runtime::Transform transformOf(const double *numbers);
 /// The same; null: none. Throws NotSettable.

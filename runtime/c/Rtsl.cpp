@@ -6,14 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <exception>
+#include <iterator>
 #include <string>
 #include <utility>
 
 namespace runtime = rtsl::runtime;
 
 using rtsl::c::guarded;
+using rtsl::c::keyTimes;
 using rtsl::c::lastError;
 
 extern "C" {
@@ -83,22 +84,6 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
   });
 }
 
-/// Throws OutOfRange unless they are the times of keys.
-static std::vector<float> keyTimes(const char *what, const float *first, std::uint32_t count,
-                                   std::size_t stride) {
-  if (count < 2)
-    throw rtsl::Error(rtsl::message::tooFewKeys(what));
-  std::vector<float> times;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    float time;
-    std::memcpy(&time, reinterpret_cast<const char *>(first) + i * stride, sizeof time);
-    if (!(time >= 0 && time <= 1) || (i > 0 && !(time > times.back())))
-      throw rtsl::Error(rtsl::message::keyTimesNotAscending());
-    times.push_back(time);
-  }
-  return times;
-}
-
 int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *times, uint32_t count,
                     uint32_t mask) {
   return guarded(0, [&] {
@@ -158,6 +143,13 @@ int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
 int rtslSetRoots(RtslScene *scene, uint32_t roots) {
   return guarded(0, [&] {
     scene->roots = roots;
+    return 1;
+  });
+}
+
+int rtslSetBarycentric(RtslScene *scene, int areBarycentric) {
+  return guarded(0, [&] {
+    scene->areBarycentric = areBarycentric != 0;
     return 1;
   });
 }
@@ -285,6 +277,17 @@ int rtslSceneSetCamera(RtslScene *scene, RtslObject camera) {
 int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration) {
   return guarded(0, [&] {
     scene->scene.setRayGeneration(rayGeneration);
+    return 1;
+  });
+}
+
+int rtslSceneSetLightSampler(RtslScene *scene, RtslLightSampler sampler) {
+  return guarded(0, [&] {
+    constexpr runtime::LampChoice choices[] = {
+        runtime::LampChoice::Automatic, runtime::LampChoice::ByPower, runtime::LampChoice::ByTree};
+    if (unsigned(sampler) >= std::size(choices))
+      throw rtsl::Error(rtsl::message::noLightSamplerNumbered(unsigned(sampler)));
+    scene->scene.setLampChoice(choices[sampler]);
     return 1;
   });
 }

@@ -70,8 +70,13 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
     RtslScene made(scene::buildScene(description, program));
     made.file = file;
     made.program = program;
-    for (std::size_t i = 0; i < scene::launchCount(description); ++i)
-      made.passes.push_back(settingsOf(scene::launchOf(description, i).render));
+    const std::size_t launches = scene::launchCount(description);
+    for (std::size_t i = 0; i < launches; ++i) {
+      scene::RenderSettings render = scene::launchOf(description, i).render;
+      if (launches > 1 && !render.hasSamples)
+        render.samplesPerPixel = 1; // as for `rtslc run`: a pass need not make a picture
+      made.passes.push_back(settingsOf(render));
+    }
     made.ofFile = made.passes.front();
     return made;
   } catch (const rtsl::Error &error) {

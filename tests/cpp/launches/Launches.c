@@ -266,6 +266,30 @@ static void movingMesh(void) {
   rtslSceneDestroy(scene);
 }
 
+/* Primitives of a glTF file with morph targets, one of which moves, as parts.json has them; texture
+ * coordinates of the other one are barycentric. */
+static void parts(void) {
+  const char *part = "meshes.0.primitives.0";
+  const double still[] = {0.25, -0.5}, weights[] = {0, 0, 1, 0.5};
+  const double right[] = {1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0};
+  const float times[] = {0, 1};
+  RtslScene *scene = rtslSceneCreate(launches_shaders());
+  RtslRenderSettings settings = rtslRenderDefaults();
+  RtslObject material;
+  int32_t meshes[2];
+  need(scene && (material = rtslSceneAddObject(scene, "Coordinates")), "a material");
+  meshes[0] = rtslSceneLoadMovingMeshPart(scene, "morph.gltf", part, weights, 2, times, 2);
+  need(meshes[0] >= 0 && rtslSceneAddMeshInstance(scene, meshes[0], material), "one that moves");
+  need(rtslSetBarycentric(scene, 1), "barycentric coordinates");
+  meshes[1] = rtslSceneLoadMeshPart(scene, "morph.gltf", part, still, 2);
+  need(rtslPlace(scene, right, ~0u), "a place");
+  need(meshes[1] >= 0 && rtslSceneAddMeshInstance(scene, meshes[1], material), "one that is still");
+  need(rtslSceneSetCamera(scene, rtslSceneAddObject(scene, "Eye")), "a camera");
+  settings.width = 48, settings.height = 32, settings.samplesPerPixel = 4;
+  need(rtslRenderToFile(scene, &settings, "parts.exr"), "parts.exr");
+  rtslSceneDestroy(scene);
+}
+
 /* Two passes of a file: the second one adds what the first one has found, and again. */
 static void passesOfFile(void) {
   RtslScene *scene = rtslSceneLoad(launches_shaders(), "passes.json", NULL, 0);
@@ -279,6 +303,7 @@ static void passesOfFile(void) {
       need(rtslSceneSetPass(scene, pass), "a pass");
       settings = rtslSceneSettings(scene);
       need(settings.width == (pass == 0 ? 3 : 1), "its size");
+      need(settings.samplesPerPixel == 1, "its samples");
       need(rtslLaunch(scene, &settings), "its launch");
       if (pass == 0) {
         need((found = (const float *)rtslSceneOutput(scene, "found", sizes)) != NULL, "rays");
@@ -345,6 +370,9 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneFind(scene, "nothing"));
   EXPECT_FAILURE(rtslSceneOutput(scene, "nothing", found));
   EXPECT_FAILURE(rtslSceneLoadMovingMesh(scene, &nowhere, &texel, 1) >= 0);
+  EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0", &one, 1) >= 0);
+  EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0.primitives.0", &one, 1) >= 0);
+  EXPECT_FAILURE(rtslSceneSetLightSampler(scene, (RtslLightSampler)3));
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
   rtslSceneDestroy(scene);
@@ -358,6 +386,7 @@ int main(int count, char **arguments) {
   images(arguments[1], atoi(arguments[2]));
   files();
   movingMesh();
+  parts();
   passesOfFile();
   mistakes();
   return 0;

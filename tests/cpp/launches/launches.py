@@ -45,7 +45,51 @@ WORDS = (
     "no object of the scene is named `nothing`",
     "no output buffer `nothing`",
     "a mesh that moves needs at least two keys",
+    "meshes.0",
+    "`weights` of `meshes.0.primitives.0` takes 2 numbers, not 1",
+    "no light sampler has the number 3",
 )
+
+
+def triangle_model(*targets):
+    """A glTF file of a triangle, with morph targets that move its first two vertices."""
+    corners = [-1, -1, 0, 1, -1, 0.3, 0, 1.5, 0]
+    lists = [corners, *([*first, *second, 0, 0, 0] for first, second in targets)]
+    numbers = b"".join(struct.pack("<9f", *one) for one in lists)
+    uvs = struct.pack("<6f", 0.1, 0.2, 0.9, 0.3, 0.5, 0.8)
+    accessor = {"componentType": 5126, "count": 3, "type": "VEC3", "min": [-9] * 3, "max": [9] * 3}
+    return {
+        "asset": {"version": "2.0"},
+        "buffers": [
+            {
+                "byteLength": len(numbers + uvs),
+                "uri": "data:application/octet-stream;base64,"
+                + base64.b64encode(numbers + uvs).decode(),
+            }
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": len(numbers)},
+            {"buffer": 0, "byteOffset": len(numbers), "byteLength": len(uvs)},
+        ],
+        "accessors": [
+            *({**accessor, "bufferView": 0, "byteOffset": 36 * i} for i in range(len(lists))),
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+        ],
+        "meshes": [
+            {
+                "primitives": [
+                    {
+                        "attributes": {"POSITION": 0, "TEXCOORD_0": len(lists)},
+                        **(
+                            {"targets": [{"POSITION": i} for i in range(1, len(lists))]}
+                            if targets
+                            else {}
+                        ),
+                    }
+                ]
+            }
+        ],
+    }
 
 
 def write_scenes(folder):
@@ -53,35 +97,35 @@ def write_scenes(folder):
     model, one that writes a buffer, and one of passes."""
     shaders = f"{source}/tests/cpp/launches/Launches.rtsl"
     start = {"rtsl": 1, "import": [shaders], "render": {"size": [48, 32], "spp": 2}}
-    triangle = struct.pack("<9f", -1, -1, 0, 1, -1, 0.3, 0, 1.5, 0)
-    model = {
-        "asset": {"version": "2.0"},
-        "buffers": [
-            {
-                "byteLength": len(triangle),
-                "uri": "data:application/octet-stream;base64,"
-                + base64.b64encode(triangle).decode(),
-            }
-        ],
-        "bufferViews": [{"buffer": 0, "byteLength": len(triangle)}],
-        "accessors": [
-            {
-                "bufferView": 0,
-                "componentType": 5126,
-                "count": 3,
-                "type": "VEC3",
-                "min": [-1, -1, 0],
-                "max": [1, 1.5, 0.3],
-            }
-        ],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-    }
+    model = triangle_model()
+    morph = triangle_model(([0.5, 0, 1], [0, 0.5, 0]), ([0, -1, 0], [0.25, 0.25, 2]))
     ball = {"primitive": {"class": "Ball"}, "material": "clay"}
     moving = {"translate": {"frames": {"0": [0, 0, 0], "4": [2, 1, 0]}}}
     part = {"mesh": "model.gltf", "part": "meshes.0.primitives.0", "material": "clay"}
+    morphed = {
+        "mesh": "morph.gltf",
+        "part": "meshes.0.primitives.0",
+        "material": "coordinates",
+    }
     measure = {"class": "Measure", "steps": [0.5], "from": [0, 0, 20], "hits": [0]}
     scenes = {
         "model.gltf": model,
+        "morph.gltf": morph,
+        "parts.json": {
+            **start,
+            "camera": {"class": "Eye"},
+            "materials": {"coordinates": {"class": "Coordinates"}},
+            "objects": [
+                {**morphed, "weights": {"keys": [[0, 0], [1, 0.5]], "times": [0, 1]}},
+                {
+                    **morphed,
+                    "weights": [0.25, -0.5],
+                    "textureCoordinates": "barycentric",
+                    "transform": {"translate": [2, 0, 0]},
+                },
+            ],
+            "render": {"size": [48, 32], "spp": 4},
+        },
         "materials.json": {"rtsl": 1, "materials": {"clay": {"class": "Lit"}}},
         "scene.json": {
             **start,
@@ -125,8 +169,9 @@ def write_scenes(folder):
             "buffers": {"found": {"size": [1, 2, 3]}},
             "passes": [
                 {"rayGeneration": {**measure, "found": "found"}, "size": [3, 2, 1], "spp": 1},
-                {"rayGeneration": {"class": "Total", "found": "found"}, "size": [1, 1], "spp": 1},
+                {"rayGeneration": {"class": "Total", "found": "found"}, "size": [1, 1]},
             ],
+            "render": {},  # and with it no samples
         },
     }
     for name, corner in (("flat", "0 2 0"), ("bent", "1.5 2.5 3")):
@@ -136,7 +181,8 @@ def write_scenes(folder):
 
 
 def write_model(folder):
-    """An OBJ file with two materials of an MTL file, which are the library's, and a scene."""
+    """An OBJ file with two materials of an MTL file, which are the library's, and a scene with it
+    and two lamps."""
     (folder / "model.mtl").write_text(
         "newmtl red\nKd 0.7 0.2 0.1\nPr 0.5\nnewmtl metal\nKd 0.8 0.8 0.7\nPm 1\nPr 0.3\n"
     )
@@ -146,15 +192,26 @@ def write_model(folder):
     )
     scene = {
         "rtsl": 1,
-        "import": ["std.cameras"],
+        "import": ["std.cameras", "std.materials"],
         "camera": {
             "class": "PerspectiveCamera",
             "constructor": [[0.9, 1.3, 6], [0, 0.5, 0], [0, 1, 0]],
         },
-        "objects": [{"model": "model.obj"}],
+        "objects": [
+            {"model": "model.obj"},
+            *(
+                {
+                    "mesh": "lamp.obj",
+                    "material": {"class": "Emitter", "radiance": radiance},
+                    "transform": {"translate": [x, 2, 0]},
+                }
+                for x, radiance in ((-2, 3), (1, 5))
+            ),
+        ],
         "background": [0.5, 0.6, 0.8],
         "render": {"engine": "path", "size": [48, 32], "spp": 4},
     }
+    (folder / "lamp.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n")
     (folder / "model.json").write_text(json.dumps(scene))
 
 
@@ -179,9 +236,13 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     compare("second.exr", "--camera=front", "--frame=2")
     compare("same.exr", "--camera=front", "--frame=2")
     compare("moving.exr", scene="moving.json")
+    compare("parts.exr", scene="parts.json")
     write_model(pathlib.Path(name))
     run(models, "model.json", "model.exr")
     compare("model.exr", scene="model.json")
+    run(models, "model.json", "tree.exr", "tree")
+    compare("tree.exr", "--set=render.lightSampler=tree", scene="model.json")
+    assert pathlib.Path("tree.exr").read_bytes() != pathlib.Path("model.exr").read_bytes()
     # A model of glass, whose class these shaders do not have.
     pathlib.Path(name, "model.mtl").write_text("newmtl red\nillum 7\nNi 1.5\nnewmtl metal\n")
     failed = subprocess.run([models, "model.json", "none.exr"], capture_output=True, text=True)
