@@ -2,6 +2,7 @@
 #include "sema/Sema.h"
 
 #include "sema/check/Program.h"
+#include "sema/derive/Derive.h"
 
 namespace rtsl {
 
@@ -18,6 +19,8 @@ std::unique_ptr<typed::Module> check(const std::vector<const ast::TranslationUni
   program.checkBodies();
   program.judgeCalls();
   program.checkPerformance();
+  if (!diagnostics.hasErrors())
+    replaceDerivatives(*module);
   return module;
 }
 

@@ -6,6 +6,7 @@
 #include "codegen/driver/outputs/CppOutput.h"
 #include "codegen/driver/outputs/Reflection.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/Link.h"
 #include "codegen/link/LinkModule.h"
@@ -69,10 +70,27 @@ bool reachModuleFacts(Compilation &compilation) {
   return compilation.moduleFacts.has_value();
 }
 
+/// Lookups that need the footprint of a ray may be in code that never runs with the numbers of the
+/// scene: with the filter of an image, above all. Then rays have no cones.
+static void leaveOutFootprints(Compilation &compilation) {
+  const LinkRequest *scene = compilation.input.scene;
+  if (!scene || scene->keep.has(Item::Outputs) || ir::readsFootprints(*compilation.ir))
+    return;
+  compilation.program->needs &= ~RTSL_NEEDS_FOOTPRINT;
+  if (!compilation.findings)
+    return;
+  for (Finding &finding : *compilation.findings)
+    if (finding.item == Item::Outputs && finding.isNeeded && finding.subject == footprintSubject) {
+      finding.isNeeded = false;
+      finding.reason = "read only by code that never runs with the numbers of the scene";
+    }
+}
+
 bool reachSsa(Compilation &compilation) {
   if (!reachIr(compilation))
     return false;
   run(*compilation.ir, codegen::buildSsaPipeline);
+  leaveOutFootprints(compilation);
   return true;
 }
 
@@ -85,6 +103,7 @@ static bool split(Compilation &compilation, bool dispatch) {
     how.isKnown = [source](mlir::Value condition) { return knownCondition(condition, *source); };
   how.explain = compilation.explains;
   compilation.report = runToStates(*compilation.ir, how);
+  leaveOutFootprints(compilation);
   return true;
 }
 

@@ -3,6 +3,8 @@
 
 #include "codegen/ir/dialect/RtslOps.h"
 
+#include "llvm/ADT/StringSwitch.h"
+
 namespace rtsl::ir {
 
 /// A call of `trace`: shaders run for its ray before the next operation.
@@ -22,6 +24,21 @@ inline bool anyOperation(mlir::Operation *in, llvm::function_ref<bool(mlir::Oper
         return holds(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
       })
       .wasInterrupted();
+}
+
+/// Does the program read anything of the footprints of rays (RTSL_NEEDS_FOOTPRINT)?
+inline bool readsFootprints(mlir::ModuleOp program) {
+  const auto isOfFootprint = [](llvm::StringRef state) {
+    return llvm::StringSwitch<bool>(state)
+#define RTSL_STATE_VARIABLE(name, type, writer, need, ...)                                         \
+  .Case(#name, llvm::StringRef(#need) == "FOOTPRINT")
+#include "language/StateVariables.def"
+        .Default(false);
+  };
+  return anyOperation(program, [&](mlir::Operation *op) {
+    auto state = llvm::dyn_cast<StateOp>(op);
+    return state && isOfFootprint(state.getName()) && !state->use_empty();
+  });
 }
 
 } // namespace rtsl::ir

@@ -60,4 +60,7 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
+/// Finding::subject of RTSL_NEEDS_FOOTPRINT.
+inline constexpr const char *footprintSubject = "footprints of rays";
+
 } // namespace rtsl

@@ -54,6 +54,11 @@ Parts FunctionLowering::lowerLightCount(const typed::BuiltinExpr &expr) {
   return {emitter.make<ir::LightCountOp>(emitter.getI32Type())};
 }
 
+/// sema/derive has replaced all calls.
+Parts FunctionLowering::lowerDerivative(const typed::BuiltinExpr &) {
+  llvm_unreachable("a derivative is an expression");
+}
+
 /// The matrices are those of the state at this point.
 Parts FunctionLowering::lowerSpaceChange(const typed::BuiltinExpr &expr) {
   const Num given = num(value(*expr.args[0]));

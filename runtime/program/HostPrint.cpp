@@ -13,6 +13,8 @@ namespace rtsl::runtime {
 /// Takes a lock; it need not be fast.
 static void add(const RtslState &state, PrintedLine line) {
   if (RtslEvents *events = state.events) {
+    if (events->x == device::unheard)
+      return;
     line.x = events->x;
     line.y = events->y;
     line.sample = events->sample;

@@ -409,8 +409,9 @@ void Geometry::dropUnusedAttributes(const Program &program) {
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     Mesh &mesh = meshes[i]->mesh;
     look(i, "normals", RTSL_NEEDS_NORMALS, mesh.normals, meshTable[i].normals);
-    look(i, "texture coordinates", RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES,
-         mesh.uvs, meshTable[i].uvs);
+    look(i, "texture coordinates",
+         RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT, mesh.uvs,
+         meshTable[i].uvs);
     for (NamedAttribute &attribute : mesh.attributes) {
       const bool isNeeded = meshes[i]->values.isRead(attribute, program);
       attributes.push_back({meshes[i]->name, fmt::format("attribute `{}`", attribute.name),

@@ -383,6 +383,11 @@ ExprPtr FunctionChecker::checkBaseCall(const ast::CallExpr &expr) {
 // Built-in functions
 //===----------------------------------------------------------------------===//
 
+/// Is this a function that may run for a hit or elsewhere? There derivatives are 0 (sema/derive).
+bool FunctionChecker::mayRunAnywhere() const {
+  return function && (!scope || (scope->root && scope->root->name == typed::helperRoot));
+}
+
 ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
                                           const BuiltinOverloads &overloads) {
   std::vector<ExprPtr> args = checkArguments(expr.args, overloads.signatures);
@@ -399,7 +404,8 @@ ExprPtr FunctionChecker::checkBuiltinCall(const ast::CallExpr &expr,
         !requireTarget(*expr.args[i], *args[i], "write to"))
       return errorExpr(expr.range);
   if (const std::optional<Ability> ability = abilityNeeded(typed::name(builtin));
-      ability && !recordSpecial(*ability, expr.callee.text, expr.callee.range))
+      ability && !(ability == Ability::Derivatives && mayRunAnywhere()) &&
+      !recordSpecial(*ability, expr.callee.text, expr.callee.range))
     return errorExpr(expr.range);
   isLit |= has(builtin, typed::effect::Lights);
   convertArguments(signature, args);

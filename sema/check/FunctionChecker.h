@@ -148,6 +148,7 @@ private:
   typed::ExprPtr checkUserCall(const ast::CallExpr &expr,
                                const std::vector<const typed::Function *> &candidates,
                                typed::ExprPtr receiver);
+  bool mayRunAnywhere() const;
   typed::ExprPtr checkBuiltinCall(const ast::CallExpr &expr, const BuiltinOverloads &overloads);
   typed::ExprPtr checkTracePayload(const ast::CallExpr &expr);
   typed::ExprPtr checkPrint(const ast::CallExpr &expr);

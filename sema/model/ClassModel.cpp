@@ -22,7 +22,8 @@ enum class Group : std::uint8_t {
   TextureCoordinates,
   TextureDerivatives,
   SurfaceDerivatives,
-  Single, // no group
+  Footprint, // of the ray, where it hits
+  Single,    // no group
 };
 
 static constexpr StateSet variablesOf(Group wanted) {
@@ -41,6 +42,7 @@ static constexpr StateSet normals = variablesOf(Group::Normals);
 static constexpr StateSet textureCoordinates = variablesOf(Group::TextureCoordinates);
 static constexpr StateSet textureDerivatives = variablesOf(Group::TextureDerivatives);
 static constexpr StateSet surfaceDerivatives = variablesOf(Group::SurfaceDerivatives);
+static constexpr StateSet footprint = variablesOf(Group::Footprint);
 
 static RootModel cameraModel() {
   const StateSet known =
@@ -81,20 +83,20 @@ static RootModel primitiveModel() {
 
 static RootModel textureModel() {
   const StateSet sees = everyRay | textureCoordinates | surfaceDerivatives | textureDerivatives |
-                        StateSet{S::TextureColor, S::FloatTextureValue, S::du,
-                                 S::dv,           S::ObjectToWorld,     S::WorldToObject};
+                        footprint | StateSet{S::TextureColor,  S::FloatTextureValue, S::du, S::dv,
+                                             S::ObjectToWorld, S::WorldToObject};
   return {"rt_Texture",
           sees,
           {{"lookup",
             sees,
             {S::TextureColor, S::FloatTextureValue},
-            {A::Lookup, A::Random, A::Spaces}}},
+            {A::Lookup, A::Random, A::Spaces, A::Derivatives}}},
           false};
 }
 
 static RootModel materialModel() {
   const StateSet sees = everyRay | placement | ray | normals | textureCoordinates |
-                        surfaceDerivatives |
+                        surfaceDerivatives | footprint |
                         StateSet{S::HitPoint,
                                  S::LightDirection,
                                  S::LightDistance,
@@ -106,7 +108,7 @@ static RootModel materialModel() {
                                  S::BSDFValue,
                                  S::du,
                                  S::dv};
-  const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch, A::Spaces};
+  const AbilitySet common = {A::Lookup, A::Random, A::ReadScratch, A::Spaces, A::Derivatives};
   // What the sampling methods are given and write: methods that call them write it, too.
   const StateSet sampling = {S::LightDirection, S::BSDFSeed, S::BSDFValue, S::PDF,
                              S::EmissionColor};

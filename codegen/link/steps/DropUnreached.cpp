@@ -147,11 +147,11 @@ private:
   }
 
   void addComputations(std::uint32_t needs, const Cause &cause) {
-    if (needs & RTSL_NEEDS_NORMALS)
+    if (needs & (RTSL_NEEDS_NORMALS | RTSL_NEEDS_FOOTPRINT))
       addMethods("rt_Primitive", "computeNormal", cause);
     if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
       addMethods("rt_Primitive", "computeTextureCoordinates", cause);
-    if (needs & RTSL_NEEDS_DERIVATIVES)
+    if (needs & (RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT))
       addMethods("rt_Primitive", "computeDerivatives", cause);
     if (needs & RTSL_NEEDS_CAMERA_RAY && context.request.engine != runtime::Engine::Classic)
       addMethods("rt_Camera", "generateRay", cause);

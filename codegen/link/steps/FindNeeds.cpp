@@ -176,11 +176,11 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
       needs |= ofLights;
     if (hasLamps && linked.info->root == "rt_Material" && findMethod(context, linked, "emission"))
       needs |= RTSL_NEEDS_NORMALS;
-    if (needs & RTSL_NEEDS_DERIVATIVES)
+    if (needs & (RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT))
       needs |= ofDerivatives;
     if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
       needs |= ofCoordinates;
-    if (needs & RTSL_NEEDS_NORMALS)
+    if (needs & (RTSL_NEEDS_NORMALS | RTSL_NEEDS_FOOTPRINT))
       needs |= ofNormals;
     all.push_back(needs);
   }

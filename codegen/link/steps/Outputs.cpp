@@ -19,11 +19,13 @@ using mlir::func::FuncOp;
 
 /// State that methods write only for other methods. The rest is read by the runtime, which also
 /// reads both normals if one of them is used, because the author may set only one, which then
-/// serves as the other. `readsSamples`: the host or the runtime reads the outputs of sampling.
-bool isOnlyForMethods(llvm::StringRef state, bool readsSamples) {
+/// serves as the other. `readsSamples`: the host or the runtime reads the outputs of sampling;
+/// `hasFootprints`: the runtime reads dPdu and dPdv.
+bool isOnlyForMethods(llvm::StringRef state, bool readsSamples, bool hasFootprints) {
   return llvm::StringSwitch<bool>(state)
       .Cases({"TextureUV", "TextureUVW", "TextureColor", "FloatTextureValue"}, true)
-      .Cases({"dPdu", "dPdv", "dsdu", "dsdv", "dtdu", "dtdv"}, true)
+      .Cases({"dsdu", "dsdv", "dtdu", "dtdv"}, true)
+      .Cases({"dPdu", "dPdv"}, !hasFootprints)
       .Cases({"PDF", "BSDFValue", "EmissionColor"}, !readsSamples)
       .Default(false);
 }
@@ -49,6 +51,7 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_TIME, "rt_Time, rt_TimeSeed"},
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
+    {RTSL_NEEDS_FOOTPRINT, footprintSubject},
     {RTSL_NEEDS_CAMERA_RAY, "the camera's ray in `generate`"},
     {RTSL_NEEDS_EMITTERS, "surfaces that shine as lights"},
     {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and other state of the object in `intersect`"},
@@ -90,10 +93,12 @@ void dropUnreadOutputs(LinkContext &context) {
   for (const Computed &one : computed)
     context.findings.push_back(findReader(context, one));
 
-  const bool readsSamples = context.request.isSampled || findNeeds(context) & RTSL_NEEDS_EMITTERS;
+  const std::uint32_t needs = findNeeds(context);
+  const bool readsSamples = context.request.isSampled || needs & RTSL_NEEDS_EMITTERS;
+  const bool hasFootprints = needs & RTSL_NEEDS_FOOTPRINT;
   llvm::MapVector<mlir::StringAttr, Output> outputs;
   context.ir.walk([&](ir::StateOp state) {
-    if (!isOnlyForMethods(state.getName(), readsSamples))
+    if (!isOnlyForMethods(state.getName(), readsSamples, hasFootprints))
       return;
     Output &output = outputs[state.getNameAttr()];
     if (isRead(state))

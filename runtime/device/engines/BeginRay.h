@@ -44,6 +44,10 @@ inline void inherit(RtslState &state, const RtslState &parent) {
     state.LaunchIndex[i] = parent.LaunchIndex[i];
     state.LaunchSize[i] = parent.LaunchSize[i];
   }
+  if (needs & RTSL_NEEDS_FOOTPRINT) { // as from a plane mirror
+    state.coneAtOrigin = parent.ConeWidth;
+    state.ConeSpread = parent.ConeSpread;
+  }
   state.rayMask = parent.rayMask;
   state.rayRoot = parent.rayRoot;
   if (hasEvents(parent))

@@ -10,6 +10,7 @@
 
 #include "runtime/device/engines/Background.h"
 #include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/engines/CameraCone.h"
 #include "runtime/device/engines/Emitters.h"
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
@@ -194,14 +195,22 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   state.rayRoot = 0;
 }
 
-/// Writes the camera's ray to the state of a sample that begins.
-inline void aimCamera(RtslState &state, const RtslLaunch &launch) {
+/// Calls the camera for the state's ScreenCoord.
+inline void callCamera(RtslState &state, const RtslLaunch &launch) {
   state.du = state.dv = 0;
   setVector(state.RayOrigin, 0, 0, 0); // defaults if the camera does not write them
   setVector(state.RayDirection, 0, 0, 0);
   state.Epsilon = 0; // its ray sees everything in front of the origin
   state.HitDistance = infinity;
   rtsl_rt_Camera_generateRay(&state, launch.camera);
+}
+
+/// Writes the camera's ray to the state of a sample that begins.
+inline void aimCamera(RtslState &state, const RtslLaunch &launch) {
+  const uint32_t dimension = state.dimension;
+  callCamera(state, launch);
+  if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT)
+    describeCameraCone(state, launch, dimension, [&](RtslState &ray) { callCamera(ray, launch); });
 }
 
 /// Makes `state` the camera ray of one sample of one pixel.

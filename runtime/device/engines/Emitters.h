@@ -337,6 +337,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   state.rayType = 0;
   state.rayMask = ~0u;
   state.rayRoot = 0;
+  state.coneAtOrigin = state.ConeSpread = 0;
   const float u = unitFloat(key.z), v = unitFloat(key.w);
   const Vec3 point = pointOnInstance(state, launch, instance, part, u, v);
   Vec3 normal;

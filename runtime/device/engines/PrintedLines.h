@@ -9,6 +9,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Events.h"
 
 namespace rtsl::device {
 
@@ -23,6 +24,8 @@ constexpr uint32_t headerWords = sizeof(LineHeader) / sizeof(uint32_t);
 /// The next line of the sample. If there is no room for it, it is counted as lost.
 inline void printLine(RtslStatus &status, RtslEvents &events, uint32_t format,
                       const uint32_t *values, uint32_t count) {
+  if (events.x == unheard)
+    return;
   RtslPrintedLines &printed = *status.printed;
   const uint32_t order = events.printed++;
   const uint32_t length = headerWords + count;

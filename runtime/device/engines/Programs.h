@@ -91,6 +91,7 @@ inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x
   state.Depth = -1;
   state.instance = RTSL_NO_HIT;
   setColor(state.SampleColor, rtsl_color_components(&launch), 0);
+  state.ConeWidth = state.ConeSpread = 0;
   if (!(rtsl_needs(&launch) & RTSL_NEEDS_CAMERA_RAY))
     return;
   if (launch.camera) {

@@ -20,6 +20,7 @@ struct ShadowRay {
   uint32_t launchIndex[3], launchSize[3];
   uint32_t mask;
   int32_t root, depth;
+  float coneAtOrigin, coneSpread;
   uint32_t randomKey[2];
 };
 
@@ -37,6 +38,8 @@ inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
   ray.mask = shading.rayMask;
   ray.root = shading.rayRoot;
   ray.depth = shading.Depth + 1;
+  ray.coneAtOrigin = shading.ConeWidth;
+  ray.coneSpread = shading.ConeSpread;
   setShadowKey(ray.randomKey, shading);
   return ray;
 }
@@ -57,6 +60,8 @@ inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   state.rayRoot = ray.root;
   state.rayType = 0;
   state.Depth = ray.depth;
+  state.coneAtOrigin = ray.coneAtOrigin;
+  state.ConeSpread = ray.coneSpread;
   state.dimension = 0;
 }
 

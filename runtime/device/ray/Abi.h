@@ -361,6 +361,9 @@ typedef struct RtslState {
   // RTSL_ACCEPT...: the answer of `anyHit` for the candidate; outside of it RTSL_ACCEPT
   uint32_t hitAnswer;
 
+  // The width of the ray's cone where it starts (Footprint.h); ConeWidth is that at the hit.
+  float coneAtOrigin;
+
   // Counter-based random numbers: (pixel, sample) form the key, `dimension` counts the draws.
   uint32_t randomKey[2];
   uint32_t dimension;
@@ -420,13 +423,15 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_ANY_HIT 512u // no state: some ray's hits may be rejected
 #define RTSL_NEEDS_CANDIDATE                                                                       \
   1024u // BoundMin BoundMax; in `intersect` PrimitiveIndex InstanceIndex and transforms
-#define RTSL_NEEDS_HIT_ERRORS 2048u   // no state: rays leave hits, so the error of t matters
-#define RTSL_NEEDS_ATTRIBUTES 4096u   // no state: scratch members of the hit
-#define RTSL_NEEDS_INSTANCE_ID 32768u // InstanceId
-#define RTSL_NEEDS_CAMERA_RAY 65536u  // RayOrigin RayDirection in `generate`
-#define RTSL_NEEDS_EMITTERS 131072u   // no state: points are lit by surfaces that shine
+#define RTSL_NEEDS_HIT_ERRORS 2048u     // no state: rays leave hits, so the error of t matters
+#define RTSL_NEEDS_ATTRIBUTES 4096u     // no state: scratch members of the hit
+#define RTSL_NEEDS_INSTANCE_ID 32768u   // InstanceId
+#define RTSL_NEEDS_CAMERA_RAY 65536u    // RayOrigin RayDirection in `generate`
+#define RTSL_NEEDS_EMITTERS 131072u     // no state: points are lit by surfaces that shine
+#define RTSL_NEEDS_FOOTPRINT 536870912u // ConeWidth ConeSpread dPdx dPdy dUVdx dUVdy dUVWdx dUVWdy
 #define RTSL_NEEDS_ALL                                                                             \
-  (8191u | RTSL_NEEDS_INSTANCE_ID | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
+  (8191u | RTSL_NEEDS_INSTANCE_ID | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS |                  \
+   RTSL_NEEDS_FOOTPRINT)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
 #define RTSL_HAS_TRANSFORMS 8192u   // some instance has a transform
 #define RTSL_HAS_ROOTS 16384u       // some instance is not below root 0, or below another one

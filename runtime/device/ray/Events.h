@@ -30,6 +30,9 @@ inline void startEvents(RtslState &state, RtslEvents &events, uint32_t x, uint32
   state.events = &events;
 }
 
+/// RtslEvents::x of a call of which only the values matter, not what it prints.
+constexpr uint32_t unheard = 0xffffffffu;
+
 inline void raise(const RtslState &state, uint32_t exception) {
   if (hasExceptions(state) && state.events && state.events->exception == RTSL_EXCEPTION_NONE)
     state.events->exception = exception;

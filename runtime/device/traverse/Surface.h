@@ -6,6 +6,7 @@
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/Footprint.h"
 #include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/MeshAttributes.h"
 #include "runtime/device/traverse/Traverse.h"
@@ -190,12 +191,45 @@ inline void clearCoordinates(RtslState &state, uint32_t needs) {
   }
 }
 
-/// Everything that a material may read of the hit, after traversal. `needs` is the set of what is
-/// read, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
+/// Point, normals, coordinates and attributes of a mesh at state's hit, in world space.
+inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint32_t needs) {
+  const RtslLaunch &launch = *state.launch;
+  const RtslMesh &mesh = launch.meshes[instance.mesh];
+  const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
+  describeTriangle(state, mesh, p, needs);
+  if (needs & RTSL_NEEDS_ATTRIBUTES)
+    describeAttributes(state, mesh);
+  if (!isTransformed(launch, instance))
+    return;
+  const TransformAt transform(launch, instance, state.Time);
+  surfaceToWorld(state, transform, needs, extents(p), 0);
+  if (needs & RTSL_NEEDS_ATTRIBUTES)
+    attributesToWorld(state, mesh, transform);
+}
+
+/// The same for an RTSL primitive.
 template <typename Slots>
-void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
+void describePrimitiveHit(RtslState &state, const RtslInstance &instance, uint32_t needs,
+                          const Slots &slots) {
+  const RtslLaunch &launch = *state.launch;
+  {
+    const InObjectSpace space(state, instance);
+    describePrimitive(state, instance, needs, slots);
+  }
+  if (!isTransformed(launch, instance))
+    return;
+  const Vec3 point = load(state.HitPoint);
+  surfaceToWorld(state, TransformAt(launch, instance, state.Time), needs,
+                 {absolute(point.x), absolute(point.y), absolute(point.z)}, state.hitPointError);
+}
+
+/// Everything that a material may read of the hit, after traversal. `ofMaterial` is the set of what
+/// it reads, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
+template <typename Slots>
+void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = instanceAt(launch, state.instance);
+  const uint32_t needs = withFootprint(ofMaterial);
   state.PrimitiveIndex = int32_t(state.primitive);
   state.InstanceIndex = int32_t(state.instance);
   if (needs & RTSL_NEEDS_INSTANCE_ID)
@@ -203,29 +237,14 @@ void describeHit(RtslState &state, uint32_t needs, const Slots &slots) {
   clearCoordinates(state, needs);
   if (needs & RTSL_NEEDS_TRANSFORMS)
     describeTransforms(state, instance);
-  if (instance.primitive == 0) {
-    const RtslMesh &mesh = launch.meshes[instance.mesh];
-    const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
-    describeTriangle(state, mesh, p, needs);
-    if (needs & RTSL_NEEDS_ATTRIBUTES)
-      describeAttributes(state, mesh);
-    if (isTransformed(launch, instance)) {
-      const TransformAt transform(launch, instance, state.Time);
-      surfaceToWorld(state, transform, needs, extents(p), 0);
-      if (needs & RTSL_NEEDS_ATTRIBUTES)
-        attributesToWorld(state, mesh, transform);
-    }
-    return;
-  }
-  {
-    const InObjectSpace space(state, instance);
-    describePrimitive(state, instance, needs, slots);
-  }
-  if (isTransformed(launch, instance)) {
-    const Vec3 point = load(state.HitPoint);
-    surfaceToWorld(state, TransformAt(launch, instance, state.Time), needs,
-                   {absolute(point.x), absolute(point.y), absolute(point.z)}, state.hitPointError);
-  }
+  if (instance.primitive == 0)
+    describeMeshHit(state, instance, needs);
+  else
+    describePrimitiveHit(state, instance, needs, slots);
+  if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT) // rays that leave the hit have a cone in any case
+    state.ConeWidth = coneWidthAtHit(state);
+  if (needs & RTSL_NEEDS_FOOTPRINT)
+    describeFootprint(state, instance);
 }
 
 inline void describeHit(RtslState &state) {

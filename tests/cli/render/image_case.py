@@ -54,7 +54,7 @@ class Show : rt_RayGeneration {
 class Plain : rt_RayGeneration {
   public sampler2D image;
   void generate() {
-    print(image.levels(), image.sample(rt_ScreenCoord));
+    print(image.levels(), image.finest(rt_ScreenCoord));
   }
 };
 // Some channels of images.

@@ -314,6 +314,37 @@ def images():
     }
 
 
+def footprints():
+    """Images that are filtered by the footprints of rays, also in a mirror."""
+    picture = {"file": str(pathlib.Path(source, "examples/cornell/picture.png"))}
+    plane = lambda *vectors: {"class": "Parallelogram", "constructor": vectors}
+    return {
+        "rtsl": 1,
+        "import": [
+            str(here / "Footprints.rtsl"),
+            str(glass / "Parallelogram.rtsl"),
+        ],
+        "camera": {"class": "Eye"},
+        "textures": {"picture": {"class": "Pictured", "image": picture}},
+        "objects": [
+            {
+                "primitive": plane([-50, 0, 10], [100, 0, 0], [0, 0, -100]),
+                "material": {
+                    "class": "Floor",
+                    "texture": "picture",
+                    "images": [picture, {**picture, "filter": "anisotropic"}],
+                },
+            },
+            {
+                "primitive": plane([-3, 0, -3], [6, 0, 0], [0, 3, 1]),
+                "material": {"class": "Mirror"},
+            },
+        ],
+        "background": {"class": "Sky", "texture": "picture"},
+        "render": {"engine": "classic", "size": [32, 24], "spp": 2, "depth": 3},
+    }
+
+
 def outputs():
     """Output buffers, written and read between rays."""
     return {
@@ -459,6 +490,8 @@ CASES = [
     ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
     ("g++", ["-O1"], [], [images()]),
+    ("g++", ["-O1"], ["--undefined=nan"], [footprints()]),
+    ("clang++-22", ["-O0"], ["--trace=recurse"], [footprints()]),
     ("g++", ["-O1"], ["--undefined=nan"], [outputs()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [outputs()]),
     ("g++", ["-O1"], ["--undefined=nan"], [graph()]),

@@ -116,7 +116,9 @@ TEST(Hints, AuthorsRememberAPartOfAName) {
     return "class A : rt_Material { void shade() { rt_SampleColor = color(" + value + "); } };";
   };
   EXPECT_EQ(hints(shade("rt_Normal.x")), "there are `rt_GeometricNormal`, `rt_ShadingNormal`\n");
-  EXPECT_EQ(hints(shade("rt_UV.x")), "there are `rt_TextureUV`, `rt_TextureUVW`\n");
+  EXPECT_EQ(hints(shade("rt_UV.x")),
+            "there are `rt_TextureUV`, `rt_TextureUVW`, `rt_dUVdx`, `rt_dUVdy`, `rt_dUVWdx`, "
+            "`rt_dUVWdy`\n");
   EXPECT_EQ(hints(shade("rt_RayDir.x")), "there are `rt_RayDirection`, `rt_InverseRayDirection`\n");
   expectFix(shade("rt_Inverse.x"), shade("rt_InverseRayDirection.x"));
   EXPECT_EQ(hints(shade("rt_Whatever.x")), "");

@@ -4,6 +4,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/ir/Slots.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
@@ -103,6 +104,8 @@ Fields readsOfSending(mlir::ModuleOp module) {
                               device::keptGeometricNormal});
   if (!ir::attr::singlePrimitives.isOn(module))
     fields.add(Fields::of({device::keptPrimitiveIndex}));
+  if (ir::readsFootprints(module))
+    fields.add(Fields::of({device::keptConeWidth, device::keptConeSpread}));
   return fields;
 }
 

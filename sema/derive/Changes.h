@@ -1,0 +1,45 @@
+//===- Changes.h - which variables of a function change -------------------===//
+#pragma once
+
+#include "sema/derive/Derivation.h"
+
+#include <set>
+
+namespace rtsl::derive {
+
+/// Which values of a function change across the footprint, and of which of them the change is used.
+class Changes {
+public:
+  Changes(Derivation &derivation, const typed::Function &function, bool isAtHit)
+      : derivation(derivation), function(function), isAtHit(isAtHit) {}
+
+  /// The function gets the changes of its parameters, along these axes.
+  void addParameters(AxisSet given);
+  /// Finds the variables. The changes of `returned` values are used along these axes.
+  void find(AxisSet returned);
+
+  /// May the value of the expression change? What cannot be followed does not.
+  bool isVaried(const typed::Expr &expr) const;
+  /// Does a variable with its changes accompany this one?
+  bool hasCompanions(const typed::Variable *variable) const {
+    return varied.count(variable) != 0 && used.count(variable) != 0;
+  }
+  AxisSet usedAxes() const { return axesUsed; }
+  bool atHit() const { return isAtHit; }
+
+private:
+  void collect();
+  bool isCallVaried(const typed::Function &function, const std::vector<typed::ExprPtr> &args) const;
+  void use(const typed::Expr &expr);
+
+  Derivation &derivation;
+  const typed::Function &function;
+  bool isAtHit;
+  AxisSet axesUsed;
+  // a variable, and an expression on which its value depends
+  std::vector<std::pair<const typed::Variable *, const typed::Expr *>> dependences;
+  std::vector<const typed::Expr *> roots; // whose changes are used
+  std::set<const typed::Variable *> varied, used;
+};
+
+} // namespace rtsl::derive

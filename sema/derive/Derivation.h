@@ -1,0 +1,84 @@
+//===- Derivation.h - the derivation of a module --------------------------===//
+#pragma once
+
+#include "sema/typed/Effects.h"
+#include "sema/typed/TypedAst.h"
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace rtsl::derive {
+
+enum class Axis : std::uint8_t { X, Y };
+constexpr Axis axes[] = {Axis::X, Axis::Y};
+
+/// A set of axes.
+struct AxisSet {
+  bool has[2] = {false, false};
+
+  static AxisSet both() { return {{true, true}}; }
+  static AxisSet only(Axis axis) { return {{axis == Axis::X, axis == Axis::Y}}; }
+  bool contains(Axis axis) const { return has[static_cast<int>(axis)]; }
+  void add(AxisSet other) {
+    has[0] |= other.has[0];
+    has[1] |= other.has[1];
+  }
+};
+
+/// What a variant of a function returns.
+enum class Result : std::uint8_t { Value, AlongX, AlongY };
+
+/// The state variable that is the change of another one; nothing if that does not change.
+const typed::StateVariable *changeOf(typed::StateVariable variable, Axis axis);
+
+class Derivation {
+public:
+  explicit Derivation(typed::Module &module) : module(module), effects(module) {}
+
+  void run();
+
+  TypeContext &types() const { return module.types; }
+
+  /// Does it contain dFdx or dFdy, or call a function that does?
+  bool asks(const typed::Function &function);
+  /// May its value change although its arguments do not?
+  bool readsSeeds(const typed::Function &function);
+  /// Is it called in variants? Functions of lights, say, are not.
+  bool hasVariants(const typed::Function &function) const;
+  /// Is the change of its value known?
+  bool canBeFollowed(const typed::Function &function);
+  bool isPure(const typed::Expr &expr) { return effects.expression(expr).isPure(); }
+
+  /// The variant of a function: the parameters are followed by the changes, along `axesOf`, of each
+  /// that is differentiable.
+  const typed::Function &variant(const typed::Function &function, Result result);
+  AxisSet axesOf(const typed::Function &function, Result result);
+
+private:
+  using Definitions = std::vector<const typed::Function *>;
+
+  /// The definitions that a call may run.
+  Definitions definitions(const typed::Function &function) const;
+  template <typename Predicate>
+  bool reaches(const typed::Function &from, std::map<const typed::Function *, bool> &known,
+               const Predicate &holds);
+  void makeVariant(const typed::Function &from, Result result);
+  std::string variantName(const typed::Function &from, Result result) const;
+  void addVariants(std::vector<std::unique_ptr<typed::Function>> &functions);
+
+  struct Variant {
+    std::unique_ptr<typed::Function> function;
+    const typed::Function *from;
+    Result result;
+  };
+
+  typed::Module &module;
+  typed::EffectsOf effects;
+  std::map<const typed::Function *, bool> asking, reading;
+  std::deque<Variant> variants; // in the order in which they were required
+  std::map<std::pair<const typed::Function *, Result>, const typed::Function *> made;
+};
+
+} // namespace rtsl::derive

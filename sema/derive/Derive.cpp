@@ -1,0 +1,214 @@
+//===- Derive.cpp - which functions are derived ---------------------------===//
+#include "sema/derive/Derive.h"
+
+#include "sema/derive/Derivation.h"
+#include "sema/derive/DerivedBody.h"
+#include "sema/derive/Term.h"
+#include "sema/typed/Analysis.h"
+#include "sema/typed/Casting.h"
+
+#include <algorithm>
+#include <set>
+
+namespace rtsl::derive {
+
+using namespace typed;
+
+const StateVariable *changeOf(StateVariable variable, Axis axis) {
+  static constexpr StateVariable ofPoint[] = {StateVariable::dPdx, StateVariable::dPdy};
+  static constexpr StateVariable ofUV[] = {StateVariable::dUVdx, StateVariable::dUVdy};
+  static constexpr StateVariable ofUVW[] = {StateVariable::dUVWdx, StateVariable::dUVWdy};
+  const auto index = static_cast<int>(axis);
+  switch (variable) {
+  case StateVariable::HitPoint:
+    return &ofPoint[index];
+  case StateVariable::TextureUV:
+    return &ofUV[index];
+  case StateVariable::TextureUVW:
+    return &ofUVW[index];
+  default:
+    return nullptr;
+  }
+}
+
+/// The user function that an expression calls; null if there is none.
+static const Function *callee(const Expr &expr) {
+  if (auto *call = dynCast<CallExpr>(&expr))
+    return call->function;
+  if (auto *call = dynCast<MethodCallExpr>(&expr))
+    return call->function;
+  return nullptr;
+}
+
+static bool isDerivative(const Expr &expr) {
+  auto *builtin = dynCast<BuiltinExpr>(&expr);
+  return builtin && (builtin->builtin == Builtin::DFdx || builtin->builtin == Builtin::DFdy);
+}
+
+static bool isSeed(const Expr &expr) {
+  auto *state = dynCast<StateExpr>(&expr);
+  return state && changeOf(state->variable, Axis::X);
+}
+
+/// May a function of this class be called with changes?
+static bool isAtHits(const std::string &root) {
+  return root == "rt_Material" || root == "rt_Texture";
+}
+
+Derivation::Definitions Derivation::definitions(const Function &function) const {
+  if (!function.owner || function.isConstructor)
+    return {&function};
+  const Function &top = overridden(function);
+  Definitions found;
+  for (const auto &candidate : module.classes)
+    if (candidate->derivesFrom(top.owner))
+      for (const auto &method : candidate->functions)
+        if (method->name == top.name && sameParameters(*method, top))
+          found.push_back(method.get());
+  return found;
+}
+
+template <typename Predicate>
+bool Derivation::reaches(const Function &from, std::map<const Function *, bool> &known,
+                         const Predicate &holds) {
+  if (const auto found = known.find(&from); found != known.end())
+    return found->second;
+  std::set<const Function *> seen;
+  std::vector<const Function *> pending = {&from};
+  bool isFound = false;
+  while (!pending.empty() && !isFound) {
+    const Function *at = pending.back();
+    pending.pop_back();
+    if (!seen.insert(at).second || !at->body)
+      continue;
+    forEachExpr(*at->body, [&](const Expr &expr) {
+      isFound |= holds(expr);
+      if (const Function *called = callee(expr))
+        for (const Function *definition : definitions(*called))
+          pending.push_back(definition);
+    });
+  }
+  return known[&from] = isFound;
+}
+
+bool Derivation::asks(const Function &function) {
+  const Definitions all = definitions(function);
+  return std::any_of(all.begin(), all.end(), [&](const Function *definition) {
+    return reaches(*definition, asking, isDerivative);
+  });
+}
+
+bool Derivation::readsSeeds(const Function &function) {
+  const Definitions all = definitions(function);
+  return std::any_of(all.begin(), all.end(), [&](const Function *definition) {
+    return reaches(*definition, reading, isSeed);
+  });
+}
+
+bool Derivation::hasVariants(const Function &function) const {
+  return !function.isConstructor && !function.isStateMethod &&
+         (!function.owner || function.owner->root == helperRoot || isAtHits(function.owner->root));
+}
+
+bool Derivation::canBeFollowed(const Function &function) {
+  return hasVariants(function) && isDifferentiable(function.returnType) &&
+         std::all_of(
+             function.parameters.begin(), function.parameters.end(),
+             [](const auto &parameter) { return parameter->direction == ast::Direction::In; }) &&
+         effects.function(function).isPure();
+}
+
+AxisSet Derivation::axesOf(const Function &function, Result result) {
+  if (result == Result::Value || asks(function))
+    return AxisSet::both();
+  return AxisSet::only(result == Result::AlongX ? Axis::X : Axis::Y);
+}
+
+std::string Derivation::variantName(const Function &from, Result result) const {
+  std::string name = from.name + (result == Result::Value    ? "WithFootprint"
+                                  : result == Result::AlongX ? "DFdx"
+                                                             : "DFdy");
+  const auto isTaken = [&](const auto &functions) {
+    return std::any_of(functions.begin(), functions.end(),
+                       [&](const auto &function) { return function->name == name; });
+  };
+  while (isTaken(module.functions) ||
+         std::any_of(module.classes.begin(), module.classes.end(),
+                     [&](const auto &other) { return isTaken(other->functions); }))
+    name += "_";
+  return name;
+}
+
+void Derivation::makeVariant(const Function &from, Result result) {
+  auto function = std::make_unique<Function>();
+  function->name = variantName(from, result);
+  function->returnType = from.returnType;
+  function->owner = from.owner;
+  function->isCalledOnSelf = from.owner != nullptr;
+  function->sends = from.sends;
+  function->callSends = from.callSends;
+  function->mayRunInLookup = from.mayRunInLookup;
+  function->range = from.range;
+  made[{&from, result}] = function.get();
+  variants.push_back({std::move(function), &from, result});
+}
+
+const Function &Derivation::variant(const Function &function, Result result) {
+  if (!made.count({&function, result}))
+    for (const Function *definition : definitions(function))
+      makeVariant(*definition, result);
+  return *made.at({&function, result});
+}
+
+/// Places the variants of these functions after them.
+void Derivation::addVariants(std::vector<std::unique_ptr<Function>> &functions) {
+  std::vector<std::unique_ptr<Function>> all;
+  for (std::unique_ptr<Function> &function : functions) {
+    const Function *from = function.get();
+    all.push_back(std::move(function));
+    for (Variant &variant : variants)
+      if (variant.from == from)
+        all.push_back(std::move(variant.function));
+  }
+  functions = std::move(all);
+}
+
+void Derivation::run() {
+  struct Replaced {
+    Function *function;
+    Function derived; // its body and variables
+  };
+  std::deque<Replaced> replaced; // at the end: bodies are read until then
+  const auto replace = [&](Function &function, bool isAtHit) {
+    if (!function.body || !reaches(function, asking, isDerivative))
+      return;
+    Replaced &one = replaced.emplace_back();
+    one.function = &function;
+    DerivedBody(*this, function, one.derived, isAtHit).replace();
+  };
+  for (const auto &function : module.functions)
+    replace(*function, false);
+  for (const auto &owner : module.classes)
+    for (const auto &method : owner->functions)
+      replace(*method, isAtHits(owner->root) && !method->isConstructor);
+  for (std::size_t i = 0; i < variants.size(); ++i) // deriving one may require others
+    DerivedBody(*this, *variants[i].from, *variants[i].function, true).vary(variants[i].result);
+
+  for (Replaced &one : replaced) {
+    one.function->body = std::move(one.derived.body);
+    one.function->locals = std::move(one.derived.locals);
+  }
+  addVariants(module.functions);
+  for (const auto &owner : module.classes)
+    addVariants(owner->functions);
+}
+
+} // namespace rtsl::derive
+
+namespace rtsl {
+
+void replaceDerivatives(typed::Module &module) {
+  derive::Derivation(module).run();
+}
+
+} // namespace rtsl

@@ -1,0 +1,128 @@
+//===- DerivedBody.cpp - the derivation of one function -------------------===//
+#include "sema/derive/DerivedBody.h"
+
+#include "sema/model/Conversion.h"
+#include "sema/typed/Walk.h"
+
+#include <algorithm>
+
+namespace rtsl::derive {
+
+using namespace typed;
+
+DerivedBody::DerivedBody(Derivation &derivation, const Function &from, Function &to, bool isAtHit)
+    : derivation(derivation), types(derivation.types()), from(from), to(to),
+      changes(derivation, from, isAtHit) {}
+
+static std::unique_ptr<Variable> variableLike(const Variable &from) {
+  auto made = std::make_unique<Variable>();
+  made->kind = from.kind;
+  made->name = from.name;
+  made->type = from.type;
+  made->isConst = from.isConst;
+  made->direction = from.direction;
+  if (from.constant)
+    made->constant = std::make_unique<Constant>(*from.constant);
+  made->range = from.range;
+  made->comment = from.comment;
+  return made;
+}
+
+/// `uv_dx`, and with more underscores if the function has that already.
+static std::string companionName(const Function &function, const std::string &of, Axis axis) {
+  std::string name = of + (axis == Axis::X ? "_dx" : "_dy");
+  const auto isTaken = [&](const auto &variables) {
+    return std::any_of(variables.begin(), variables.end(),
+                       [&](const auto &variable) { return variable->name == name; });
+  };
+  while (isTaken(function.parameters) || isTaken(function.locals))
+    name += "_";
+  return name;
+}
+
+Variable &DerivedBody::addLocal(std::string name, const Type *type, SourceRange range) {
+  auto made = std::make_unique<Variable>();
+  made->kind = Variable::Kind::Local;
+  made->name = std::move(name);
+  made->type = type;
+  made->range = range;
+  to.locals.push_back(std::move(made));
+  return *to.locals.back();
+}
+
+void DerivedBody::addCompanions(const Variable &of, std::vector<StmtPtr> &out,
+                                const Term (&values)[2]) {
+  Companions &made = companions[&of];
+  for (Axis axis : axes) {
+    if (!changes.usedAxes().contains(axis))
+      continue;
+    Variable &companion = addLocal(companionName(from, of.name, axis), of.type, of.range);
+    Term value = values[static_cast<int>(axis)];
+    companion.init = value.isZero() ? zero(of.type, of.range) : value.take();
+    made.along[static_cast<int>(axis)] = &companion;
+    out.push_back(declaration(companion));
+  }
+}
+
+const DerivedBody::Companions *DerivedBody::companionsOf(const Expr &place) const {
+  const Variable *variable = rootVariable(place);
+  const auto found = companions.find(variable);
+  return variable && found != companions.end() ? &found->second : nullptr;
+}
+
+StmtPtr DerivedBody::declaration(const Variable &variable) const {
+  auto made = std::make_unique<DeclarationStmt>();
+  made->range = variable.range;
+  made->variables = {&variable};
+  return made;
+}
+
+void DerivedBody::replace() {
+  changes.find({});
+  run();
+}
+
+void DerivedBody::vary(Result wanted) {
+  result = wanted;
+  const AxisSet given = derivation.axesOf(from, wanted);
+  changes.addParameters(given);
+  for (const auto &parameter : from.parameters) {
+    to.parameters.push_back(variableLike(*parameter));
+    variables[parameter.get()] = to.parameters.back().get();
+  }
+  for (const auto &parameter : from.parameters) {
+    if (parameter->direction != ast::Direction::In || !isDifferentiable(parameter->type))
+      continue;
+    Companions &made = companions[parameter.get()];
+    for (Axis axis : axes) {
+      if (!given.contains(axis))
+        continue;
+      auto companion = variableLike(*parameter);
+      companion->name = companionName(from, parameter->name, axis);
+      companion->comment.clear();
+      made.along[static_cast<int>(axis)] = companion.get();
+      to.parameters.push_back(std::move(companion));
+    }
+  }
+  if (!from.body)
+    return;
+  changes.find(wanted == Result::Value    ? AxisSet{}
+               : wanted == Result::AlongX ? AxisSet::only(Axis::X)
+                                          : AxisSet::only(Axis::Y));
+  run();
+}
+
+void DerivedBody::run() {
+  auto body = std::make_unique<CompoundStmt>();
+  body->range = from.body->range;
+  for (const auto &parameter : from.parameters)
+    if (!companions.count(parameter.get()) && changes.hasCompanions(parameter.get()))
+      addCompanions(*parameter, body->body, {Term(), Term()});
+  std::vector<StmtPtr> statements;
+  statement(*from.body, statements);
+  for (StmtPtr &inner : static_cast<CompoundStmt &>(*statements.back()).body)
+    body->body.push_back(std::move(inner));
+  to.body = std::move(body);
+}
+
+} // namespace rtsl::derive

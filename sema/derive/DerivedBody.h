@@ -1,0 +1,86 @@
+//===- DerivedBody.h - the derivation of one function ---------------------===//
+#pragma once
+
+#include "sema/derive/Changes.h"
+#include "sema/derive/Copy.h"
+#include "sema/derive/Derivation.h"
+#include "sema/derive/Term.h"
+
+namespace rtsl::derive {
+
+/// Writes a function without dFdx and dFdy: one that replaces it, or a variant of it. The copy has
+/// variables of its own.
+class DerivedBody : Copier {
+public:
+  /// `isAtHit`: rays have footprints there.
+  DerivedBody(Derivation &derivation, const typed::Function &from, typed::Function &to,
+              bool isAtHit);
+
+  /// The same function: it keeps its parameters, whose changes are not known.
+  void replace();
+  /// A variant of it.
+  void vary(Result result);
+
+private:
+  /// Variables with the changes of another one; null along an axis that nobody uses.
+  struct Companions {
+    const typed::Variable *along[2] = {nullptr, nullptr};
+  };
+
+  // DerivedBody.cpp
+  void run();
+  typed::Variable &addLocal(std::string name, const Type *type, SourceRange range);
+  void addCompanions(const typed::Variable &of, std::vector<typed::StmtPtr> &out,
+                     const Term (&changes)[2]);
+  const Companions *companionsOf(const typed::Expr &place) const;
+  typed::StmtPtr declaration(const typed::Variable &variable) const;
+  typed::StmtPtr assignment(const typed::Variable &variable, typed::ExprPtr value);
+
+  // DerivedStatements.cpp
+  typed::StmtPtr statement(const typed::StmtPtr &from);
+  void statement(const typed::Stmt &from, std::vector<typed::StmtPtr> &out);
+  void declare(const typed::Variable &from, std::vector<typed::StmtPtr> &out);
+  void evaluate(const typed::Expr &expr, SourceRange range, std::vector<typed::StmtPtr> &out);
+  void forgetWritten(const typed::Expr &expr, std::vector<typed::StmtPtr> &out);
+  void loop(const typed::ForStmt &from, std::vector<typed::StmtPtr> &out);
+  typed::ExprPtr returned(const typed::ExprPtr &value);
+
+  // DerivedExpressions.cpp
+  typed::ExprPtr copy(const typed::Expr &expr) override;
+  using Copier::copy;
+  typed::ExprPtr derivativeOf(const typed::Expr &expr, Axis axis);
+  typed::ExprPtr callWithFootprint(const typed::Expr &expr, const typed::Function &function,
+                                   const std::vector<typed::ExprPtr> &args);
+  bool isCalledWithFootprint(const typed::Function &function,
+                             const std::vector<typed::ExprPtr> &args);
+  std::vector<typed::ExprPtr> assignmentSteps(const typed::AssignExpr &expr);
+
+  // DerivedChanges.cpp
+  /// The change of an expression's value.
+  Term change(const typed::Expr &expr, Axis axis);
+  Term changeOfBinary(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right,
+                      const Type *type, Axis axis);
+  Term changeOfConstruct(const typed::ConstructExpr &expr, Axis axis);
+  Term changeOfBuiltin(const typed::BuiltinExpr &expr, Axis axis);
+  Term changeOfCall(const typed::Expr &expr, const typed::Function &function,
+                    const std::vector<typed::ExprPtr> &args, Axis axis);
+  typed::ExprPtr callOfVariant(const typed::Expr &call, const typed::Function &variant,
+                               std::vector<typed::ExprPtr> args);
+  /// The part of the companion that corresponds to a part of a variable.
+  typed::ExprPtr companionPlace(const typed::Expr &place, Axis axis);
+  /// The value of an expression again. If evaluating it twice would show, it is kept in a variable
+  /// the first time, which the next `copy` of it sets.
+  Term factor(const typed::Expr &expr);
+
+  Derivation &derivation;
+  TypeContext &types;
+  const typed::Function &from;
+  typed::Function &to;
+  Changes changes;
+  Result result = Result::Value;
+  std::map<const typed::Variable *, Companions> companions; // by variable of the original
+  std::map<const typed::Expr *, const typed::Variable *> kept;
+  std::vector<typed::StmtPtr> keptDeclarations; // before the next statement
+};
+
+} // namespace rtsl::derive

@@ -1,0 +1,253 @@
+//===- DerivedStatements.cpp - statements with changes beside them --------===//
+#include "sema/derive/DerivedBody.h"
+#include "sema/model/Conversion.h"
+#include "sema/typed/Walk.h"
+
+namespace rtsl::derive {
+
+using namespace typed;
+using ast::StmtKind;
+
+template <typename T>
+static std::unique_ptr<T> blank(const T &from) {
+  auto made = std::make_unique<T>();
+  made->range = from.range;
+  made->comment = from.comment;
+  return made;
+}
+
+static StmtPtr evaluation(ExprPtr expr, SourceRange range) {
+  auto made = std::make_unique<ExpressionStmt>();
+  made->range = range;
+  made->expr = std::move(expr);
+  return made;
+}
+
+/// One statement; several become a block.
+StmtPtr DerivedBody::statement(const StmtPtr &one) {
+  if (!one)
+    return nullptr;
+  std::vector<StmtPtr> made;
+  statement(*one, made);
+  if (made.size() == 1 && made.front()->kind != StmtKind::Declaration)
+    return std::move(made.front());
+  auto block = std::make_unique<CompoundStmt>();
+  block->range = one->range;
+  block->body = std::move(made);
+  return block;
+}
+
+/// Statements for the changes of the variables that an expression sets to 0 by writing them as
+/// `out` arguments.
+void DerivedBody::forgetWritten(const Expr &expr, std::vector<StmtPtr> &out) {
+  const auto forget = [&](const Expr &place) {
+    const Companions *written = companionsOf(place);
+    for (Axis axis : axes)
+      if (written && written->along[static_cast<int>(axis)]) {
+        auto assign = makeExpr<AssignExpr>(place.type, place.range);
+        assign->target = companionPlace(place, axis);
+        assign->value = zero(place.type, place.range);
+        out.push_back(evaluation(std::move(assign), place.range));
+      }
+  };
+  forEachExpr(expr, [&](const Expr &inner) {
+    if (auto *builtin = dynCast<BuiltinExpr>(&inner)) {
+      for (std::size_t i = 0; i < builtin->args.size(); ++i)
+        if (isOutArgument(builtin->builtin, i))
+          forget(*builtin->args[i]);
+    } else if (auto *call = dynCast<CallExpr>(&inner)) {
+      for (std::size_t i = 0; i < call->args.size(); ++i)
+        if (call->function->parameters[i]->direction != ast::Direction::In)
+          forget(*call->args[i]);
+    } else if (auto *call = dynCast<MethodCallExpr>(&inner); call && call->function) {
+      for (std::size_t i = 0; i < call->args.size(); ++i)
+        if (call->function->parameters[i]->direction != ast::Direction::In)
+          forget(*call->args[i]);
+    }
+  });
+}
+
+void DerivedBody::declare(const Variable &declared, std::vector<StmtPtr> &out) {
+  auto made = std::make_unique<Variable>();
+  made->kind = declared.kind;
+  made->name = declared.name;
+  made->type = declared.type;
+  made->isConst = declared.isConst;
+  if (declared.constant)
+    made->constant = std::make_unique<Constant>(*declared.constant);
+  made->range = declared.range;
+  made->comment = declared.comment;
+  Variable &variable = *made;
+  to.locals.push_back(std::move(made));
+  const bool hasCompanions = changes.hasCompanions(&declared);
+  Term values[2];
+  if (hasCompanions && declared.init)
+    for (Axis axis : axes)
+      if (changes.usedAxes().contains(axis))
+        values[static_cast<int>(axis)] = change(*declared.init, axis);
+  // What must be evaluated once is evaluated first.
+  const bool valueFirst = declared.init && !derivation.isPure(*declared.init);
+  if (hasCompanions && !valueFirst)
+    addCompanions(declared, out, values);
+  variable.init = copy(declared.init);
+  variables[&declared] = &variable;
+  for (StmtPtr &one : keptDeclarations)
+    out.push_back(std::move(one));
+  keptDeclarations.clear();
+  out.push_back(declaration(variable));
+  if (hasCompanions && valueFirst)
+    addCompanions(declared, out, values);
+  if (declared.init)
+    forgetWritten(*declared.init, out);
+}
+
+void DerivedBody::evaluate(const Expr &expr, SourceRange range, std::vector<StmtPtr> &out) {
+  std::vector<ExprPtr> steps;
+  if (auto *assign = dynCast<AssignExpr>(&expr); assign && companionsOf(*assign->target))
+    steps = assignmentSteps(*assign);
+  else
+    steps.push_back(copy(expr));
+  for (StmtPtr &one : keptDeclarations)
+    out.push_back(std::move(one));
+  keptDeclarations.clear();
+  for (ExprPtr &step : steps)
+    out.push_back(evaluation(std::move(step), range));
+  forgetWritten(expr, out);
+}
+
+/// What declares a variable with companions stands before the loop, in a block.
+void DerivedBody::loop(const ForStmt &stmt, std::vector<StmtPtr> &out) {
+  auto made = blank(stmt);
+  std::vector<StmtPtr> before;
+  if (stmt.init)
+    statement(*stmt.init, before);
+  if (before.size() == 1) {
+    made->init = std::move(before.front());
+    before.clear();
+  }
+  made->condition = copy(stmt.condition);
+  made->step = copy(stmt.step);
+  for (StmtPtr &one : keptDeclarations)
+    out.push_back(std::move(one));
+  keptDeclarations.clear();
+  made->body = statement(stmt.body);
+  if (before.empty()) {
+    out.push_back(std::move(made));
+    return;
+  }
+  auto block = std::make_unique<CompoundStmt>();
+  block->range = stmt.range;
+  block->body = std::move(before);
+  block->body.push_back(std::move(made));
+  out.push_back(std::move(block));
+}
+
+ExprPtr DerivedBody::returned(const ExprPtr &value) {
+  if (!value || result == Result::Value)
+    return copy(value);
+  return derivativeOf(*value, result == Result::AlongX ? Axis::X : Axis::Y);
+}
+
+void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
+  const auto finish = [&](StmtPtr made) {
+    for (StmtPtr &one : keptDeclarations)
+      out.push_back(std::move(one));
+    keptDeclarations.clear();
+    out.push_back(std::move(made));
+  };
+  switch (stmt.kind) {
+  case StmtKind::Compound: {
+    const auto &block = cast<CompoundStmt>(stmt);
+    auto made = blank(block);
+    for (const StmtPtr &inner : block.body)
+      statement(*inner, made->body);
+    return out.push_back(std::move(made));
+  }
+  case StmtKind::Declaration: {
+    const std::size_t first = out.size();
+    for (const Variable *variable : cast<DeclarationStmt>(stmt).variables)
+      declare(*variable, out);
+    if (out.size() > first)
+      out[first]->comment = stmt.comment;
+    return;
+  }
+  case StmtKind::Expression: {
+    const std::size_t first = out.size();
+    evaluate(*cast<ExpressionStmt>(stmt).expr, stmt.range, out);
+    out[first]->comment = stmt.comment;
+    return;
+  }
+  case StmtKind::If: {
+    const auto &branch = cast<IfStmt>(stmt);
+    auto made = blank(branch);
+    made->condition = copy(branch.condition);
+    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
+    keptDeclarations.clear();
+    made->thenStmt = statement(branch.thenStmt);
+    made->elseStmt = statement(branch.elseStmt);
+    keptDeclarations = std::move(declarations);
+    return finish(std::move(made));
+  }
+  case StmtKind::For:
+    return loop(cast<ForStmt>(stmt), out);
+  case StmtKind::While: {
+    const auto &loop = cast<WhileStmt>(stmt);
+    auto made = blank(loop);
+    made->condition = copy(loop.condition);
+    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
+    keptDeclarations.clear();
+    made->body = statement(loop.body);
+    keptDeclarations = std::move(declarations);
+    return finish(std::move(made));
+  }
+  case StmtKind::DoWhile: {
+    const auto &loop = cast<DoWhileStmt>(stmt);
+    auto made = blank(loop);
+    made->body = statement(loop.body);
+    made->condition = copy(loop.condition);
+    return finish(std::move(made));
+  }
+  case StmtKind::Switch: {
+    const auto &choice = cast<SwitchStmt>(stmt);
+    auto made = blank(choice);
+    made->value = copy(choice.value);
+    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
+    keptDeclarations.clear();
+    for (const SwitchStmt::Arm &arm : choice.arms) {
+      SwitchStmt::Arm &copied = made->arms.emplace_back();
+      copied.values = arm.values;
+      copied.isDefault = arm.isDefault;
+      copied.range = arm.range;
+      for (const StmtPtr &inner : arm.body)
+        statement(*inner, copied.body);
+    }
+    keptDeclarations = std::move(declarations);
+    return finish(std::move(made));
+  }
+  case StmtKind::Break:
+    return out.push_back(blank(cast<BreakStmt>(stmt)));
+  case StmtKind::Continue:
+    return out.push_back(blank(cast<ContinueStmt>(stmt)));
+  case StmtKind::Return: {
+    auto made = blank(cast<ReturnStmt>(stmt));
+    made->value = returned(cast<ReturnStmt>(stmt).value);
+    return finish(std::move(made));
+  }
+  case StmtKind::Illuminance: {
+    const auto &lit = cast<IlluminanceStmt>(stmt);
+    auto made = blank(lit);
+    made->point = copy(lit.point);
+    made->normal = copy(lit.normal);
+    made->angle = copy(lit.angle);
+    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
+    keptDeclarations.clear();
+    made->body = statement(lit.body);
+    keptDeclarations = std::move(declarations);
+    return finish(std::move(made));
+  }
+  default:
+    return;
+  }
+}
+
+} // namespace rtsl::derive
