@@ -34,7 +34,7 @@ def vane():
         s = i / steps
         bend = 0.22 * math.sin(math.pi * s)
         lines.append(f"v {s:.4f} 0 {0.1 * s:.4f}")
-        lines.append(f"v {s:.4f} {0.5 * s * (1.25 - s) + 0.04:.4f} {bend + 0.1 * s:.4f}")
+        lines.append(f"v {s:.4f} {0.95 * s * (1.2 - s) + 0.05:.4f} {bend + 0.1 * s:.4f}")
     lines += [f"f {2 * i + 1} {2 * i + 3} {2 * i + 4} {2 * i + 2}" for i in range(steps)]
     return lines
 
@@ -44,7 +44,7 @@ def scene():
         "floor": {
             "primitive": {
                 "class": "Parallelogram",
-                "constructor": [[-30, 0, 20], [60, 0, 0], [0, 0, -60]],
+                "constructor": [[-300, 0, 20], [600, 0, 0], [0, 0, -600]],
             },
             "material": "floor",
         },
@@ -80,7 +80,7 @@ def scene():
             # Each pinwheel keeps upright: its axis turns back as the wheel turns.
             {
                 "child": "pinwheel",
-                "transform": [{"scale": 0.75}, turn([0, 0, 1], -1), {"translate": [2, 0, 0.15]}],
+                "transform": [{"scale": 1.1}, turn([0, 0, 1], -1), {"translate": [2, 0, 0.15]}],
             },
         ]
     }
@@ -124,7 +124,7 @@ def scene():
         "import": ["std.cameras", "std.primitives", "std.materials", "std.backgrounds"],
         "camera": {
             "class": "PerspectiveCamera",
-            "constructor": {"eye": [0.6, 2.6, 10.5], "target": [0, 2.75, 0], "up": [0, 1, 0]},
+            "constructor": {"eye": [0.6, 2.9, 9.6], "target": [0, 3, 0], "up": [0, 1, 0]},
             "fieldOfView": 38,
         },
         "background": {

@@ -83,7 +83,7 @@ class QueryExamples(Case):
             f"--set=passes.0.size=[{count}]",
             "--set=passes.2.size=[80, 56]",
             "--set=passes.2.spp=1",
-            "--set=passes.2.rayGeneration.radius=0.2",
+            "--set=passes.2.rayGeneration.nearest=8",
             "--set=passes.2.rayGeneration.cells=64",
             "--set=passes.1.rayGeneration.cells=64",
             '--set=buffers.first={"size": [4096]}',
