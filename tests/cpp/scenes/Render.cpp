@@ -1,6 +1,6 @@
 // Renders a scene file with shaders that were compiled to C++ ahead: cpp-render SHADERS.so
-// SCENE.json PICTURE.exr. What they print, what samples met, and the bytes of output buffers go to
-// standard output as JSON.
+// SCENE.json PICTURE.exr. The picture is that of the last of its passes. What they print, what
+// samples met, and the bytes of output buffers go to standard output as JSON.
 #include "scenefile/SceneFile.h"
 
 #include <rtsl/runtime.h>
@@ -22,10 +22,20 @@ int main(int argc, char **argv) try {
   if (!shaders)
     return std::fprintf(stderr, "%s\n", dlerror()), 1;
   const scene::SceneDescription description = scene::readSceneFile(argv[2]);
-  const runtime::Scene built = scene::buildScene(description, rtsl::program(shaders()));
+  runtime::Scene built = scene::buildScene(description, rtsl::program(shaders()));
   runtime::RenderStatistics statistics;
-  const runtime::RenderOptions options = scene::renderOptions(description.render);
-  runtime::writeImage(argv[3], runtime::render(built, options, &statistics));
+  const std::size_t launches = scene::launchCount(description);
+  for (std::size_t i = 0; i < launches; ++i) {
+    if (launches > 1)
+      built.setRayGeneration(built.find(scene::nameOfPass(i)));
+    scene::RenderSettings settings = scene::launchOf(description, i).render;
+    if (launches > 1 && !settings.hasSamples)
+      settings.samplesPerPixel = 1;
+    const runtime::RenderOptions options = scene::renderOptions(settings);
+    const runtime::Image picture = runtime::render(built, options, &statistics);
+    if (i + 1 == launches)
+      runtime::writeImage(argv[3], picture);
+  }
   nlohmann::ordered_json said = {
       {"printed", runtime::takePrintLog().texts(built.program().prints)}};
   const char *names[RTSL_EXCEPTIONS] = {"", "stackOverflow", "badRay", "index"};

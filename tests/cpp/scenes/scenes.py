@@ -52,6 +52,48 @@ def example(name, file="scene.json", spp=4):
     return {**with_paths(scene, folder), "import": imported}
 
 
+def classes_in(value):
+    """The names of classes that the JSON mentions."""
+    if isinstance(value, dict):
+        here = {value["class"]} if "class" in value else set()
+        return here.union(*map(classes_in, value.values()))
+    return set().union(*map(classes_in, value)) if isinstance(value, list) else set()
+
+
+def library_example(name, file, classes=(), **changes):
+    """An example whose classes are those of the library: the modules of the classes, of which
+    `classes` are those that the scene does not name. `changes` are of its keys."""
+    folder = pathlib.Path(source, "examples", name)
+    scene = json.loads((folder / file).read_text())
+    scene.get("render", {}).update(size=[40, 28], spp=2)
+    scene.update(changes)
+    own = [str(folder / name) for name in scene["import"] if name.endswith(".rtsl")]
+    used = classes_in(scene).union(classes)
+    library = sorted(pathlib.Path(source, "library/std").glob("*/*.rtsl"))
+    modules = [str(file) for file in library if file.stem in used]
+    return {**with_paths(scene, folder), "import": own + modules}
+
+
+def photons():
+    """Three passes, of fewer photons."""
+    file = pathlib.Path(source, "examples/photons/photons.json")
+    scene = json.loads(file.read_text())
+    first, second, third = scene["passes"]
+    photons, cells = {"size": [3 * 20000]}, 64
+    second["rayGeneration"]["cells"] = cells
+    third["rayGeneration"].update(cells=cells, nearest=8)
+    return library_example(
+        "photons",
+        "photons.json",
+        buffers={
+            "first": {"size": [cells * cells]},
+            **dict.fromkeys(("places", "channels", "next"), photons),
+        },
+        render={**scene["render"], "size": [40, 28]},  # without samples: each photon is sorted once
+        passes=[{**first, "size": [20000]}, second, {**third, "size": [40, 28], "spp": 2}],
+    )
+
+
 def answers(engine):
     scene = {
         "rtsl": 1,
@@ -487,11 +529,21 @@ CASES = [
     ),
     ("g++", ["-O1"], ["--undefined=nan"], [objects(3), objects(9)]),
     ("g++", ["-O1"], [], [nothing()]),
-    ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [paths()]),
     ("g++", ["-O1"], [], [images()]),
     ("g++", ["-O1"], ["--undefined=nan"], [footprints()]),
     ("clang++-22", ["-O0"], ["--trace=recurse"], [footprints()]),
+    (
+        "clang++-22",
+        ["-O0"],
+        [],
+        [
+            library_example("whirligig", "whirligig.json", ["PathTracer"]),
+            library_example("motion", "motion.json", ["PathTracer"]),
+            library_example("inherit", "inherit.json", ["PathTracer"]),
+        ],
+    ),
+    ("clang++-22", ["-O0"], [], [photons()]),
     ("g++", ["-O1"], ["--undefined=nan"], [outputs()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [outputs()]),
     ("g++", ["-O1"], ["--undefined=nan"], [graph()]),
@@ -503,6 +555,9 @@ CASES = [
 # Each takes seconds, and others are like them.
 if "RTSL_DEEP" in os.environ:
     CASES += [
+        ("clang++-22", ["-O1"], [], [library_example("bindless", "scene.json", ["sampler2D"])]),
+        ("g++", ["-O1"], [], [photons()]),
+        ("g++", ["-O1"], ["--undefined=nan"], [paths()]),
         ("g++", ["-O1"], [], [example("forest", "forest.json", spp=1)]),
         ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [chains(3, 2)]),
         ("clang++-22", ["-O0"], ["--trace=recurse", "--undefined=bytes"], [objects(4)]),
@@ -531,7 +586,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-cpp-") as name:
             theirs = json.loads(
                 run(
                     rtslc,
-                    "render",
+                    "run" if "passes" in scene else "render",
                     folder / "scene.json",
                     "-o",
                     folder / "jit.exr",
