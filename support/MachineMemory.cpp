@@ -104,17 +104,16 @@ std::uint64_t availableMemory(const fs::path &root) {
   return std::min(machine, leftInGroups(root));
 }
 
-MemoryReservation::MemoryReservation(std::uint64_t bytes) : bytes(bytes) {
+MemoryReservation::MemoryReservation(std::uint64_t bytes) : MemoryReservation() {
+  this->bytes = bytes; // which the destructor gives back, also where this throws
   const std::uint64_t before = reserved.fetch_add(bytes);
   if (bytes < leastChecked)
     return;
   // What the process has may be a part of earlier reservations, which is then no longer available.
   const std::uint64_t available = availableMemory(), own = ownMemory();
   const std::uint64_t most = available > unlimited - own ? unlimited : available + own;
-  if (before > most || bytes > most - before) {
-    reserved -= bytes;
+  if (before > most || bytes > most - before)
     throw std::bad_alloc();
-  }
 }
 
 MemoryReservation::~MemoryReservation() {
