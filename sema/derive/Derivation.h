@@ -61,9 +61,14 @@ private:
 
   /// The definitions that a call may run.
   Definitions definitions(const typed::Function &function) const;
-  template <typename Predicate>
-  bool reaches(const typed::Function &from, std::map<const typed::Function *, bool> &known,
-               const Predicate &holds);
+  /// What a body has by itself, and the definitions that its calls may run.
+  struct Facts {
+    bool asks = false, readsSeeds = false;
+    Definitions callees;
+  };
+  const Facts &factsOf(const typed::Function &function);
+  /// Does a function, or one that it reaches, have this?
+  bool reaches(const typed::Function &from, bool Facts::*property);
   void makeVariant(const typed::Function &from, Result result);
   std::string variantName(const typed::Function &from, Result result) const;
   void addVariants(std::vector<std::unique_ptr<typed::Function>> &functions);
@@ -76,7 +81,7 @@ private:
 
   typed::Module &module;
   typed::EffectsOf effects;
-  std::map<const typed::Function *, bool> asking, reading;
+  std::map<const typed::Function *, Facts> facts;
   std::deque<Variant> variants; // in the order in which they were required
   std::map<std::pair<const typed::Function *, Result>, const typed::Function *> made;
 };

@@ -68,40 +68,47 @@ Derivation::Definitions Derivation::definitions(const Function &function) const 
   return found;
 }
 
-template <typename Predicate>
-bool Derivation::reaches(const Function &from, std::map<const Function *, bool> &known,
-                         const Predicate &holds) {
-  if (const auto found = known.find(&from); found != known.end())
-    return found->second;
-  std::set<const Function *> seen;
-  std::vector<const Function *> pending = {&from};
-  bool isFound = false;
-  while (!pending.empty() && !isFound) {
-    const Function *at = pending.back();
-    pending.pop_back();
-    if (!seen.insert(at).second || !at->body)
-      continue;
-    forEachExpr(*at->body, [&](const Expr &expr) {
-      isFound |= holds(expr);
+const Derivation::Facts &Derivation::factsOf(const Function &function) {
+  const auto [found, isNew] = facts.try_emplace(&function);
+  Facts &made = found->second;
+  if (isNew && function.body)
+    forEachExpr(*function.body, [&](const Expr &expr) {
+      made.asks |= isDerivative(expr);
+      made.readsSeeds |= isSeed(expr);
       if (const Function *called = callee(expr))
         for (const Function *definition : definitions(*called))
-          pending.push_back(definition);
+          made.callees.push_back(definition);
     });
+  return made;
+}
+
+bool Derivation::reaches(const Function &from, bool Facts::*property) {
+  std::set<const Function *> seen;
+  Definitions pending = {&from};
+  while (!pending.empty()) {
+    const Function *at = pending.back();
+    pending.pop_back();
+    if (!seen.insert(at).second)
+      continue;
+    const Facts &of = factsOf(*at);
+    if (of.*property)
+      return true;
+    pending.insert(pending.end(), of.callees.begin(), of.callees.end());
   }
-  return known[&from] = isFound;
+  return false;
 }
 
 bool Derivation::asks(const Function &function) {
   const Definitions all = definitions(function);
   return std::any_of(all.begin(), all.end(), [&](const Function *definition) {
-    return reaches(*definition, asking, isDerivative);
+    return reaches(*definition, &Facts::asks);
   });
 }
 
 bool Derivation::readsSeeds(const Function &function) {
   const Definitions all = definitions(function);
   return std::any_of(all.begin(), all.end(), [&](const Function *definition) {
-    return reaches(*definition, reading, isSeed);
+    return reaches(*definition, &Facts::readsSeeds);
   });
 }
 
@@ -180,7 +187,7 @@ void Derivation::run() {
   };
   std::deque<Replaced> replaced; // at the end: bodies are read until then
   const auto replace = [&](Function &function, bool isAtHit) {
-    if (!function.body || !reaches(function, asking, isDerivative))
+    if (!function.body || !reaches(function, &Facts::asks))
       return;
     Replaced &one = replaced.emplace_back();
     one.function = &function;

@@ -28,9 +28,8 @@ static std::unique_ptr<Variable> variableLike(const Variable &from) {
   return made;
 }
 
-/// `uv_dx`, and with more underscores if the function has that already.
-static std::string companionName(const Function &function, const std::string &of, Axis axis) {
-  std::string name = of + (axis == Axis::X ? "_dx" : "_dy");
+/// The name, with underscores behind it if a variable of the function has it already.
+static std::string freeName(const Function &function, std::string name) {
   const auto isTaken = [&](const auto &variables) {
     return std::any_of(variables.begin(), variables.end(),
                        [&](const auto &variable) { return variable->name == name; });
@@ -38,6 +37,11 @@ static std::string companionName(const Function &function, const std::string &of
   while (isTaken(function.parameters) || isTaken(function.locals))
     name += "_";
   return name;
+}
+
+/// `uv_dx`.
+static std::string companionName(const Function &function, const std::string &of, Axis axis) {
+  return freeName(function, of + (axis == Axis::X ? "_dx" : "_dy"));
 }
 
 Variable &DerivedBody::addLocal(std::string name, const Type *type, SourceRange range) {
@@ -48,6 +52,13 @@ Variable &DerivedBody::addLocal(std::string name, const Type *type, SourceRange 
   made->range = range;
   to.locals.push_back(std::move(made));
   return *to.locals.back();
+}
+
+const Variable &DerivedBody::addKept(const Type *type, SourceRange range) {
+  const std::string name = freeName(from, "kept" + std::to_string(++keptCount));
+  const Variable &made = addLocal(name, type, range);
+  keptDeclarations.push_back(declaration(made));
+  return made;
 }
 
 void DerivedBody::addCompanions(const Variable &of, std::vector<StmtPtr> &out,

@@ -30,6 +30,8 @@ private:
   // DerivedBody.cpp
   void run();
   typed::Variable &addLocal(std::string name, const Type *type, SourceRange range);
+  /// A variable for a value that is computed once, declared before the statement.
+  const typed::Variable &addKept(const Type *type, SourceRange range);
   void addCompanions(const typed::Variable &of, std::vector<typed::StmtPtr> &out,
                      const Term (&changes)[2]);
   const Companions *companionsOf(const typed::Expr &place) const;
@@ -81,6 +83,7 @@ private:
   std::map<const typed::Variable *, Companions> companions; // by variable of the original
   std::map<const typed::Expr *, const typed::Variable *> kept;
   std::vector<typed::StmtPtr> keptDeclarations; // before the next statement
+  unsigned keptCount = 0;
 };
 
 } // namespace rtsl::derive

@@ -13,11 +13,8 @@ Term DerivedBody::factor(const Expr &expr) {
   if (derivation.isPure(expr))
     return {copy(expr), types};
   const Variable *&variable = kept[&expr];
-  if (!variable) {
-    Variable &made = addLocal("kept", expr.type, expr.range);
-    variable = &made;
-    keptDeclarations.push_back(declaration(made));
-  }
+  if (!variable)
+    variable = &addKept(expr.type, expr.range);
   auto node = makeExpr<VariableExpr>(expr.type, expr.range);
   node->variable = variable;
   return {std::move(node), types};

@@ -80,11 +80,19 @@ std::vector<ExprPtr> DerivedBody::assignmentSteps(const AssignExpr &expr) {
   assign->compound = expr.compound;
   assign->op = expr.op;
   assign->target = copy(expr.target);
+  if (!derivation.isPure(*expr.target)) { // such as v[i++]: first, because of the index
+    assign->value = copy(expr.value);
+    const Variable &value = addKept(expr.type, expr.range);
+    steps.push_back(set(use(value, expr.range), std::move(assign)));
+    for (ExprPtr &one : changed)
+      steps.push_back(std::move(one));
+    steps.push_back(use(value, expr.range));
+    return steps;
+  }
   if (derivation.isPure(*expr.value)) {
     assign->value = copy(expr.value);
   } else {
-    Variable &value = addLocal("kept", expr.value->type, expr.range);
-    keptDeclarations.push_back(declaration(value));
+    const Variable &value = addKept(expr.value->type, expr.range);
     steps.push_back(set(use(value, expr.range), copy(expr.value)));
     assign->value = use(value, expr.range);
   }

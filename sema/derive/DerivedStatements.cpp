@@ -111,7 +111,8 @@ void DerivedBody::evaluate(const Expr &expr, SourceRange range, std::vector<Stmt
     out.push_back(std::move(one));
   keptDeclarations.clear();
   for (ExprPtr &step : steps)
-    out.push_back(evaluation(std::move(step), range));
+    if (step->kind != ExprKind::Variable || steps.size() == 1) // no more than the value
+      out.push_back(evaluation(std::move(step), range));
   forgetWritten(expr, out);
 }
 

@@ -153,6 +153,10 @@ PROGRAMS = {
         "int n = 0; float x = p.x * float(++n) + p.y * float(n++); x += p.x * float(++n); "
         "return x * float(n);"
     ),
+    "places that are found once": (
+        "float v[3]; int i = 0; v[i++] = p.x * p.y; v[i++] = p.y; v[i] = v[0] * v[1]; v[--i] += p.x; "
+        "return v[2] + v[1] * v[0] + float(i);"
+    ),
     "parameters that change": "vec2 q = p; q.x = moved(q, 2.0); return q.x * q.y;",
     "parts of functions": "return (p.x > 0.0 && p.y > 0.0 ? outer(p.y, p.yx) : 0.0) * (1.0 - p.x);",
     "points": "vec3 q = point(p); return dot(q, q.zxy) + q.x;",
@@ -191,14 +195,11 @@ CALLS
 PLANE = {"class": "Parallelogram", "constructor": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]}
 WAYS = (
     [],
-    ["--trace=recurse"],
-    ["--trace=split"],
-    ["--traversal=device"],
+    ["--trace=recurse", "--traversal=device"],
+    ["--trace=split", "--undefined=nan"],
     ["--target=host-megakernel"],
     ["--target=host-megakernel", "--organisation=wavefront"],
-    ["--keep=all"],
-    ["--undefined=nan"],
-    ["--threads=1"],
+    ["--keep=all", "--threads=1"],
 )
 
 
