@@ -154,8 +154,8 @@ PROGRAMS = {
         "return x * float(n);"
     ),
     "places that are found once": (
-        "float v[3]; int i = 0; v[i++] = p.x * p.y; v[i++] = p.y; v[i] = v[0] * v[1]; v[--i] += p.x; "
-        "return v[2] + v[1] * v[0] + float(i);"
+        "float v[3]; int i = 0; v[i++] = p.x * p.y; v[i++] = p.y; v[i] = v[0] * v[1]; "
+        "v[--i] += p.x; return v[2] + v[1] * v[0] + float(i);"
     ),
     "parameters that change": "vec2 q = p; q.x = moved(q, 2.0); return q.x * q.y;",
     "parts of functions": "return (p.x > 0.0 && p.y > 0.0 ? outer(p.y, p.yx) : 0.0) * (1.0 - p.x);",
