@@ -1,10 +1,12 @@
 #include "codegen/driver/CodeCache.h"
 
+#include "codegen/driver/CodeFiles.h"
 #include "codegen/emit/ObjectCode.h"
 
 #include <atomic>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 namespace rtsl {
@@ -15,13 +17,17 @@ struct CodeCache::Implementation {
     std::uint64_t program; // the last that used it
   };
 
-  std::mutex mutex; // for the next two
+  std::unique_ptr<const CodeFiles> files; // or null
+  std::mutex mutex;                       // for the next two
   std::map<std::string, Entry> entries;
   std::uint64_t program = 0;
-  std::atomic<std::uint64_t> reused{0};
+  std::atomic<std::uint64_t> reused{0}, read{0}; // by it
 };
 
-CodeCache::CodeCache() : self(std::make_unique<Implementation>()) {}
+CodeCache::CodeCache(std::unique_ptr<const CodeFiles> files)
+    : self(std::make_unique<Implementation>()) {
+  self->files = std::move(files);
+}
 CodeCache::~CodeCache() = default;
 
 void CodeCache::beginProgram() {
@@ -29,7 +35,7 @@ void CodeCache::beginProgram() {
   for (auto entry = self->entries.begin(); entry != self->entries.end();)
     entry = entry->second.program < self->program ? self->entries.erase(entry) : std::next(entry);
   ++self->program;
-  self->reused = 0;
+  self->reused = self->read = 0;
 }
 
 codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
@@ -42,7 +48,12 @@ codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
       return found->second.code;
     }
   }
-  codegen::ObjectCode code = make();
+  std::optional<codegen::ObjectCode> known =
+      self->files ? self->files->read(identity) : std::nullopt;
+  self->read += known.has_value();
+  codegen::ObjectCode code = known ? std::move(*known) : make();
+  if (self->files && !known)
+    self->files->write(identity, code);
   const std::lock_guard<std::mutex> lock(self->mutex);
   self->entries.try_emplace(identity, Implementation::Entry{code, self->program});
   return code;
@@ -50,6 +61,10 @@ codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
 
 std::uint64_t CodeCache::reused() const {
   return self->reused;
+}
+
+std::uint64_t CodeCache::read() const {
+  return self->read;
 }
 
 } // namespace rtsl

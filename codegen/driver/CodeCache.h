@@ -2,7 +2,7 @@
 //
 // Frames of a sequence, and pictures that are rendered again after a change, often have the same
 // code, or parts of it: what moves is in tables that the code reads. So machine code is kept by the
-// module that it was made of, from one program to the next.
+// module that it was made of, from one program to the next, and in files from one run to the next.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -18,10 +18,13 @@ namespace codegen {
 struct ObjectCode;
 } // namespace codegen
 
+class CodeFiles;
+
 /// May be used by several threads at once.
 class CodeCache {
 public:
-  CodeCache();
+  /// `files`: of earlier runs, or null.
+  explicit CodeCache(std::unique_ptr<const CodeFiles> files);
   ~CodeCache();
 
   /// A new program begins: what the one before did not use is forgotten.
@@ -32,8 +35,11 @@ public:
   codegen::ObjectCode codeOf(const std::string &identity,
                              const std::function<codegen::ObjectCode()> &make);
 
-  /// How many modules of the program were known.
+  /// How many modules of the program were those of programs before, in this run.
   std::uint64_t reused() const;
+
+  /// How many were in files.
+  std::uint64_t read() const;
 
 private:
   struct Implementation;

@@ -130,8 +130,10 @@ std::string identityOf(const LlvmCode &code) {
   llvm::SHA256 hash;
   hash.update(llvm::StringRef(bits.data(), bits.size()));
   const codegen::MachineOptions &options = code.options;
-  return fmt::format("{} {} {} {} {}", llvm::toHex(hash.final()), options.optimization,
-                     options.hostCpu, options.isMegakernel, int(options.floatingPoint));
+  return fmt::format("{} {} {} {} {} {}", llvm::toHex(hash.final()), options.optimization,
+                     options.isMegakernel, int(options.floatingPoint),
+                     code.machine->getTargetCPU().str(),
+                     code.machine->getTargetFeatureString().str());
 }
 
 codegen::ObjectCode toObject(LlvmCode code, const CompileOptions &options) {

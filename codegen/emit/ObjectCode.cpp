@@ -21,4 +21,31 @@ llvm::Expected<ObjectCode> makeObjectCode(llvm::Module &module, llvm::TargetMach
   return code;
 }
 
+// A line for each exported function, an empty one, the use of the stack, an empty line, and the
+// object file.
+
+std::string textOf(const ObjectCode &code) {
+  std::string text;
+  for (const std::string &name : code.exports)
+    text += name + '\n';
+  text += '\n' + code.stackUse.text() + '\n';
+  text.append(code.bytes.data(), code.bytes.size());
+  return text;
+}
+
+std::optional<ObjectCode> readObjectCode(llvm::StringRef text) {
+  std::vector<std::string> exports;
+  for (;;) {
+    const auto [line, rest] = text.split('\n');
+    text = rest;
+    if (line.empty())
+      break;
+    exports.push_back(line.str());
+  }
+  std::optional<StackUse> stackUse = StackUse::fromText(text);
+  if (!stackUse)
+    return std::nullopt;
+  return ObjectCode{{text.begin(), text.end()}, std::move(exports), std::move(*stackUse)};
+}
+
 } // namespace rtsl::codegen

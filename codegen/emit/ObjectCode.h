@@ -6,6 +6,7 @@
 #include "llvm/ADT/SmallVector.h"
 #include "llvm/Support/Error.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,11 @@ struct ObjectCode {
 /// Compiles an optimised module. Several threads may do so in parallel, each with a module in its
 /// own context.
 llvm::Expected<ObjectCode> makeObjectCode(llvm::Module &module, llvm::TargetMachine &machine);
+
+/// The code as a sequence of bytes, for a file.
+std::string textOf(const ObjectCode &code);
+
+/// What textOf has written; nothing if it is something else.
+std::optional<ObjectCode> readObjectCode(llvm::StringRef text);
 
 } // namespace rtsl::codegen

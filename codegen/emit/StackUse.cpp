@@ -190,11 +190,53 @@ StackUse::StackUse(llvm::Module &module) : self(std::make_unique<Implementation>
   module.getContext().setDiagnosticHandler(std::make_unique<CollectFrames>(self->frames));
 }
 
+StackUse::StackUse() : self(std::make_unique<Implementation>()) {}
 StackUse::StackUse(StackUse &&) noexcept = default;
 StackUse::StackUse(const StackUse &other) : self(std::make_unique<Implementation>(*other.self)) {
   self->frames = std::make_shared<Frames>(*self->frames);
 }
 StackUse::~StackUse() = default;
+
+std::string StackUse::text() const {
+  std::string text;
+  for (const Node &node : self->graph) {
+    text += node.name;
+    text += node.isDefined ? " " + std::to_string(self->frames->lookup(node.name)) : " -1";
+    for (const Index callee : node.callees)
+      text += " " + std::to_string(callee);
+    text += '\n';
+  }
+  return text;
+}
+
+std::optional<StackUse> StackUse::fromText(llvm::StringRef &text) {
+  StackUse use;
+  Graph &graph = use.self->graph;
+  for (;;) {
+    const auto [line, rest] = text.split('\n');
+    text = rest;
+    if (line.empty())
+      break;
+    llvm::SmallVector<llvm::StringRef, 16> words;
+    line.split(words, ' ');
+    std::int64_t frame = 0;
+    if (words.size() < 2 || words[1].getAsInteger(10, frame) ||
+        !use.self->indices.try_emplace(words[0], graph.size()).second)
+      return std::nullopt;
+    Node node{words[0].str(), frame >= 0, 0, {}};
+    for (const llvm::StringRef word : llvm::drop_begin(words, 2))
+      if (word.getAsInteger(10, node.callees.emplace_back()))
+        return std::nullopt;
+    if (node.isDefined)
+      (*use.self->frames)[node.name] = std::uint64_t(frame);
+    graph.push_back(std::move(node));
+  }
+  for (const Node &node : graph)
+    for (const Index callee : node.callees)
+      if (callee >= graph.size())
+        return std::nullopt;
+  return use;
+}
 
 void StackUse::add(const StackUse &other) {
   for (const Node &node : other.self->graph) {

@@ -4,6 +4,7 @@
 #include "Preview.h"
 #include "RenderOnChange.h"
 #include "codegen/driver/CodeCache.h"
+#include "codegen/driver/CodeFiles.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/files/KeptFiles.h"
@@ -84,19 +85,16 @@ int renderFrames(const RenderCommandOptions &options) {
   return Fine;
 }
 
-int render(const RenderCommandOptions &options) {
+int render(RenderCommandOptions options) {
+  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
+  if (options.watches || options.frames || !options.aovs.empty())
+    options.keptFiles = std::make_shared<scene::KeptFiles>();
   if (options.watches || options.frames) {
-    RenderCommandOptions several = options;
-    several.common.compile.codeCache = std::make_shared<CodeCache>();
-    several.keptTrees = std::make_shared<KeptTrees>();
-    several.keptFiles = std::make_shared<scene::KeptFiles>();
-    return options.watches ? watch(several) : renderFrames(several);
+    options.keptTrees = std::make_shared<KeptTrees>();
+    return options.watches ? watch(options) : renderFrames(options);
   }
-  RenderCommandOptions one = options;
-  if (!options.aovs.empty())
-    one.keptFiles = std::make_shared<scene::KeptFiles>();
   Rendering rendering;
-  const ExitStatus status = render(one, nullptr, rendering);
+  const ExitStatus status = render(options, nullptr, rendering);
   return statusAfterInterruption(status);
 }
 

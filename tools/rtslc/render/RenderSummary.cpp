@@ -163,6 +163,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (const auto &cache = options.common.compile.codeCache; cache && cache->reused())
     fmt::print(stderr, "machine code of the picture before: {} modules\n", cache->reused());
+  if (const auto &cache = options.common.compile.codeCache; cache && cache->read())
+    fmt::print(stderr, "machine code of an earlier run: {} modules\n", cache->read());
   if (statistics.isRefitted)
     fmt::print(stderr, "trees of the picture before: refitted\n");
   if (summary.resumedAt)

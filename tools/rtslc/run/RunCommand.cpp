@@ -5,6 +5,8 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 
+#include "codegen/driver/CodeCache.h"
+#include "codegen/driver/CodeFiles.h"
 #include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"
@@ -402,6 +404,7 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
 }
 
 void completeRunOptions(const CLI::App &command, RunOptions &options) {
+  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
   checkOutputFiles(options.outputs, options.picture);
   if (options.target == TargetName::Gpu && options.prints)
     throw CLI::ValidationError("--print",
