@@ -51,7 +51,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
         example,
         f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DGLASS={glass}",
-        "-DCMAKE_BUILD_TYPE=Release",
+        "-DCMAKE_BUILD_TYPE=Debug",
     )
     run(cmake, "--build", example)
     picture = folder / "glass.png"
@@ -90,7 +90,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
         "-B",
         turntable,
         f"-DCMAKE_PREFIX_PATH={prefix}",
-        "-DCMAKE_BUILD_TYPE=Release",
+        "-DCMAKE_BUILD_TYPE=Debug",
     )
     run(cmake, "--build", turntable)
     run(turntable / "c-api", f"{source}/examples/glass/knot.obj", folder, "2", "48")

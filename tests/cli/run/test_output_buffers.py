@@ -618,7 +618,6 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
             ["--out==x"],
             ["--out=distance=x.npy", "--out=normal=x.npy"],
             ["--out=distance=x.npy", "--out=distance=y.npy"],
-            ["--target=gpu", "--print"],
         ):
             self.run_rtslc("run", "scene.json", *arguments, status=USAGE)
         self.assertFalse((self.folder / "d.npy").exists())

@@ -76,6 +76,8 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
                                      {"notFinite", nlohmann::ordered_json::array()}};
   for (const SampleNotFinite &one : summary.notFinite)
     document["notFinite"].push_back(toJson(one));
+  if (const auto &cache = options.common.compile.codeCache; cache && cache->read())
+    document["modulesOfEarlierRuns"] = cache->read(); // whose machine code was in files
   if (std::isfinite(summary.error))
     document["noise"] = summary.error;
   if (render.isAdaptive)
@@ -163,8 +165,6 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (const auto &cache = options.common.compile.codeCache; cache && cache->reused())
     fmt::print(stderr, "machine code of the picture before: {} modules\n", cache->reused());
-  if (const auto &cache = options.common.compile.codeCache; cache && cache->read())
-    fmt::print(stderr, "machine code of an earlier run: {} modules\n", cache->read());
   if (statistics.isRefitted)
     fmt::print(stderr, "trees of the picture before: refitted\n");
   if (summary.resumedAt)

@@ -211,6 +211,7 @@ private:
       launch.rayGeneration = description.rayGeneration->className.text;
     launch.render = renderOptions(options, description.render);
     launch.render.wantsPicture = !options.picture.empty();
+    launch.render.prints = options.prints;
     launch.compileSeconds = secondsSince(start);
     Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
     if (!options.quiet)
@@ -406,10 +407,6 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
 void completeRunOptions(const CLI::App &command, RunOptions &options) {
   options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
   checkOutputFiles(options.outputs, options.picture);
-  if (options.target == TargetName::Gpu && options.prints)
-    throw CLI::ValidationError("--print",
-                               "a GPU cannot print; `--target=host-megakernel` prints, and "
-                               "computes the same");
   if (options.target != TargetName::Gpu)
     rejectGpuOptions(command);
   if (options.target != TargetName::Host)
