@@ -118,7 +118,7 @@ class Library(Case):
         self.scene()
         self.run_rtslc("render", "scene.json", "-o", "picture.png")
         self.run_rtslc("pack", "scene.json", "-o", "scene.pack")
-        self.run_rtslc("explain", "scene.json")
+        self.run_rtslc("explain", "scene.json", "--no-savings")
         self.run_rtslc("compile", "scene.json", "--emit=ptx")
         self.run_rtslc("check", "scene.json", "-MD", "-MF", "scene.d")
         rule = (self.folder / "scene.d").read_text()

@@ -215,7 +215,7 @@ class Outputs(Case):
             *[(RTSLC, ["compile", "grey.rtsl", f"--emit={stage}"]) for stage in self.stages()],
             (RTSLC, ["compile", "grey.rtsl", "--emit=ir", "-o", "ir", "-MD", "-MF", "-"]),
             (RTSLC, ["explain", "--states", "Glass.rtsl"]),
-            (RTSLC, ["explain", "scene.json", "--json"]),
+            (RTSLC, ["explain", "scene.json", "--json", "--no-savings"]),
             (RTSLC, [*render, "-o", "c.exr", "--json"]),
             (RTSLC, [*render, "-o", "c.exr", "--print", *prints]),
             (RTSLC, [*render, "-o", "-"]),

@@ -75,9 +75,11 @@ class Explain(Case):
         self.write("all.rtsl", SHADERS)
         self.write("scene.json", json.dumps({**SCENE, **changes}, indent=1))
 
-    def entries(self, *arguments):
-        """{item: {subject: (needed, reason, line)}} of the scene."""
-        out, _ = self.run_rtslc("explain", "scene.json", "--json", *arguments)
+    def entries(self, *arguments, savings=False):
+        """{item: {subject: (needed, reason, line)}} of the scene. With savings it is compiled once
+        more for each item."""
+        others = () if savings else ("--no-savings",)
+        out, _ = self.run_rtslc("explain", "scene.json", "--json", *others, *arguments)
         self.document = json.loads(out)
         return {
             item["item"]: {
@@ -92,7 +94,7 @@ class Explain(Case):
 
     def test_each_item_says_what_is_needed_and_by_which_line(self):
         self.write_scene()
-        items = self.entries()
+        items = self.entries(savings=True)
         needed = {
             (item, subject)
             for item, entries in items.items()
@@ -212,7 +214,7 @@ class Explain(Case):
             "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n",
         )
         self.write_scene(objects=[{"mesh": "triangle.obj", "material": "red"}])
-        meshes = self.entries()["meshes"]
+        meshes = self.entries(savings=True)["meshes"]
         self.assertEqual(
             [
                 meshes[name][0]
@@ -296,7 +298,7 @@ class Explain(Case):
         self.write_scene(materials={**SCENE["materials"], **self.UNUSED})
         self.assertEqual(self.ptx(), without)
         self.assertGreater(len(self.ptx("--keep=objects")), len(without) + 1000)
-        items = self.entries()
+        items = self.entries(savings=True)
         self.assertEqual(
             items["objects"]["material blue"][:2], (False, "nothing that is used refers to it")
         )
@@ -531,9 +533,9 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
 
     def test_without_savings(self):
         self.write_scene()
-        whole = self.entries()
+        whole = self.entries(savings=True)
         self.assertTrue(all("saved" in item for item in self.document["items"]))
-        self.assertEqual(self.entries("--no-savings"), whole)
+        self.assertEqual(self.entries(), whole)
         self.assertFalse(any("saved" in item for item in self.document["items"]))
         text, _ = self.run_rtslc("explain", "scene.json", "--no-savings")
         self.assertIn("What its program needs:\n", text)
