@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "EmbreeRays.h"
 #include "Program.h"
+#include "Triangles.h"
 
 #include "runtime/device/ray/Random.h"
 #include "runtime/geometry/Mesh.h"
@@ -98,15 +99,7 @@ public:
 
 private:
   void attach(unsigned number) {
-    runtime::Mesh &mesh = meshes[number];
-    const std::size_t vertices = mesh.vertexCount();
-    mesh.positions.push_back(0); // Embree reads 16 bytes at each vertex
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                               mesh.positions.data(), 0, 3 * sizeof(float), vertices);
-    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               mesh.indices.data(), 0, 3 * sizeof(unsigned), mesh.triangleCount());
-    rtcCommitGeometry(geometry);
+    RTCGeometry geometry = newTriangles(device, meshes[number]);
     if (places.empty()) {
       rtcAttachGeometryByID(embree, geometry, number);
     } else {

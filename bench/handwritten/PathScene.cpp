@@ -1,6 +1,8 @@
 //===- PathScene.cpp - diffuse parallelograms and meshes, for paths -------===//
 #include "PathScene.h"
 
+#include "Triangles.h"
+
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -108,15 +110,7 @@ void PathScene::attachParallelograms() {
 }
 
 void PathScene::attach(DiffuseMesh &one) {
-  rtsl::runtime::Mesh &mesh = one.mesh;
-  const std::size_t vertices = mesh.vertexCount();
-  mesh.positions.push_back(0); // Embree reads 16 bytes at each vertex
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                             mesh.positions.data(), 0, 3 * sizeof(float), vertices);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                             mesh.indices.data(), 0, 3 * sizeof(unsigned), mesh.triangleCount());
-  rtcCommitGeometry(geometry);
+  RTCGeometry geometry = newTriangles(device, one.mesh);
   rtcAttachGeometryByID(embree, geometry, 1 + unsigned(&one - world.meshes.data()));
   rtcReleaseGeometry(geometry);
 }

@@ -5,6 +5,7 @@
 #include "sema/typed/Walk.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace rtsl::derive {
 
@@ -14,7 +15,7 @@ DerivedBody::DerivedBody(Derivation &derivation, const Function &from, Function 
     : derivation(derivation), types(derivation.types()), from(from), to(to),
       changes(derivation, from, isAtHit) {}
 
-static std::unique_ptr<Variable> variableLike(const Variable &from) {
+std::unique_ptr<Variable> variableLike(const Variable &from) {
   auto made = std::make_unique<Variable>();
   made->kind = from.kind;
   made->name = from.name;
@@ -59,6 +60,11 @@ const Variable &DerivedBody::addKept(const Type *type, SourceRange range) {
   const Variable &made = addLocal(name, type, range);
   keptDeclarations.push_back(declaration(made));
   return made;
+}
+
+void DerivedBody::declareKept(std::vector<StmtPtr> &out) {
+  std::move(keptDeclarations.begin(), keptDeclarations.end(), std::back_inserter(out));
+  keptDeclarations.clear();
 }
 
 void DerivedBody::addCompanions(const Variable &of, std::vector<StmtPtr> &out,

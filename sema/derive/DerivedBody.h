@@ -8,6 +8,9 @@
 
 namespace rtsl::derive {
 
+/// A variable of its own with the same properties; without a start.
+std::unique_ptr<typed::Variable> variableLike(const typed::Variable &from);
+
 /// Writes a function without dFdx and dFdy: one that replaces it, or a variant of it. The copy has
 /// variables of its own.
 class DerivedBody : Copier {
@@ -35,6 +38,8 @@ private:
   void addCompanions(const typed::Variable &of, std::vector<typed::StmtPtr> &out,
                      const Term (&changes)[2]);
   const Companions *companionsOf(const typed::Expr &place) const;
+  /// Moves the declarations of variables of addKept there.
+  void declareKept(std::vector<typed::StmtPtr> &out);
   typed::StmtPtr declaration(const typed::Variable &variable) const;
   typed::StmtPtr assignment(const typed::Variable &variable, typed::ExprPtr value);
 

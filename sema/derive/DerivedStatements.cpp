@@ -3,6 +3,8 @@
 #include "sema/model/Conversion.h"
 #include "sema/typed/Walk.h"
 
+#include <utility>
+
 namespace rtsl::derive {
 
 using namespace typed;
@@ -68,17 +70,7 @@ void DerivedBody::forgetWritten(const Expr &expr, std::vector<StmtPtr> &out) {
 }
 
 void DerivedBody::declare(const Variable &declared, std::vector<StmtPtr> &out) {
-  auto made = std::make_unique<Variable>();
-  made->kind = declared.kind;
-  made->name = declared.name;
-  made->type = declared.type;
-  made->isConst = declared.isConst;
-  if (declared.constant)
-    made->constant = std::make_unique<Constant>(*declared.constant);
-  made->range = declared.range;
-  made->comment = declared.comment;
-  Variable &variable = *made;
-  to.locals.push_back(std::move(made));
+  Variable &variable = *to.locals.emplace_back(variableLike(declared));
   const bool hasCompanions = changes.hasCompanions(&declared);
   Term values[2];
   if (hasCompanions && declared.init)
@@ -91,9 +83,7 @@ void DerivedBody::declare(const Variable &declared, std::vector<StmtPtr> &out) {
     addCompanions(declared, out, values);
   variable.init = copy(declared.init);
   variables[&declared] = &variable;
-  for (StmtPtr &one : keptDeclarations)
-    out.push_back(std::move(one));
-  keptDeclarations.clear();
+  declareKept(out);
   out.push_back(declaration(variable));
   if (hasCompanions && valueFirst)
     addCompanions(declared, out, values);
@@ -107,9 +97,7 @@ void DerivedBody::evaluate(const Expr &expr, SourceRange range, std::vector<Stmt
     steps = assignmentSteps(*assign);
   else
     steps.push_back(copy(expr));
-  for (StmtPtr &one : keptDeclarations)
-    out.push_back(std::move(one));
-  keptDeclarations.clear();
+  declareKept(out);
   for (ExprPtr &step : steps)
     if (step->kind != ExprKind::Variable || steps.size() == 1) // no more than the value
       out.push_back(evaluation(std::move(step), range));
@@ -128,9 +116,7 @@ void DerivedBody::loop(const ForStmt &stmt, std::vector<StmtPtr> &out) {
   }
   made->condition = copy(stmt.condition);
   made->step = copy(stmt.step);
-  for (StmtPtr &one : keptDeclarations)
-    out.push_back(std::move(one));
-  keptDeclarations.clear();
+  declareKept(out);
   made->body = statement(stmt.body);
   if (before.empty()) {
     out.push_back(std::move(made));
@@ -151,9 +137,7 @@ ExprPtr DerivedBody::returned(const ExprPtr &value) {
 
 void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
   const auto finish = [&](StmtPtr made) {
-    for (StmtPtr &one : keptDeclarations)
-      out.push_back(std::move(one));
-    keptDeclarations.clear();
+    declareKept(out);
     out.push_back(std::move(made));
   };
   switch (stmt.kind) {
@@ -182,8 +166,7 @@ void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
     const auto &branch = cast<IfStmt>(stmt);
     auto made = blank(branch);
     made->condition = copy(branch.condition);
-    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
-    keptDeclarations.clear();
+    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
     made->thenStmt = statement(branch.thenStmt);
     made->elseStmt = statement(branch.elseStmt);
     keptDeclarations = std::move(declarations);
@@ -195,8 +178,7 @@ void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
     const auto &loop = cast<WhileStmt>(stmt);
     auto made = blank(loop);
     made->condition = copy(loop.condition);
-    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
-    keptDeclarations.clear();
+    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
     made->body = statement(loop.body);
     keptDeclarations = std::move(declarations);
     return finish(std::move(made));
@@ -212,8 +194,7 @@ void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
     const auto &choice = cast<SwitchStmt>(stmt);
     auto made = blank(choice);
     made->value = copy(choice.value);
-    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
-    keptDeclarations.clear();
+    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
     for (const SwitchStmt::Arm &arm : choice.arms) {
       SwitchStmt::Arm &copied = made->arms.emplace_back();
       copied.values = arm.values;
@@ -240,8 +221,7 @@ void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
     made->point = copy(lit.point);
     made->normal = copy(lit.normal);
     made->angle = copy(lit.angle);
-    std::vector<StmtPtr> declarations = std::move(keptDeclarations);
-    keptDeclarations.clear();
+    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
     made->body = statement(lit.body);
     keptDeclarations = std::move(declarations);
     return finish(std::move(made));

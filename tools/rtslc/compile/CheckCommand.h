@@ -1,4 +1,4 @@
-//===- CheckCommand.h - what rtslc check is asked for ---------------------===//
+//===- CheckCommand.h - the options of rtslc check -----------------------===//
 #pragma once
 
 #include "tools/rtslc/common/CommandLine.h"

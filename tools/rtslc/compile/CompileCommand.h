@@ -1,4 +1,4 @@
-//===- CompileCommand.h - what rtslc compile is asked for -----------------===//
+//===- CompileCommand.h - the options of rtslc compile -------------------===//
 #pragma once
 
 #include "codegen/driver/Stages.h"

@@ -1,4 +1,4 @@
-//===- ExplainCommand.h - what rtslc explain is asked for -----------------===//
+//===- ExplainCommand.h - the options of rtslc explain -------------------===//
 #pragma once
 
 #include "tools/common/GpuOptions.h"

@@ -373,7 +373,8 @@ void runScene(const RunOptions &options, Messages &messages) {
 
 } // namespace
 
-int runLaunches(const RunOptions &options) {
+int runLaunches(RunOptions options) {
+  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
   Messages messages(options.common);
   try {
     runScene(options, messages);
@@ -405,7 +406,6 @@ void addRunOptions(CLI::App &command, RunOptions &options) {
 }
 
 void completeRunOptions(const CLI::App &command, RunOptions &options) {
-  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
   checkOutputFiles(options.outputs, options.picture);
   if (options.target != TargetName::Gpu)
     rejectGpuOptions(command);

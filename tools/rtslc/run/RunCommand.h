@@ -32,6 +32,6 @@ void addRunOptions(CLI::App &command, RunOptions &options);
 void completeRunOptions(const CLI::App &command, RunOptions &options);
 
 /// Runs the launches of the scene and writes the outputs. Gives the exit status.
-int runLaunches(const RunOptions &options);
+int runLaunches(RunOptions options);
 
 } // namespace rtsl::tool
