@@ -32,10 +32,10 @@ using Kind = JsonValue::Kind;
 
 class SceneBuilder {
 public:
-  SceneBuilder(const SceneDescription &description, std::shared_ptr<const Program> program,
-               NamedBuffers &buffers)
-      : description(description), program(*program), variables(description, *program),
-        variablePlaces(description), buffers(buffers), scene(std::move(program)),
+  SceneBuilder(const SceneDescription &description, Scene &scene, NamedBuffers &buffers,
+               ValueCompletion complete = nullptr)
+      : description(description), program(scene.program()), variables(description, program),
+        variablePlaces(description), buffers(buffers), scene(scene), complete(std::move(complete)),
         files(description, runtime::requestOf(this->program)),
         images(
             description,
@@ -46,7 +46,8 @@ public:
               return channelsOfImages(className, member);
             }) {}
 
-  Scene build() {
+  /// All of a scene.
+  void build() {
     attempt([&] {
       if (description.camera)
         scene.setCamera(add(*description.camera, "camera"));
@@ -59,21 +60,7 @@ public:
     scene.setLampChoice(description.lampChoice);
     if (description.shutter)
       scene.setShutter((*description.shutter)[0], (*description.shutter)[1]);
-    // Named objects are created in the order of their names, after those that they refer to. With
-    // variables, what is used below a node is another object than what is used elsewhere.
-    if (!variables.any())
-      addNamed();
-    addSelectors();
-    for (std::size_t i = 0; i < description.objects.size(); ++i)
-      attempt([&] { addGeometry(description.objects[i], i); });
-    variables.leaveNodes();
-    if (variables.any())
-      addNamed();
-    for (std::size_t i = 0; i < description.lights.size(); ++i)
-      attempt([&] {
-        const ObjectDescription &light = description.lights[i];
-        scene.addLight(add(light, fmt::format("{} (lights.{})", light.className.text, i)));
-      });
+    addContents();
     attempt([&] {
       if (description.background)
         scene.setBackground(add(*description.background, "background"));
@@ -91,15 +78,50 @@ public:
       if (description.ambient)
         setColor(*description.ambient, [&](const auto &color) { scene.setAmbient(color); });
     });
+    finish();
+  }
+
+  /// Of a part, which leaves the settings of the scene as they are.
+  AddedPart buildPart() {
+    AddedPart part;
+    attempt([&] {
+      if (description.camera)
+        part.camera = add(*description.camera, "camera");
+    });
+    added = &part.instances;
+    addContents();
+    finish();
+    return part;
+  }
+
+private:
+  /// Objects with names, geometry and lights.
+  void addContents() {
+    // Named objects are created in the order of their names, after those that they refer to. With
+    // variables, what is used below a node is another object than what is used elsewhere.
+    if (!variables.any())
+      addNamed();
+    addSelectors();
+    for (std::size_t i = 0; i < description.objects.size(); ++i)
+      attempt([&] { addGeometry(description.objects[i], i); });
+    variables.leaveNodes();
+    if (variables.any())
+      addNamed();
+    for (std::size_t i = 0; i < description.lights.size(); ++i)
+      attempt([&] {
+        const ObjectDescription &light = description.lights[i];
+        scene.addLight(add(light, fmt::format("{} (lights.{})", light.className.text, i)));
+      });
+  }
+
+  void finish() {
     errors.throwIfAny();
     for (const Warning &warning : description.warnings)
       scene.addWarning(warning);
     for (const Warning &warning : variables.warnings())
       scene.addWarning(warning);
-    return std::move(scene);
   }
 
-private:
   /// The ray generations of all passes; the scene has that of the first.
   void addPasses() {
     std::vector<RtslRef> added;
@@ -187,6 +209,8 @@ private:
                 {member.name, outputOf(member, name, *launch, object.place), object.place});
           });
     ofMembers.throwIfAny();
+    if (complete)
+      complete(object.className.text, values);
     if (classInfo && leavesOut(*classInfo, values))
       values.variablePlaces = variablePlaces.of(object);
     return scene.addObject(object.className.text, values, name);
@@ -465,19 +489,32 @@ private:
       if (isFirst && !geometry.primitive)
         number = mesh(geometry);
       isFirst = false;
-      runtime::Placement placement = instance;
-      placement.selection = selectionOf(instance.selector, instance.childOfSelector);
       try {
-        if (primitive)
-          scene.addPrimitive(primitive, material, placement, number);
-        else
-          scene.addMeshInstance(number, material, placement);
+        place(instance, primitive, material, number);
       } catch (Error &error) {
         if (!error.place)
           error.place = geometry.place;
         throw;
       }
     }
+  }
+
+  /// `primitive` 0: an instance of mesh `number`; otherwise one of `number` primitives.
+  void place(const InstanceDescription &instance, RtslRef primitive, RtslRef material,
+             std::uint32_t number) {
+    runtime::Placement placement = instance;
+    placement.selection = selectionOf(instance.selector, instance.childOfSelector);
+    if (added) {
+      const InstanceDescription &above = description.above;
+      placement.roots = above.roots;
+      placement.mask &= above.mask;
+      placement.selection = above.selection;
+    }
+    const std::uint32_t made = primitive
+                                   ? scene.addPrimitive(primitive, material, placement, number)
+                                   : scene.addMeshInstance(number, material, placement);
+    if (added)
+      added->push_back({made, *instance.inPart});
   }
 
   /// The error is at `name`, which refers to the object.
@@ -573,7 +610,9 @@ private:
   Variables variables;
   VariablePlaces variablePlaces;
   NamedBuffers &buffers;
-  Scene scene;
+  Scene &scene;
+  const ValueCompletion complete;
+  std::vector<PartInstance> *added = nullptr;                       // of a part
   std::map<std::pair<std::string, Variables::Taken>, RtslRef> made; // 0: being created
   std::map<std::pair<const ObjectDescription *, Variables::Taken>, RtslRef> inPlaces;
   std::vector<std::uint32_t> selections; // of child 0, by selector
@@ -594,7 +633,14 @@ Scene buildScene(const SceneDescription &description, std::shared_ptr<const Prog
 
 Scene buildScene(const SceneDescription &description, std::shared_ptr<const Program> program,
                  NamedBuffers &buffers) {
-  return SceneBuilder(description, std::move(program), buffers).build();
+  Scene scene(std::move(program));
+  SceneBuilder(description, scene, buffers).build();
+  return scene;
+}
+
+AddedPart addPart(const SceneDescription &part, Scene &scene, ValueCompletion complete) {
+  NamedBuffers buffers;
+  return SceneBuilder(part, scene, buffers, std::move(complete)).buildPart();
 }
 
 } // namespace rtsl::scene

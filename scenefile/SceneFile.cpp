@@ -37,7 +37,8 @@ public:
   SceneReader(const JsonValue &root, SceneDescription &scene, ErrorCollector errors)
       : root(root), scene(scene), errors(std::move(errors)) {}
 
-  void read() {
+  /// `isPart`: it need not have a camera or a ray generation.
+  void read(bool isPart = false) {
     expect(root, Kind::Object, "a scene");
     checkVersion(root);
     errors.attempt([&] {
@@ -81,7 +82,8 @@ public:
       if (const JsonValue *render = root.find("render"))
         readRender(*render);
       readPasses();
-      requireStart();
+      if (!isPart)
+        requireStart();
       if (libraryEngine)
         useLibraryEngine(scene, *libraryEngine);
     });
@@ -579,6 +581,14 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
   expandModels(*root, scene, errors);
   SceneReader(*root, scene, std::move(errors)).read();
   return scene;
+}
+
+SceneDescription readPart(std::shared_ptr<JsonValue> root, SceneDescription part) {
+  ErrorCollector errors;
+  expandModels(*root, part, errors);
+  SceneReader(*root, part, std::move(errors)).read(true);
+  part.root = std::move(root);
+  return part;
 }
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides,

@@ -23,6 +23,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -98,6 +99,8 @@ struct SelectorDescription {
 
 struct InstanceDescription : runtime::Placement {
   const VariableScope *scope = nullptr;
+  /// Of a part (ModelPart.h): to the space that the part is added to; otherwise null.
+  std::shared_ptr<const runtime::MovingTransform> inPart;
   std::size_t selector = 0; // 1 + the index of the selector above it; 0: none
   std::uint32_t childOfSelector = 0;
 };
@@ -176,6 +179,7 @@ struct SceneDescription {
   // the first is that of the scene, above all nodes
   std::vector<std::shared_ptr<VariableScope>> scopes{std::make_shared<VariableScope>()};
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
+  InstanceDescription above; // of a part (ModelPart.h): what is above its root
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class
   std::optional<ObjectDescription> exception;  // an rt_Exception class
@@ -204,6 +208,10 @@ SceneDescription readSceneFile(const std::string &path,
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides = {},
                             std::shared_ptr<KeptFiles> kept = nullptr);
+
+/// The same for a part of a scene (ModelPart.h), which need not have a camera. `part` has what is
+/// above it, and may have models that are open.
+SceneDescription readPart(std::shared_ptr<JsonValue> root, SceneDescription part);
 
 /// The files that the scene reads besides shaders, each once: scene files that it includes, meshes,
 /// images, buffers.
@@ -252,6 +260,26 @@ struct NamedBuffers {
   };
   std::map<std::string, Buffer> made;
 };
+
+/// An instance that is part of a scene, by its number there.
+struct PartInstance {
+  std::uint32_t number;
+  runtime::MovingTransform inPart; // as InstanceDescription::inPart
+};
+
+/// What a part has become.
+struct AddedPart {
+  RtslRef camera = 0;
+  std::vector<PartInstance> instances;
+};
+
+/// Adds values to those of an object of a class that is about to be created, such as variables of
+/// nodes above it.
+using ValueCompletion = std::function<void(const std::string &className, runtime::ObjectValues &)>;
+
+/// Adds the objects, instances, lights and camera of a part to a scene. Throws what buildScene
+/// throws; what was added until then stays.
+AddedPart addPart(const SceneDescription &part, runtime::Scene &scene, ValueCompletion complete);
 
 /// Loads the meshes, creates the objects and checks all names and types against the program.
 /// An output buffer of the ray generation that is not set gets the size of the launch. A scene with

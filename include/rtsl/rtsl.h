@@ -85,6 +85,29 @@ int rtslUnmapBuffer(RtslScene *scene, RtslBufferNumber buffer);
 int rtslMemberBuffer(RtslScene *scene, const char *member, RtslBufferNumber buffer,
                      const uint32_t *sizes, uint32_t dimensions);
 
+/* What of a file a buffer is; what does not fit its format is an error. Null and 0: all of it. */
+typedef struct RtslBufferFile {
+  const char *element;        /* of a .ply: whose columns; null: "vertex" */
+  const char *const *columns; /* of a .csv or .ply, by name */
+  uint32_t columnCount;
+  const uint32_t *shape; /* of a file without a format: the size of each dimension */
+  uint32_t dimensions;
+} RtslBufferFile;
+/* Reads a file (.npy, columns of .csv or .ply, or elements as they lie in memory) for a member of a
+ * class, with whose type its numbers must agree. Gives the sizes for rtslMemberBuffer, of as many
+ * dimensions as the member has; the others are 1. `file` null: all of it. */
+RtslBufferNumber rtslSceneLoadBuffer(RtslScene *scene, const char *path, const char *className,
+                                     const char *member, const RtslBufferFile *file,
+                                     uint32_t sizes[3]);
+
+/* The numbers at a frame of values that change from frame to frame, for whatever takes numbers:
+ * `count` for each of `keys` >= 1 keys, whose `frames` ascend. Outside of them they are those of
+ * the first or last key; between two keys they are interpolated, or, with RTSL_STEP_FRAMES, those
+ * of the key before. */
+typedef enum RtslInterpolation { RTSL_LINEAR_FRAMES, RTSL_STEP_FRAMES } RtslInterpolation;
+int rtslAtFrame(double frame, const double *frames, const double *numbers, uint32_t keys,
+                size_t count, RtslInterpolation interpolation, double *result);
+
 /* How images are read: as a scene file says with the same names (docs/scene-format.md). */
 typedef enum RtslFilter {
   RTSL_NEAREST,
@@ -107,7 +130,27 @@ RtslSampling rtslSamplingDefaults(void);
  * sampler3D of one or more slices, from front to back. `sampling` null: the defaults. */
 RtslObject rtslSceneAddImage(RtslScene *scene, const char *const *files, size_t count, int isVolume,
                              const RtslSampling *sampling);
-/* The same of linear numbers in memory, which are copied: `channels` (1, 2 or 4) side by side, rows
+/* The same of an image in a glTF file, such as "images.0". */
+RtslObject rtslSceneAddImagePart(RtslScene *scene, const char *path, const char *part,
+                                 const RtslSampling *sampling);
+/* Texels without a file format: `channels` (1, 2 or 4) side by side, little-endian, rows from the
+ * bottom, slices from the front; they are linear. `depth` 0: a sampler2D. */
+typedef enum RtslTexelFormat {
+  RTSL_UNORM8,
+  RTSL_UNORM16,
+  RTSL_FLOAT16,
+  RTSL_FLOAT32
+} RtslTexelFormat;
+typedef struct RtslTexelShape {
+  RtslTexelFormat format;
+  uint32_t width, height, depth, channels;
+} RtslTexelShape;
+/* An image of such a file, which must be as long as its shape; and of memory, which is copied. */
+RtslObject rtslSceneAddRawImage(RtslScene *scene, const char *file, const RtslTexelShape *shape,
+                                const RtslSampling *sampling);
+RtslObject rtslSceneAddRawTexels(RtslScene *scene, const void *texels, const RtslTexelShape *shape,
+                                 const RtslSampling *sampling);
+/* The same of floats in memory, which are copied: `channels` (1, 2 or 4) side by side, rows
  * from the bottom, slices from the front; `depth` 0: a sampler2D. */
 RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t width,
                               uint32_t height, uint32_t depth, uint32_t channels,
@@ -201,6 +244,22 @@ int32_t rtslSceneLoadMeshPart(RtslScene *scene, const char *path, const char *pa
 int32_t rtslSceneLoadMovingMeshPart(RtslScene *scene, const char *path, const char *part,
                                     const double *weights, size_t targets, const float *times,
                                     uint32_t count);
+/* A model: the meshes, materials and lights of a glTF file, or of an OBJ file with its MTL files,
+ * as instances where rtslPlace and its like, rtslMark and rtslSetRoots say, below the node that is
+ * entered. Its materials are classes of the library (rtslSceneLoad lists them). The nodes of the
+ * file move while the shutter is open if rtslSceneSetShutter was called before. Lights stay where
+ * they are when a node is moved. If it fails, the scene may have a part of the model. */
+typedef struct RtslAnimation {
+  const char *name;       /* null: the first one of the file */
+  double framesPerSecond; /* 0: 24 */
+  double frame;
+} RtslAnimation;
+/* `animation` null: the first one at frame 0. */
+int rtslSceneAddModel(RtslScene *scene, const char *path, const RtslAnimation *animation);
+/* A camera of a model, by its name (null: the first), for rtslSceneSetCamera, in the space that
+ * rtslPlace and the nodes that are entered give. */
+RtslObject rtslSceneAddModelCamera(RtslScene *scene, const char *path, const char *name,
+                                   const RtslAnimation *animation);
 /* Another instance of a mesh: of rtslSceneLoadMesh's, or of the n-th that was added, from 0. */
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material);
 
@@ -219,12 +278,17 @@ int rtslUnmapVertices(RtslScene *scene, int32_t mesh);
 /* The first object of this name: an image, texture, material or helper of a scene file, or of the
  * class, if it was created without a name. */
 RtslObject rtslSceneFind(const RtslScene *scene, const char *name);
-/* Sets a public member of an object that exists, but of no primitive. */
+/* Sets a public member of an object that exists. Bounds of primitives are computed anew; if they
+ * are wrong, it fails and the member stays as it was. */
 int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const double *numbers,
                   size_t count);
 int rtslSetMemberObject(RtslScene *scene, RtslObject object, const char *member, RtslObject value);
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light);
+/* Creates and adds a light whose points and directions (rtslMember) are in the space of rtslPlace
+ * and the node that is entered: a DistantLight, PointLight, RectangleLight or SpotLight of the
+ * library. It stays where it is when the node is moved. */
+RtslObject rtslSceneAddNodeLight(RtslScene *scene, const char *className);
 /* How `illuminate(P)` chooses one of the surfaces that shine: by power, by a light tree, or by a
  * tree where there are many; RTSL_LIGHTS_AUTO unless it is set. */
 typedef enum RtslLightSampler {

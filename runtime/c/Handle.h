@@ -25,11 +25,14 @@ struct RtslScene {
   std::vector<rtsl::runtime::NamedValue> arguments, members; // of the next object
   rtsl::runtime::Placement placement;                        // of the next instance
   std::uint32_t roots = 1;                                   // of the next instances
+  bool hasShutter = false;                                   // it opens and closes
   bool areBarycentric = false; // the texture coordinates of the next meshes
   std::vector<rtsl::runtime::NamedAttribute> attributes; // of the next mesh
 
   /// The placement of the instance that is being added; the one after it has none.
   rtsl::runtime::Placement takePlacement();
+  /// The glTF and OBJ files that were opened.
+  const std::shared_ptr<rtsl::scene::ModelFiles> &openModels();
   /// What of the files of meshes the shaders read.
   rtsl::runtime::MeshRequest meshRequest() const;
   rtsl::runtime::Mesh loadMesh(const char *path) const;

@@ -2,10 +2,12 @@
 #include "runtime/c/Handle.h"
 #include "runtime/image/Texels.h"
 #include "runtime/scene/Samplers.h"
+#include "scenefile/Models.h"
+#include "scenefile/gltf/Textures.h"
 #include "support/ErrorMessages.h"
 
 #include <algorithm>
-#include <cstring>
+#include <iterator>
 
 namespace runtime = rtsl::runtime;
 using rtsl::c::guarded;
@@ -40,6 +42,25 @@ RtslObject addImage(RtslScene *scene, runtime::Texels texels, const RtslSampling
       runtime::samplerValues(std::move(texels), sampling, isVolume, isRead("directionChances")));
 }
 
+/// Texels of a shape, without their words.
+runtime::Texels texelsOf(const RtslTexelShape &shape) {
+  constexpr runtime::TexelFormat formats[] = {
+      runtime::TexelFormat::Unorm8, runtime::TexelFormat::Unorm16, runtime::TexelFormat::Float16,
+      runtime::TexelFormat::Float32};
+  if (unsigned(shape.format) >= std::size(formats))
+    throw rtsl::Error(rtsl::message::noTexelFormatNumbered(unsigned(shape.format)));
+  const std::uint32_t channels = shape.channels;
+  if (shape.width < 1 || shape.height < 1 || (channels != 1 && channels != 2 && channels != 4))
+    throw rtsl::Error(rtsl::message::texelShape(shape.width, shape.height, channels));
+  runtime::Texels texels;
+  texels.format = formats[shape.format];
+  texels.width = shape.width;
+  texels.height = shape.height;
+  texels.depth = std::max(shape.depth, 1u);
+  texels.channels = channels;
+  return texels;
+}
+
 } // namespace
 
 extern "C" {
@@ -63,25 +84,37 @@ RtslObject rtslSceneAddImage(RtslScene *scene, const char *const *files, size_t 
   });
 }
 
+RtslObject rtslSceneAddImagePart(RtslScene *scene, const char *path, const char *part,
+                                 const RtslSampling *sampling) {
+  return guarded<RtslObject>(0, [&] {
+    const RtslSampling given = sampling ? *sampling : rtslSamplingDefaults();
+    const runtime::Pixels pixels = rtsl::scene::gltf::readImage(
+        scene->openModels()->open(path), part, static_cast<runtime::ColorSpace>(given.colorSpace));
+    return addImage(scene, runtime::texelsOf({pixels}), given, false);
+  });
+}
+
+RtslObject rtslSceneAddRawImage(RtslScene *scene, const char *file, const RtslTexelShape *shape,
+                                const RtslSampling *sampling) {
+  return guarded<RtslObject>(0, [&] {
+    return addImage(scene, runtime::readRawTexels(file, texelsOf(*shape)),
+                    sampling ? *sampling : rtslSamplingDefaults(), shape->depth != 0);
+  });
+}
+
+RtslObject rtslSceneAddRawTexels(RtslScene *scene, const void *texels, const RtslTexelShape *shape,
+                                 const RtslSampling *sampling) {
+  return guarded<RtslObject>(0, [&] {
+    return addImage(scene, runtime::texelsOfBytes(texels, texelsOf(*shape)),
+                    sampling ? *sampling : rtslSamplingDefaults(), shape->depth != 0);
+  });
+}
+
 RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t width,
                               uint32_t height, uint32_t depth, uint32_t channels,
                               const RtslSampling *sampling) {
-  return guarded<RtslObject>(0, [&] {
-    if (width < 1 || height < 1 || (channels != 1 && channels != 2 && channels != 4))
-      throw rtsl::Error(rtsl::message::texelShape(width, height, channels));
-    runtime::Texels texels;
-    texels.width = width;
-    texels.height = height;
-    texels.depth = std::max(depth, 1u);
-    texels.channels = channels;
-    const double words = double(width) * height * texels.depth * channels;
-    if (words > 2147483647)
-      throw rtsl::Error(rtsl::message::texelsTooMany(width, height, texels.depth));
-    texels.words.resize(std::size_t(words));
-    std::memcpy(texels.words.data(), numbers, 4 * texels.words.size());
-    return addImage(scene, std::move(texels), sampling ? *sampling : rtslSamplingDefaults(),
-                    depth != 0);
-  });
+  const RtslTexelShape shape = {RTSL_FLOAT32, width, height, depth, channels};
+  return rtslSceneAddRawTexels(scene, numbers, &shape, sampling);
 }
 
 } // extern "C"

@@ -16,14 +16,18 @@ namespace runtime = rtsl::runtime;
 namespace gltf = rtsl::scene::gltf;
 using rtsl::c::guarded;
 
+const std::shared_ptr<rtsl::scene::ModelFiles> &RtslScene::openModels() {
+  if (!models)
+    models = std::make_shared<rtsl::scene::ModelFiles>();
+  return models;
+}
+
 namespace {
 
 /// The mesh of a primitive, with these weights of its morph targets; none: all are 0.
 runtime::Mesh loadPart(RtslScene &scene, const std::string &path, const std::string &part,
                        std::vector<double> weights) {
-  if (!scene.models)
-    scene.models = std::make_shared<rtsl::scene::ModelFiles>();
-  const gltf::File &file = scene.models->open(path);
+  const gltf::File &file = scene.openModels()->open(path);
   const std::size_t targets =
       gltf::targetCount(gltf::primitiveOf(file, part, rtsl::Place{path}), part);
   if (!weights.empty() && weights.size() != targets)

@@ -128,6 +128,7 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
 int rtslSceneSetShutter(RtslScene *scene, float open, float close) {
   return guarded(0, [&] {
     scene->scene.setShutter(open, close);
+    scene->hasShutter = true;
     return 1;
   });
 }

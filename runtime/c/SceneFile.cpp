@@ -1,5 +1,5 @@
 //===- SceneFile.cpp - scenes of scene files, for C -----------------------===//
-#include "scenefile/SceneFile.h"
+#include "runtime/c/SceneFile.h"
 #include "runtime/c/Handle.h"
 #include "support/ErrorMessages.h"
 
@@ -14,12 +14,11 @@ namespace runtime = rtsl::runtime;
 namespace scene = rtsl::scene;
 using rtsl::c::guarded;
 
-namespace {
+namespace rtsl::c {
 
-/// The errors of a file, each with its place, one a line.
-rtsl::Error inLines(const rtsl::Error &error) {
+Error inLines(const Error &error) {
   std::string lines;
-  const auto add = [&](const rtsl::Error &one) {
+  const auto add = [&](const Error &one) {
     const bool hasLine = one.place && one.place->line != 0;
     lines += lines.empty() ? "" : "\n";
     lines += hasLine ? fmt::format("{}:{}:{}: {}", one.place->file, one.place->line,
@@ -27,23 +26,11 @@ rtsl::Error inLines(const rtsl::Error &error) {
                      : one.what();
   };
   add(error);
-  for (const rtsl::Error &further : error.further)
+  for (const Error &further : error.further)
     add(further);
-  return rtsl::Error(rtsl::Message{error.code, lines});
+  return Error(Message{error.code, lines});
 }
 
-RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
-  return {render.width,
-          render.height / render.slices,
-          render.samplesPerPixel,
-          render.depth,
-          render.seed,
-          0,
-          render.slices};
-}
-
-/// The modules of the library with classes that the scene has objects of, such as those that the
-/// materials of its models become, and the shaders do not have.
 void requireLibraryClasses(const scene::SceneDescription &description,
                            const runtime::Program &program) {
   std::vector<std::string> missing;
@@ -57,7 +44,21 @@ void requireLibraryClasses(const scene::SceneDescription &description,
   std::sort(missing.begin(), missing.end());
   missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
   if (!missing.empty())
-    throw rtsl::Error(rtsl::message::libraryClassesMissing(fmt::join(missing, "`, `")));
+    throw Error(message::libraryClassesMissing(fmt::join(missing, "`, `")));
+}
+
+} // namespace rtsl::c
+
+namespace {
+
+RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
+  return {render.width,
+          render.height / render.slices,
+          render.samplesPerPixel,
+          render.depth,
+          render.seed,
+          0,
+          render.slices};
 }
 
 /// What a file gives with these settings.
@@ -66,10 +67,11 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
   try {
     const scene::SceneDescription description =
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
-    requireLibraryClasses(description, *program);
+    rtsl::c::requireLibraryClasses(description, *program);
     RtslScene made(scene::buildScene(description, program));
     made.file = file;
     made.program = program;
+    made.hasShutter = description.shutter.has_value();
     const std::size_t launches = scene::launchCount(description);
     for (std::size_t i = 0; i < launches; ++i) {
       scene::RenderSettings render = scene::launchOf(description, i).render;
@@ -80,7 +82,7 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
     made.ofFile = made.passes.front();
     return made;
   } catch (const rtsl::Error &error) {
-    throw inLines(error);
+    throw rtsl::c::inLines(error);
   }
 }
 

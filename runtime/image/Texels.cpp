@@ -31,8 +31,13 @@ std::uint32_t bitsOf(TexelFormat format, bool isOne) {
   return 0;
 }
 
-/// Sets the size of the words. Indices of texels and words are `int` in RTSL.
-void allocate(Texels &texels) {
+std::size_t byteCountOf(const Texels &shape) {
+  return std::size_t(shape.width) * shape.height * shape.depth * shape.channels *
+         bytesOf(shape.format);
+}
+
+/// Indices of texels and words are `int` in RTSL. Throws OutOfRange if there are more.
+std::uint64_t wordCountOf(const Texels &texels) {
   constexpr std::uint64_t most = 0x7fffffff;
   const std::uint64_t rows = std::uint64_t(texels.height) * texels.depth;
   const bool isTooLarge = rows > most / texels.width;
@@ -40,7 +45,12 @@ void allocate(Texels &texels) {
   const std::uint64_t words = (count * texels.channels * bytesOf(texels.format) + 3) / 4;
   if (isTooLarge || words > most)
     throw Error(message::texelsTooMany(texels.width, texels.height, texels.depth));
-  texels.words.assign(words, 0);
+  return words;
+}
+
+/// Sets the size of the words.
+void allocate(Texels &texels) {
+  texels.words.assign(wordCountOf(texels), 0);
 }
 
 /// Copies a row of pixels, which may have fewer or more channels than the texels.
@@ -98,16 +108,20 @@ Texels texelsOf(const std::vector<Pixels> &slices) {
   return texels;
 }
 
-Texels readRawTexels(const std::string &path, Texels shape) {
+Texels texelsOfBytes(const void *bytes, Texels shape) {
   allocate(shape);
+  std::memcpy(shape.words.data(), bytes, byteCountOf(shape));
+  return shape;
+}
+
+Texels readRawTexels(const std::string &path, Texels shape) {
+  wordCountOf(shape); // before the file is read
   const std::string bytes = readFile(path);
-  const std::size_t expected = std::size_t(shape.width) * shape.height * shape.depth *
-                               shape.channels * bytesOf(shape.format);
+  const std::size_t expected = byteCountOf(shape);
   if (bytes.size() != expected)
     throw Error(message::rawImageSize(path, bytes.size(), shape.width, shape.height, shape.depth,
                                       shape.channels * bytesOf(shape.format), expected));
-  std::memcpy(shape.words.data(), bytes.data(), bytes.size());
-  return shape;
+  return texelsOfBytes(bytes.data(), std::move(shape));
 }
 
 std::size_t dropNotFinite(Texels &texels) {

@@ -64,6 +64,17 @@ Bounds boundsOfOne(const Objects &objects, RtslRef primitive, const RtslLaunch &
   return box;
 }
 
+Bounds boundsOfAll(const std::vector<RtslBox> &boxes) {
+  constexpr float inf = std::numeric_limits<float>::infinity();
+  Bounds all{{inf, inf, inf}, {-inf, -inf, -inf}};
+  for (const RtslBox &box : boxes)
+    for (int axis = 0; axis < 3; ++axis) {
+      all.lower[axis] = std::min(all.lower[axis], box.lower[axis]);
+      all.upper[axis] = std::max(all.upper[axis], box.upper[axis]);
+    }
+  return all;
+}
+
 } // namespace
 
 void Geometry::setShutter(float open, float close) {
@@ -176,13 +187,18 @@ std::uint32_t Geometry::addPrimitive(const Objects &objects, RtslRef primitive, 
     instance.mesh = set.number;
     given = set.bounds;
   }
+  setPrimitiveBounds(instance, given, placement.transform);
+  return addInstance(objects, instance, info.name, instance.transform != 0 ? 1 : count);
+}
+
+void Geometry::setPrimitiveBounds(RtslInstance &instance, const Bounds &given,
+                                  const MovingTransform &transform) const {
   std::copy_n(given.lower, 3, instance.boundMin);
   std::copy_n(given.upper, 3, instance.boundMax);
   if (instance.transform != 0)
-    setWorldBounds(instance, given, placement.transform, shutterOpen, shutterClose);
+    setWorldBounds(instance, given, transform, shutterOpen, shutterClose);
   else
     setWorldBounds(instance, given);
-  return addInstance(objects, instance, info.name, instance.transform != 0 ? 1 : count);
 }
 
 const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, RtslRef primitive,
@@ -198,25 +214,48 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
   }
   if (count > 0x7fffffffu - boxes.size())
     throw Error(message::tooManyPrimitives(), info.place);
-  const std::vector<RtslBox> all = computeBounds(objects, primitive, count, launch());
-  constexpr float inf = std::numeric_limits<float>::infinity();
-  PrimitiveSet set{std::uint32_t(boxes.size()),
-                   count,
-                   std::uint32_t(sets.size()),
-                   {{inf, inf, inf}, {-inf, -inf, -inf}}};
-  std::uint32_t flat = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    flat += !checkBounds(all[i], info,
-                         [&] { return fmt::format("primitive {} of `{}`", i, info.name); });
-    for (int axis = 0; axis < 3; ++axis) {
-      set.bounds.lower[axis] = std::min(set.bounds.lower[axis], all[i].lower[axis]);
-      set.bounds.upper[axis] = std::max(set.bounds.upper[axis], all[i].upper[axis]);
-    }
-  }
-  if (flat != 0)
-    warnings.push_back({message::invisiblePrimitives(flat, count, info.name), info.place});
+  const std::vector<RtslBox> all = boxesOf(objects, primitive, count, launch, warnings);
+  const PrimitiveSet set{std::uint32_t(boxes.size()), count, std::uint32_t(sets.size()),
+                         boundsOfAll(all)};
   boxes.insert(boxes.end(), all.begin(), all.end());
   return sets.emplace(primitive, set).first->second;
+}
+
+std::vector<RtslBox> Geometry::boxesOf(const Objects &objects, RtslRef primitive,
+                                       std::uint32_t count,
+                                       const std::function<RtslLaunch()> &launch,
+                                       std::vector<Warning> &warnings) {
+  const Objects::Object &info = objects.at(primitive);
+  std::vector<RtslBox> all = computeBounds(objects, primitive, count, launch());
+  std::uint32_t flat = 0;
+  for (std::uint32_t i = 0; i < count; ++i)
+    flat += !checkBounds(all[i], info,
+                         [&] { return fmt::format("primitive {} of `{}`", i, info.name); });
+  if (flat != 0)
+    warnings.push_back({message::invisiblePrimitives(flat, count, info.name), info.place});
+  return all;
+}
+
+void Geometry::updatePrimitive(const Objects &objects, RtslRef primitive,
+                               const std::function<RtslLaunch()> &launch,
+                               std::vector<Warning> &warnings) {
+  const auto isOf = [&](const RtslInstance &instance) { return instance.primitive == primitive; };
+  const auto first = std::find_if(instances.begin(), instances.end(), isOf);
+  if (first == instances.end())
+    return;
+  Bounds given;
+  if (first->boxCount == 0) {
+    given = boundsOfOne(objects, primitive, launch(), warnings);
+  } else {
+    PrimitiveSet &set = sets.at(primitive);
+    const std::vector<RtslBox> all = boxesOf(objects, primitive, set.count, launch, warnings);
+    std::copy(all.begin(), all.end(), boxes.begin() + set.firstBox);
+    given = set.bounds = boundsOfAll(all);
+  }
+  for (auto instance = first; instance != instances.end(); ++instance)
+    if (isOf(*instance))
+      setPrimitiveBounds(*instance, given, transformOf(*instance));
+  ++primitivesChanged;
 }
 
 std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,

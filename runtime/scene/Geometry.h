@@ -31,6 +31,10 @@ public:
                              const Placement &placement, std::uint32_t count,
                              const std::function<RtslLaunch()> &launch,
                              std::vector<Warning> &warnings);
+  /// After a member of a primitive has changed: what `computeBounds` says now, for all instances of
+  /// it. Throws DegenerateGeometry, and leaves bounds as they were.
+  void updatePrimitive(const Objects &objects, RtslRef primitive,
+                       const std::function<RtslLaunch()> &launch, std::vector<Warning> &warnings);
   /// Scene::addSelector.
   std::uint32_t addSelector(const Objects &objects, RtslRef selector, std::uint32_t children,
                             const MovingTransform &transform, std::uint32_t above);
@@ -48,7 +52,9 @@ public:
   /// Scene::moves, movesOfMesh and structure.
   std::uint64_t allMoves() const { return moves; }
   std::uint64_t movesOfMesh(std::uint32_t mesh) const { return meshes.at(mesh)->moves; }
-  std::uint64_t structure() const { return instances.size() + (transformsGained << 32); }
+  std::uint64_t structure() const {
+    return instances.size() + ((transformsGained + primitivesChanged) << 32);
+  }
 
   /// Called after Objects::useProgram: updates RtslInstance::needs, and drops what of meshes
   /// no material reads, unless the program keeps them.
@@ -88,6 +94,9 @@ private:
   const Bounds &meshBounds(std::uint32_t mesh);
   /// Of an instance that has a transform, which moves or is as it is stored.
   void setBounds(RtslInstance &instance, const MovingTransform &transform);
+  /// Of an instance of primitives. `given`: in their own space.
+  void setPrimitiveBounds(RtslInstance &instance, const Bounds &given,
+                          const MovingTransform &transform) const;
   MovingTransform transformOf(const RtslInstance &instance) const;
   /// Sets RtslMesh::attributes for those in `wanted`.
   void setValues(std::uint32_t mesh, const Program &program, std::uint32_t wanted);
@@ -98,6 +107,11 @@ private:
     std::uint32_t number; // in the order of their addition
     Bounds bounds;        // of all
   };
+  /// The boxes of an object's primitives, checked.
+  static std::vector<RtslBox> boxesOf(const Objects &objects, RtslRef primitive,
+                                      std::uint32_t count,
+                                      const std::function<RtslLaunch()> &launch,
+                                      std::vector<Warning> &warnings);
   const PrimitiveSet &primitiveSet(const Objects &objects, RtslRef primitive, std::uint32_t count,
                                    const std::function<RtslLaunch()> &launch,
                                    std::vector<Warning> &warnings);
@@ -117,7 +131,7 @@ private:
   std::vector<std::string> instanceNames;          // as long
   std::map<std::uint32_t, MovingTransform> moving; // by index in `transforms`
   float shutterOpen = 0, shutterClose = 1;
-  std::uint64_t moves = 0, transformsGained = 0;
+  std::uint64_t moves = 0, transformsGained = 0, primitivesChanged = 0;
   std::uint64_t treeItems = 0;
   std::uint32_t needs = 0;
   std::vector<MeshAttribute> attributes; // for reports

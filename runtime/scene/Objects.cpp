@@ -105,16 +105,20 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
   return object.reference;
 }
 
-void Objects::setMember(RtslRef reference, const NamedValue &value) {
+std::vector<std::uint8_t> Objects::setMember(RtslRef reference, const NamedValue &value) {
   const Object &object = at(reference);
-  if (object.classInfo->root == "rt_Primitive")
-    throw Error(message::memberOfPrimitive(value.name, object.name));
   ObjectValues values;
   values.members.push_back(value);
   const std::size_t size = std::max(object.classInfo->recordSize, 4u);
-  std::vector<std::uint8_t> changed(recordOf(object), recordOf(object) + size);
+  std::vector<std::uint8_t> before(recordOf(object), recordOf(object) + size), changed = before;
   storeMembers(*object.classInfo, object.name, values, changed.data(), storeContext(object));
-  std::copy(changed.begin(), changed.end(), recordOf(object));
+  setRecord(reference, changed);
+  return before;
+}
+
+void Objects::setRecord(RtslRef reference, const std::vector<std::uint8_t> &record) {
+  const Object &object = at(reference);
+  std::copy(record.begin(), record.end(), recordOf(object));
   measureChain(object);
 }
 

@@ -36,8 +36,10 @@ public:
   RtslRef add(const std::string &className, const ObjectValues &values, const std::string &name,
               const std::function<RtslLaunch()> &launch);
 
-  /// Scene::setMember. If it throws, nothing is changed.
-  void setMember(RtslRef reference, const NamedValue &value);
+  /// Scene::setMember. Returns the record as it was, for setRecord. If it throws, nothing is
+  /// changed.
+  std::vector<std::uint8_t> setMember(RtslRef reference, const NamedValue &value);
+  void setRecord(RtslRef reference, const std::vector<std::uint8_t> &record);
 
   struct Object {
     RtslRef reference;

@@ -139,7 +139,15 @@ std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,
 
 void Scene::setMember(RtslRef object, const NamedValue &value) {
   self->emitters.reset();
-  self->objects.setMember(object, value);
+  const std::vector<std::uint8_t> before = self->objects.setMember(object, value);
+  try {
+    if (classOf(object).root == "rt_Primitive")
+      self->geometry.updatePrimitive(
+          self->objects, object, [this] { return self->launch(); }, self->warnings);
+  } catch (...) {
+    self->objects.setRecord(object, before);
+    throw;
+  }
 }
 
 void Scene::moveInstance(std::uint32_t instance, const MovingTransform &transform) {

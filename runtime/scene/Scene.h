@@ -76,8 +76,8 @@ public:
   std::uint32_t addMeshInstance(std::uint32_t mesh, RtslRef material,
                                 const Placement &placement = {});
 
-  /// Sets a public member of an object that exists. Throws what addObject throws, and NotSettable
-  /// for a primitive's, whose bounds are known already.
+  /// Sets a public member of an object that exists. Bounds of a primitive's instances are computed
+  /// anew. Throws what addObject and addPrimitive throw, and changes nothing then.
   void setMember(RtslRef object, const NamedValue &value);
 
   /// Gives an instance another transform. Bounds are computed anew, and all is checked that is

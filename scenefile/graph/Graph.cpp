@@ -319,7 +319,7 @@ private:
           worst = above.node;
       reportFlat(nodes[node], nodes[worst]);
     };
-    InstanceDescription start;
+    InstanceDescription start = scene.above;
     start.roots = 1u << number;
     start.scope = scene.scopes.front().get();
     enter(roots[number].node, start);
@@ -343,6 +343,8 @@ private:
   /// What the node says of all that is below it.
   void addToWay(const Node &node, InstanceDescription &way) {
     way.transform = node.transform.then(way.transform);
+    if (way.inPart)
+      way.inPart = std::make_shared<const MovingTransform>(node.transform.then(*way.inPart));
     if (node.id)
       way.id = *node.id;
     if (!node.variables.empty())

@@ -15,13 +15,6 @@ using runtime::Transform;
 
 namespace {
 
-/// A member of the type vec3, and its default.
-struct SpatialMember {
-  const char *name;
-  bool isPoint; // or a direction
-  std::array<double, 3> otherwise;
-};
-
 /// A class of library/std/lights, and its members that a transform changes.
 struct PlaceableLight {
   const char *className;
@@ -38,21 +31,18 @@ const std::vector<PlaceableLight> &placeableLights() {
   return lights;
 }
 
-JsonValue moved(const Place &place, const std::vector<double> &value, const Transform &toWorld,
-                bool isPoint) {
+JsonValue listAt(const Place &place, const std::array<double, 3> &numbers) {
   JsonValue result;
   result.kind = JsonValue::Kind::Array;
   result.file = std::make_shared<const std::string>(place.file);
   result.line = place.line;
   result.column = place.column;
   result.length = place.length;
-  for (std::size_t row = 0; row < 3; ++row) {
+  for (const double one : numbers) {
     JsonValue number = result;
     number.elements.clear();
     number.kind = JsonValue::Kind::Number;
-    number.number = isPoint ? toWorld.columns[3][row] : 0;
-    for (std::size_t column = 0; column < 3; ++column)
-      number.number += toWorld.columns[column][row] * value[column];
+    number.number = one;
     result.elements.push_back(std::move(number));
   }
   return result;
@@ -60,15 +50,30 @@ JsonValue moved(const Place &place, const std::vector<double> &value, const Tran
 
 } // namespace
 
-void requirePlaceable(const LocatedName &className) {
+std::array<double, 3> SpatialMember::moved(const std::vector<double> &value,
+                                           const Transform &toWorld) const {
+  std::array<double, 3> result{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    result[row] = isPoint ? toWorld.columns[3][row] : 0;
+    for (std::size_t column = 0; column < 3; ++column)
+      result[row] += toWorld.columns[column][row] * value[column];
+  }
+  return result;
+}
+
+const std::vector<SpatialMember> &spatialMembers(const LocatedName &className) {
   std::vector<std::string> names;
   for (const PlaceableLight &light : placeableLights()) {
     if (className.text == light.className)
-      return;
+      return light.members;
     names.emplace_back(light.className);
   }
   throw Error(message::lightClassNotInNode(className.text, fmt::join(names, "`, `")),
               className.place);
+}
+
+void requirePlaceable(const LocatedName &className) {
+  spatialMembers(className);
 }
 
 ObjectDescription placedLight(const ObjectDescription &light, const runtime::MovingTransform &way,
@@ -76,12 +81,8 @@ ObjectDescription placedLight(const ObjectDescription &light, const runtime::Mov
   if (way.moves())
     throw Error(message::movingLight(), light.place);
   const Transform &toWorld = way.still();
-  const auto &known = placeableLights();
-  const auto &kind = *std::find_if(known.begin(), known.end(), [&](const PlaceableLight &one) {
-    return light.className.text == one.className;
-  });
   ObjectDescription placed = light;
-  for (const SpatialMember &member : kind.members) {
+  for (const SpatialMember &member : spatialMembers(light.className)) {
     auto found = std::find_if(placed.members.begin(), placed.members.end(),
                               [&](const auto &own) { return own.first.text == member.name; });
     if (found == placed.members.end()) {
@@ -93,7 +94,7 @@ ObjectDescription placedLight(const ObjectDescription &light, const runtime::Mov
         found->second ? readNumbers(*found->second, 3, fmt::format("`{}`", member.name))
                       : std::vector<double>(member.otherwise.begin(), member.otherwise.end());
     scene.placedValues.push_back(
-        std::make_shared<JsonValue>(moved(place, value, toWorld, member.isPoint)));
+        std::make_shared<JsonValue>(listAt(place, member.moved(value, toWorld))));
     found->second = scene.placedValues.back().get();
   }
   return placed;

@@ -82,7 +82,7 @@ bool isSame(const JsonValue &a, const JsonValue &b) {
 
 void interpolate(JsonValue &value, const JsonValue &next, double share) {
   if (value.kind == Kind::Number && next.kind == Kind::Number) {
-    value.number += share * (next.number - value.number);
+    value.number = between(value.number, next.number, share);
     value.isInteger = value.isInteger && next.isInteger && value.number == std::floor(value.number);
   } else if (value.kind == Kind::Array && next.kind == Kind::Array) {
     if (value.elements.size() != next.elements.size())
@@ -120,17 +120,25 @@ JsonValue valueAt(const JsonValue &value, double frame) {
       JsonValue between = *keys[i - 1].value;
       interpolate(between, *keys[i].value, 0.5);
     }
-  std::size_t next = 0;
-  while (next < keys.size() && keys[next].frame <= frame)
-    ++next;
-  JsonValue found = *keys[next == 0 ? 0 : next - 1].value;
-  if (!steps && next > 0 && next < keys.size())
-    interpolate(found, *keys[next].value,
-                (frame - keys[next - 1].frame) / (keys[next].frame - keys[next - 1].frame));
+  std::vector<double> frames;
+  for (const Key &key : keys)
+    frames.push_back(key.frame);
+  const FramePlace place = placeAmong(frames, frame);
+  JsonValue found = *keys[place.key].value;
+  if (!steps && place.next != place.key)
+    interpolate(found, *keys[place.next].value, place.share);
   return found;
 }
 
 } // namespace
+
+FramePlace placeAmong(const std::vector<double> &frames, double frame) {
+  const auto after = std::upper_bound(frames.begin(), frames.end(), frame);
+  const auto next = static_cast<std::size_t>(after - frames.begin());
+  if (next == 0 || next == frames.size())
+    return {next == 0 ? 0 : next - 1, next == 0 ? 0 : next - 1, 0};
+  return {next - 1, next, (frame - frames[next - 1]) / (frames[next] - frames[next - 1])};
+}
 
 void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors) {
   for (JsonValue &element : root.elements)

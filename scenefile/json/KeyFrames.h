@@ -4,7 +4,25 @@
 #include "scenefile/json/JsonValue.h"
 #include "support/ErrorCollector.h"
 
+#include <cstddef>
+#include <vector>
+
 namespace rtsl::scene {
+
+/// Where a frame is among keys: at one, or at a share of the way from one to the next.
+struct FramePlace {
+  std::size_t key;
+  std::size_t next; // the same key: there is none to interpolate with
+  double share;
+};
+
+/// `frames` of the keys, which ascend. Before the first and after the last it is at that.
+FramePlace placeAmong(const std::vector<double> &frames, double frame);
+
+/// The number at a share of the way to `next`.
+inline double between(double number, double next, double share) {
+  return number + share * (next - number);
+}
 
 /// Replaces each {"frames": {"0": ..., "24": ...}} in a scene by its value at the frame: that of a
 /// key, interpolated linearly between two, or that of the first or last key outside of them. With

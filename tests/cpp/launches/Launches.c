@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-const RtslShaders *launches_shaders(void);
+#include "Launches.h"
 
 enum { width = 12, height = 9, slices = 2, rays = width * height * slices };
 
-static void need(int good, const char *what) {
+void need(int good, const char *what) {
   if (good)
     return;
   fprintf(stderr, "%s: %s\n", what, rtslError());
@@ -31,7 +31,7 @@ static void place(RtslScene *scene, double scale, double x, double y, double z) 
 /* A scene of two nodes, one in the other, with a ball and a mesh in each, and buffers. */
 typedef struct World {
   RtslScene *scene;
-  RtslObject measure, marked;
+  RtslObject measure, marked, ball, row;
   RtslNode outer, inner;
   RtslBufferNumber steps, found, hits;
   int32_t mesh;
@@ -41,6 +41,7 @@ typedef struct World {
 typedef struct Places {
   double outer, inner, ball; /* along x, y and x */
   float corner;              /* of the mesh */
+  double radius;             /* of primitives */
 } Places;
 
 static World make(const Places *places) {
@@ -50,7 +51,7 @@ static World make(const Places *places) {
   const double from[] = {-3.1, -4.1, 20}, three = 3;
   World world;
   RtslScene *scene = world.scene = rtslSceneCreate(launches_shaders());
-  RtslObject ball, own;
+  RtslObject own;
   need(scene != NULL, "a scene");
   world.steps = rtslSceneAddBuffer(scene, 2);
   world.found = rtslSceneAddBuffer(scene, 2 * rays);
@@ -64,7 +65,10 @@ static World make(const Places *places) {
        "a ray generation");
   need(rtslVariable(scene, "weight", &three, 1), "a variable");
   world.marked = rtslSceneAddObject(scene, "Marked"); /* weight 3 */
-  ball = rtslSceneAddObject(scene, "Ball");
+  number(scene, "radius", places->radius);
+  world.ball = rtslSceneAddObject(scene, "Ball");
+  number(scene, "radius", 0.5 * places->radius);
+  world.row = rtslSceneAddObject(scene, "Row");
   place(scene, 1, places->outer, 0, 0);
   need((world.outer = rtslEnter(scene)) != 0, "a node");
   need(rtslSceneAddTriangles(scene, positions, 4, indices, 2, world.marked), "triangles");
@@ -78,13 +82,14 @@ static World make(const Places *places) {
   number(scene, "mark", 2);
   own = rtslSceneAddObject(scene, "Marked"); /* weight 9 */
   place(scene, 1, places->ball, 0, 0);
-  need(rtslSceneAddPrimitive(scene, ball, own), "a ball");
+  need(rtslSceneAddPrimitive(scene, world.ball, own), "a ball");
   place(scene, 2, 4, 1, 0);
   need(rtslSceneAddMeshInstance(scene, world.mesh, own), "a mesh again");
   need(rtslLeave(scene) && rtslLeave(scene), "leaving");
+  need(rtslSceneAddPrimitives(scene, world.row, 3, world.marked), "a row of balls");
   need(rtslSetRoots(scene, 2), "roots"); /* rays do not see it that enter at root 0 */
   place(scene, 10, 0, 0, 10);
-  need(rtslSceneAddPrimitive(scene, ball, world.marked), "below another root");
+  need(rtslSceneAddPrimitive(scene, world.ball, world.marked), "below another root");
   return world;
 }
 
@@ -117,8 +122,14 @@ static void compare(const World *world, const Places *places, const char *what) 
   rtslSceneDestroy(fresh.scene);
 }
 
+static int setRadius(const World *world, double radius) {
+  const double half = 0.5 * radius;
+  return rtslSetMember(world->scene, world->ball, "radius", &radius, 1) &&
+         rtslSetMember(world->scene, world->row, "radius", &half, 1);
+}
+
 static void changes(void) {
-  Places places = {0.25, 1, -1, 1.5f};
+  Places places = {0.25, 1, -1, 1.5f, 1};
   World world = make(&places);
   float before[2 * rays], *positions;
   const float *found = launch(&world);
@@ -148,6 +159,9 @@ static void changes(void) {
     positions[7] = places.corner;
     need(rtslUnmapVertices(world.scene, world.mesh), "unmapping vertices");
     compare(&world, &places, "after vertices have moved");
+    places.radius = 1.2 - 0.2 * step;
+    need(setRadius(&world, places.radius), "primitives");
+    compare(&world, &places, "after primitives have grown");
   }
   need(memcmp(before, launch(&world), sizeof before) != 0, "something has moved");
   { /* Members: another root, and the weight of marks. */
@@ -166,7 +180,7 @@ static void changes(void) {
 
 /* Two ray generations, one after the other, over one buffer. */
 static void passes(void) {
-  const Places places = {0.25, 1, -1, 1.5f};
+  const Places places = {0.25, 1, -1, 1.5f, 1};
   const uint32_t one[] = {1}, all[] = {slices, height, width};
   const World world = make(&places);
   const float *found = launch(&world);
@@ -319,9 +333,9 @@ static void passesOfFile(void) {
 }
 
 static void mistakes(void) {
-  const Places places = {0, 0, 0, 1};
+  const Places places = {0, 0, 0, 1, 1};
   const uint32_t sizes[] = {3, 1, 1};
-  const double infinite[12] = {HUGE_VAL}, one = 1;
+  const double infinite[12] = {HUGE_VAL}, one = 1, minus = -1;
   const double flat[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
   RtslRenderSettings settings = rtslRenderDefaults();
   World world = make(&places);
@@ -330,12 +344,6 @@ static void mistakes(void) {
   uint32_t found[3];
   const float texel = 1;
   float *positions;
-#define EXPECT_FAILURE(call)                                                                       \
-  if (call) {                                                                                      \
-    fprintf(stderr, "%s succeeds\n", #call);                                                       \
-    exit(1);                                                                                       \
-  }                                                                                                \
-  printf("%s\n", rtslError())
   EXPECT_FAILURE(rtslLeave(scene));
   EXPECT_FAILURE(rtslMapBuffer(scene, 9));
   EXPECT_FAILURE(rtslUnmapBuffer(scene, 0));
@@ -355,6 +363,8 @@ static void mistakes(void) {
   positions[3] = HUGE_VALF;
   EXPECT_FAILURE(rtslUnmapVertices(scene, world.mesh));
   EXPECT_FAILURE(rtslSetMember(scene, world.marked, "wait", &one, 1));
+  EXPECT_FAILURE(rtslSetMember(scene, world.ball, "radius", &minus, 1));
+  EXPECT_FAILURE(rtslSetMember(scene, world.row, "radius", &minus, 1));
   EXPECT_FAILURE(rtslSetMember(scene, 4711, "weight", &one, 1));
   settings.width = 0;
   EXPECT_FAILURE(rtslLaunch(scene, &settings));
@@ -373,6 +383,7 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0.primitives.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneSetLightSampler(scene, (RtslLightSampler)3));
+  mistakesOfSources(scene);
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
   rtslSceneDestroy(scene);
@@ -388,6 +399,7 @@ int main(int count, char **arguments) {
   movingMesh();
   parts();
   passesOfFile();
+  sources();
   mistakes();
   return 0;
 }

@@ -6,6 +6,7 @@ import base64
 import json
 import os
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -32,6 +33,8 @@ WORDS = (
     "the vertices of mesh 0 are mapped",
     "not finite: x of vertex 1",
     "wait",
+    "inverted",
+    "inverted",
     "reference 4711",
     "the width",
     "slices",
@@ -48,6 +51,34 @@ WORDS = (
     "meshes.0",
     "`weights` of `meshes.0.primitives.0` takes 2 numbers, not 1",
     "no light sampler has the number 3",
+    "cannot read `nowhere.npy`",
+    "nothing",
+    "`columns` is for .csv and .ply files",
+    "`linear` of `Sources`",
+    "numbers.raw",
+    "no class is named `Source`",
+    "class `Sources` has no member `arrays`",
+    "texels.raw",
+    "2 x 2 texels of 3 channels",
+    "no format of texels has the number 7",
+    "images.1",
+    "frames of keys ascend: 2 follows 2",
+    "at least one key",
+    "no interpolation has the number 2",
+)
+
+
+WORDS_OF_MODELS = (
+    "nowhere.gltf",
+    "broken.gltf",
+    "Jump",
+    "`fps`",
+    "compile them with `std.materials.Dielectric`",
+    "Back",
+    "a `Emitter` cannot be in a node",
+    "`position` takes 3 numbers, not 2",
+    "a light in a node does not move",
+    "a camera does not move",
 )
 
 
@@ -180,6 +211,68 @@ def write_scenes(folder):
         (folder / name).write_text(json.dumps(document))
 
 
+def write_sources(folder):
+    """What Sources.c reads, and the scenes that say the same."""
+    (folder / "table.csv").write_text("a,b\n1,0.25\n2,-7.5\n")
+    header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }"
+    header = header.ljust(117) + "\n"
+    (folder / "array.npy").write_bytes(
+        b"\x93NUMPY\x01\x00"
+        + struct.pack("<H", len(header))
+        + header.encode()
+        + struct.pack("<2f", 0.1, 1e-9)
+    )
+    (folder / "points.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+        "end_header\n0.3 1\n-0.7 2\n"
+    )
+    (folder / "numbers.raw").write_bytes(struct.pack("<4f", 1.5, 2.5, 3.5, 4.5))
+    (folder / "texels.raw").write_bytes(bytes(range(1, 256, 16)))
+    shutil.copy(f"{source}/examples/bindless/tiles/00.png", folder / "tile.png")
+    model = {"asset": {"version": "2.0"}, "images": [{"uri": "tile.png"}]}
+    (folder / "picture.gltf").write_text(json.dumps(model))
+    start = {
+        "rtsl": 1,
+        "import": [f"{source}/tests/cpp/launches/Launches.rtsl"],
+    }
+
+    def frames(*values, **more):
+        return {"frames": dict(zip(("-2", "1", "4.5"), values, strict=True)), **more}
+
+    (folder / "sources.json").write_text(
+        json.dumps(
+            {
+                **start,
+                "rayGeneration": {
+                    "class": "Sources",
+                    "table": {"buffer": "table.csv", "columns": ["b"]},
+                    "array": {"buffer": "array.npy"},
+                    "points": {"buffer": "points.ply", "element": "vertex", "columns": ["x"]},
+                    "raw": {"buffer": "numbers.raw", "shape": [2, 2]},
+                    "linear": frames([9, 9, 9], [0.1, -5, 1e9], [0.7, 5, -1e-3]),
+                    "stepped": frames(3, 4, 5, interpolate="step"),
+                    "seen": {"size": [12]},
+                },
+                "render": {"engine": "programs", "size": [1, 1], "spp": 1},
+            }
+        )
+    )
+    raw = {"raw": "texels.raw", "size": [2, 2], "format": "unorm8", "channels": 4}
+    for name, picture in (
+        ("raw", {**raw, "filter": "bilinear", "wrap": ["mirror", "repeat"]}),
+        ("part", {"file": "picture.gltf", "part": "images.0"}),
+    ):
+        (folder / f"{name}.json").write_text(
+            json.dumps(
+                {
+                    **start,
+                    "rayGeneration": {"class": "Look", "picture": picture},
+                    "render": {"engine": "programs", "size": [5, 1], "spp": 1},
+                }
+            )
+        )
+
+
 def write_model(folder):
     """An OBJ file with two materials of an MTL file, which are the library's, and a scene with it
     and two lamps."""
@@ -215,6 +308,88 @@ def write_model(folder):
     (folder / "model.json").write_text(json.dumps(scene))
 
 
+def write_built(folder):
+    """The scene that Models.c builds: a model with an animation, a light and a camera, beside the
+    OBJ model, and lights in a node."""
+    numbers = struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 0, 1, -0.5)
+    model = triangle_model()
+    (geometry,) = model["buffers"]
+    data = base64.b64decode(geometry["uri"].split(",")[1]) + numbers
+    start = geometry["byteLength"]
+    geometry["uri"] = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    geometry["byteLength"] = len(data)
+    model["bufferViews"] += [
+        {"buffer": 0, "byteOffset": start, "byteLength": 8},
+        {"buffer": 0, "byteOffset": start + 8, "byteLength": 24},
+    ]
+    model["accessors"] += [
+        {"bufferView": 2, "componentType": 5126, "count": 2, "type": "SCALAR"},
+        {"bufferView": 3, "componentType": 5126, "count": 2, "type": "VEC3"},
+    ]
+    for accessor, limits in ((2, ([0], [1])), (3, ([0, 0, -1], [0, 1, 0]))):
+        model["accessors"][accessor] |= dict(zip(("min", "max"), limits, strict=True))
+    model |= {
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.7, 0.3, 1]}}],
+        "cameras": [
+            {
+                "name": "Front",
+                "type": "perspective",
+                "perspective": {"yfov": 0.8, "aspectRatio": 1.5, "znear": 0.1},
+            }
+        ],
+        "extensionsUsed": ["KHR_lights_punctual"],
+        "extensions": {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5}]}},
+        "nodes": [
+            {"mesh": 0, "scale": [0.7, 0.9, 1], "translation": [-1, 0, 0]},
+            {"children": [0], "rotation": [0, 0.1, 0, 1]},
+            {"camera": 0, "translation": [0, 0.5, 6]},
+            {"translation": [0, 2, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+        ],
+        "scenes": [{"nodes": [1, 2, 3]}],
+        "scene": 0,
+        "animations": [
+            {
+                "name": "Turn",
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": 2, "output": 3}],
+            }
+        ],
+    }
+    model["meshes"][0]["primitives"][0]["material"] = 0
+    (folder / "room.gltf").write_text(json.dumps(model))
+    (folder / "broken.gltf").write_text('{"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}]}')
+    (folder / "glass.mtl").write_text("newmtl red\nillum 7\nNi 1.5\n")
+    (folder / "glass.obj").write_text(
+        "mtllib glass.mtl\nv -1 0 0\nv 1 0 0\nv 0 1.5 0\nusemtl red\nf 1 2 3\n"
+    )
+    moved = {"model": "room.gltf", "animation": "Turn", "fps": 12}
+    intensity = {"intensity": [9, 8, 6]}
+    scene = {
+        "rtsl": 1,
+        "frame": 5,
+        "import": ["std.lights"],
+        "camera": {**moved, "name": "Front", "transform": {"translate": [0, 0.25, 1]}},
+        "nodes": {
+            "table": {
+                "children": [
+                    {**moved, "transform": {"translate": [0.5, 0, 0.1]}},
+                    {"model": "model.obj"},
+                    {"light": {"class": "PointLight", "position": [1, 2, 0.5], **intensity}},
+                    {
+                        "light": {"class": "SpotLight", **intensity},
+                        "transform": {"translate": [0, 1, 0]},
+                    },
+                ],
+                "transform": {"scale": [1.25, 1, 0.5], "translate": [-0.3, 0.1, 0.2]},
+            }
+        },
+        "root": "table",
+        "background": [0.5, 0.6, 0.8],
+        "render": {"engine": "path", "size": [48, 32], "spp": 4, "shutter": [0, 1]},
+    }
+    (folder / "built.json").write_text(json.dumps(scene))
+
+
 def compare(picture, *options, scene="scene.json"):
     """The picture has the bits of what `rtslc render` makes of the scene."""
     run(rtslc, "render", scene, "-o", "expected.exr", "-q", *options)
@@ -224,6 +399,7 @@ def compare(picture, *options, scene="scene.json"):
 
 with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     write_scenes(pathlib.Path(name))
+    write_sources(pathlib.Path(name))
     os.chdir(name)
     said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
     run(rtslc, "run", "passes.json", "--out", "total=total.npy", "-q")
@@ -243,6 +419,11 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     run(models, "model.json", "tree.exr", "tree")
     compare("tree.exr", "--set=render.lightSampler=tree", scene="model.json")
     assert pathlib.Path("tree.exr").read_bytes() != pathlib.Path("model.exr").read_bytes()
+    write_built(pathlib.Path(name))
+    said = run(models, "--build", "built.exr").splitlines()
+    for line, word in zip(said, WORDS_OF_MODELS, strict=True):
+        assert word in line, (word, said)
+    compare("built.exr", scene="built.json")
     # A model of glass, whose class these shaders do not have.
     pathlib.Path(name, "model.mtl").write_text("newmtl red\nillum 7\nNi 1.5\nnewmtl metal\n")
     failed = subprocess.run([models, "model.json", "none.exr"], capture_output=True, text=True)
