@@ -86,6 +86,12 @@ struct NodeMention {
   std::vector<std::size_t> parents; // indices, perhaps repeated
 };
 
+/// Nodes that several roots lead to by different edges, as a note says: sharing them is legitimate.
+struct SharedNodes {
+  std::vector<LocatedName> roots; // where each is mentioned
+  std::vector<LocatedName> nodes; // empty text: written in place
+};
+
 /// A selector above instances, once for each way to it.
 struct SelectorDescription {
   std::size_t node = 0;        // an index in `nodes`
@@ -179,6 +185,7 @@ struct SceneDescription {
   // the first is that of the scene, above all nodes
   std::vector<std::shared_ptr<VariableScope>> scopes{std::make_shared<VariableScope>()};
   std::vector<std::string> roots; // names, by number; empty: `objects` alone, below root 0
+  std::vector<SharedNodes> shared;
   InstanceDescription above; // of a part (ModelPart.h): what is above its root
   std::vector<ObjectDescription> lights;
   std::optional<ObjectDescription> background; // an rt_Miss class

@@ -53,7 +53,7 @@ std::string renderJson(const Diagnostics &diagnostics) {
         {{"code", info(diagnostic.code).number},
          {"name", info(diagnostic.code).name},
          {"warning", info(diagnostic.code).warning ? Json(info(diagnostic.code).warning) : Json()},
-         {"severity", diagnostic.severity == Severity::Error ? "error" : "warning"},
+         {"severity", nameOf(diagnostic.severity)},
          {"message", diagnostic.message},
          {"range", rangeJson(sources, diagnostic.range)},
          {"labels", std::move(labels)},

@@ -388,7 +388,9 @@ void TextRenderer::renderFix(const Fix &fix) {
 void TextRenderer::render(const Diagnostic &diagnostic) {
   const bool isError = diagnostic.severity == Severity::Error;
   if (colour)
-    palette = {isError ? "\033[1;31m" : "\033[1;33m",
+    palette = {isError                                    ? "\033[1;31m"
+               : diagnostic.severity == Severity::Warning ? "\033[1;33m"
+                                                          : "\033[1;36m",
                "\033[1;34m",
                "\033[34m",
                "\033[1m",
@@ -400,7 +402,7 @@ void TextRenderer::render(const Diagnostic &diagnostic) {
     out += paint(palette.bold, fmt::format("{}:{}:{}: ", printable(name), at.line, at.column));
   }
   out += paint(palette.severity,
-               fmt::format("{}[{}]", isError ? "error" : "warning", info(diagnostic.code).number));
+               fmt::format("{}[{}]", nameOf(diagnostic.severity), info(diagnostic.code).number));
   out += paint(palette.bold, fmt::format(": {}", printable(diagnostic.message)));
   if (const char *warning = info(diagnostic.code).warning)
     out += fmt::format(" [-W{}{}]", isError ? "error=" : "", warning);

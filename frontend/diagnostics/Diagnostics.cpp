@@ -21,6 +21,18 @@ const std::vector<CodeInfo> codeTable = {
 #include "frontend/diagnostics/DiagnosticCodes.def"
 };
 
+const char *nameOf(Severity severity) {
+  switch (severity) {
+  case Severity::Note:
+    return "note";
+  case Severity::Warning:
+    return "warning";
+  case Severity::Error:
+    break;
+  }
+  return "error";
+}
+
 const CodeInfo &info(Code code) {
   return codeTable[static_cast<std::size_t>(code)];
 }
@@ -35,8 +47,9 @@ Diagnostic &Diagnostics::add(Diagnostic diagnostic) {
     dropped = std::move(diagnostic);
     return dropped;
   }
-  const bool isError = !isWarning || warnings.isError(diagnostic.code);
-  diagnostic.severity = isError ? Severity::Error : Severity::Warning;
+  if (isWarning && warnings.isError(diagnostic.code))
+    diagnostic.severity = Severity::Error;
+  const bool isError = diagnostic.severity == Severity::Error;
   const auto code = static_cast<int>(diagnostic.code);
   // A mistake in a macro argument that is expanded twice, or in a file that is included twice, is
   // reported once.

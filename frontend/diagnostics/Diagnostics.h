@@ -18,7 +18,11 @@
 
 namespace rtsl {
 
-enum class Severity : std::uint8_t { Warning, Error };
+/// A note says something that is as it may well be meant: it is never an error.
+enum class Severity : std::uint8_t { Note, Warning, Error };
+
+/// "note", "warning" or "error".
+const char *nameOf(Severity severity);
 
 /// One enumerator for each row of DiagnosticCodes.def.
 enum class Code : std::uint16_t {

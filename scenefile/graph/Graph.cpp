@@ -90,6 +90,7 @@ public:
       }
     const std::vector<bool> isUsed = usedNodes();
     mentionNodes(isUsed);
+    findShared();
     if (named)
       warnOfUnused(*named, isUsed);
   }
@@ -209,7 +210,7 @@ private:
     if (one && several)
       throw Error(message::rootAndRoots(), one->place());
     if (one)
-      attempt([&] { addRoot("root", *one); });
+      attempt([&] { addRoot({"root", one->place()}, *one); });
     if (!several)
       return;
     attempt([&] { expect(*several, Kind::Object, "`roots`"); });
@@ -217,13 +218,14 @@ private:
       attempt([&, &key = key, &member = member] {
         if (roots.size() == mostRoots)
           throw Error(message::tooManyRoots(mostRoots), several->place(key));
-        addRoot(key.text, member);
+        addRoot({key.text, several->place(key)}, member);
       });
   }
 
-  void addRoot(const std::string &name, const JsonValue &value) {
+  void addRoot(LocatedName name, const JsonValue &value) {
     const Edge edge = readEdge(value);
-    scene.roots.push_back(name);
+    scene.roots.push_back(name.text);
+    rootNames.push_back(std::move(name));
     roots.push_back(edge);
   }
 
@@ -422,6 +424,34 @@ private:
     }
   }
 
+  /// Groups, by their roots, the topmost nodes that several roots lead to: those below them are
+  /// shared with them.
+  void findShared() {
+    std::vector<std::uint32_t> rootsOf(nodes.size(), 0); // as bits
+    for (std::size_t number = 0; number < roots.size(); ++number)
+      rootsOf[roots[number].node] |= 1u << number;
+    std::vector<bool> isTop(nodes.size(), false); // it has a parent, or is a root, of other roots
+    for (auto number = order.rbegin(); number != order.rend(); ++number)
+      for (const Edge &child : nodes[*number].children)
+        rootsOf[child.node] |= rootsOf[*number];
+    for (std::size_t number = 0; number < roots.size(); ++number)
+      isTop[roots[number].node] = true;
+    for (std::size_t number = 0; number < nodes.size(); ++number)
+      for (const Edge &child : nodes[number].children)
+        if (rootsOf[number] != 0 && rootsOf[number] != rootsOf[child.node])
+          isTop[child.node] = true;
+    std::map<std::uint32_t, SharedNodes> shared;
+    for (std::size_t number = 0; number < nodes.size(); ++number)
+      if (const std::uint32_t bits = rootsOf[number]; isTop[number] && (bits & (bits - 1)) != 0)
+        shared[bits].nodes.push_back({nodes[number].name, nodes[number].place});
+    for (auto &[bits, group] : shared) {
+      for (std::size_t number = 0; number < roots.size(); ++number)
+        if (bits >> number & 1)
+          group.roots.push_back(rootNames[number]);
+      scene.shared.push_back(std::move(group));
+    }
+  }
+
   void warnOfUnused(const JsonValue &named, const std::vector<bool> &isUsed) {
     for (std::size_t i = 0; i < named.members.size(); ++i)
       if (!isUsed[i] && !gltf::isModel(nodes[i].place.file))
@@ -435,7 +465,8 @@ private:
   std::vector<Node> nodes;
   std::unordered_map<std::string, std::size_t> numbers; // of named nodes
   std::vector<Edge> roots;
-  std::vector<std::size_t> order; // of nodes, children first
+  std::vector<LocatedName> rootNames; // as many
+  std::vector<std::size_t> order;     // of nodes, children first
   // indices of placements, of geometries below several roots
   std::map<const GeometryDescription *, std::map<Key, std::size_t>> placed;
   bool hasMistakes = false;

@@ -506,5 +506,73 @@ class Selectors(GraphCase):
         self.assert_message(self.mistakes(world(selector=3, children=["b"])), "E0804", "`selector`")
 
 
+class Roots(GraphCase):
+    @staticmethod
+    def with_roots(nodes, roots):
+        made = scene(nodes, roots=roots)
+        del made["root"]
+        return made
+
+    def notes(self, nodes, **roots):
+        path = self.write("scene.json", json.dumps(self.with_roots(nodes, roots), indent=1))
+        _, told = self.run_rtslc("check", path, "--diagnostics=json")  # status 0
+        found = json.loads(told)["diagnostics"]
+        lines = path.read_text().splitlines()
+
+        def word_at(range):
+            line = lines[range["begin"]["line"] - 1]
+            return line[range["begin"]["column"] - 1 :].split('"')[0]
+
+        for note in found:
+            self.assertEqual((note["code"], note["severity"]), ("N2802", "note"), found)
+        return [
+            (
+                note["message"],
+                word_at(note["range"]),
+                [word_at(one["range"]) for one in note["labels"]],
+            )
+            for note in found
+        ]
+
+    def test_what_they_share_is_said(self):
+        nodes = {
+            "ball": balls(*CLUSTER),
+            "both": {"child": "ball"},
+            "left": {"children": ["both", "other"]},
+            "right": {"children": ["both", "ball", "other"]},
+            "other": balls([3, 0, 0, 1]),
+        }
+        shared = "below several roots, which share what they have in common: `seen`, `shadowing`"
+        self.assertEqual(
+            self.notes(nodes, seen="left", shadowing="right"),
+            [
+                (
+                    f"`ball` and 2 other nodes are {shared}",
+                    "ball",
+                    ["seen", "shadowing", "both", "other"],
+                )
+            ],
+        )
+        # `ball` is below `both` alone, and a root may be below another.
+        nodes["right"] = {"child": "left"}
+        self.assertEqual(
+            self.notes(nodes, seen="left", shadowing="right"),
+            [(f"`left` is {shared}", "left", ["seen", "shadowing"])],
+        )
+        nodes["right"] = {"child": "other"}
+        nodes["left"] = {"child": "both"}
+        self.assertEqual(self.notes(nodes, seen="left", shadowing="right"), [])
+
+    def test_it_is_no_warning(self):
+        nodes = {"ball": balls(*CLUSTER)}
+        path = self.write(
+            "scene.json", json.dumps(self.with_roots(nodes, {"a": "ball", "b": "ball"}))
+        )
+        _, told = self.run_rtslc("check", path, "-Werror")
+        self.assertIn("note[N2802]: `ball` is below several roots", told)
+        _, told = self.run_rtslc("render", path, "-o", "picture.png", "-O0", "-q")
+        self.assertEqual(told, "")
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -44,7 +44,7 @@ TEST(CodeTable, IsInOrder) {
     const std::string number = row.number, message = row.message;
     EXPECT_TRUE(numbers.insert(number).second) << number << " is used twice";
     EXPECT_TRUE(names.insert(row.name).second) << row.name << " is used twice";
-    EXPECT_EQ(number[0], row.severity == Severity::Error ? 'E' : 'W') << number;
+    EXPECT_EQ(number[0], std::toupper(nameOf(row.severity)[0])) << number;
     EXPECT_EQ(number.size(), 5u) << number;
     ASSERT_FALSE(message.empty());
     EXPECT_NE(message.back(), '.') << number << " ends in a full stop";

@@ -5,8 +5,14 @@
 #include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace rtsl::tool {
 
@@ -32,6 +38,29 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
       messages.report(warning);
 }
 
+/// Says which nodes several roots share: at the first, with labels at the roots and other nodes.
+void noteSharedNodes(const scene::SceneDescription &description, Messages &messages) {
+  constexpr std::size_t shown = 8;
+  for (const scene::SharedNodes &shared : description.shared) {
+    std::vector<std::string> roots;
+    for (const scene::LocatedName &root : shared.roots)
+      roots.push_back(fmt::format("`{}`", root.text));
+    const scene::LocatedName &first = shared.nodes.front();
+    const std::string what = first.text.empty() ? "this node" : fmt::format("`{}`", first.text);
+    const std::size_t others = shared.nodes.size() - 1;
+    Diagnostic &note =
+        messages.diagnostics.report(Code::sharedByRoots, messages.rangeOf(first.place),
+                                    others == 0 ? what + " is"
+                                                : fmt::format("{} and {} other node{} are", what,
+                                                              others, others == 1 ? "" : "s"),
+                                    fmt::format("{}", fmt::join(roots, ", ")));
+    for (const scene::LocatedName &root : shared.roots)
+      note.label(messages.rangeOf(root.place), fmt::format("the root `{}`", root.text));
+    for (std::size_t i = 1; i < std::min(shared.nodes.size(), shown); ++i)
+      note.label(messages.rangeOf(shared.nodes[i].place), "below them, too");
+  }
+}
+
 } // namespace
 
 void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
@@ -42,6 +71,7 @@ void checkScene(const std::string &file, const CheckOptions &options, Messages &
   if (!module)
     return;
   filesRead = withFiles(description, filesRead);
+  noteSharedNodes(description, messages);
   for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
     scene::SceneDescription launch = scene::launchOf(description, i);
     checkLaunch(launch, *module, options, messages);
