@@ -1,14 +1,12 @@
 //===- Compilation.cpp - a compilation in progress ------------------------===//
 #include "codegen/driver/Compilation.h"
 
-#include "codegen/driver/HostCode.h"
 #include "codegen/driver/Places.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
 #include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/continuation/calls/Steps.h"
-#include "support/WorkerThreads.h"
 
 namespace rtsl::driver {
 
@@ -21,19 +19,6 @@ static bool linkForScene(Compilation &compilation) {
               options.floatingPoint);
 }
 
-/// Makes the objects of a scene, with a program that contains only what this needs.
-static runtime::SceneFacts makeObjects(const Compilation &compilation) {
-  const mlir::OwningOpRef<mlir::ModuleOp> copy = mlir::ModuleOp(*compilation.ir).clone();
-  keepConstructors(*copy, compilation.program->needs & RTSL_NEEDS_EMITTERS);
-  auto constructors = std::make_shared<runtime::Program>(*compilation.program);
-  compileConstructors(*copy, compilation.options, *constructors);
-  // Constructors and bounds may have large local variables.
-  runtime::SceneFacts facts;
-  runOnThreads(1, constructors->stackBytes(0, 0),
-               [&](unsigned) { facts = compilation.input.makeObjects(constructors); });
-  return facts;
-}
-
 /// Keeps only the code that renders this scene.
 static void bindToScene(Compilation &compilation) {
   LinkRequest request = *compilation.input.scene;
@@ -43,8 +28,9 @@ static void bindToScene(Compilation &compilation) {
     request.keep.add(ItemSet::ofMembers());
     request.keep.add(Item::Lights);
   }
-  const runtime::SceneFacts facts =
-      compilation.facts ? *compilation.facts : makeObjects(compilation);
+  const runtime::SceneFacts facts = compilation.facts
+                                        ? *compilation.facts
+                                        : compilation.input.machineCode->makeObjects(compilation);
   compilation.program->sceneNeeds = graphNeeds(facts, request, compilation.findings);
   bindScene(*compilation.ir, facts, request, compilation.findings);
 }
@@ -56,7 +42,7 @@ bool reachIr(Compilation &compilation) {
   LinkRequest noScene;
   noScene.features = compilation.input.cpp.features;
   if (!compilation.context)
-    compilation.context = makeContext();
+    compilation.context = makeContext(compilation.input.machineCode);
   compilation.ir =
       lowerModule(*compilation.input.module, compilation.options, scene ? *scene : noScene,
                   compilation.source, compilation.diagnostics, *compilation.context);

@@ -16,6 +16,8 @@
 
 namespace rtsl::driver {
 
+struct LlvmCode; // machine/LlvmSteps.h
+
 /// The input of a compilation, its options, and its results so far: each stage adds to it, or
 /// changes the IR.
 struct Compilation {
@@ -40,7 +42,7 @@ struct Compilation {
   std::shared_ptr<runtime::Program> program = std::make_shared<runtime::Program>(); // of a scene
   std::optional<ModuleFacts> moduleFacts; // of a module without a scene
   SplitReport report;
-  std::optional<LlvmCode> llvm;
+  std::shared_ptr<LlvmCode> llvm;
   std::string text;
 
   bool isBound() const { return input.makeObjects || facts; }
@@ -65,9 +67,5 @@ bool reachMachine(Compilation &compilation);
 /// The same for a GPU, which has no stack for recursion. In a bound program recursion remains only
 /// if it is deep: that is an error.
 bool reachGpuMachine(Compilation &compilation);
-/// `llvm`: optimised; for a scene, for Target::HostMegakernel.
-bool reachLlvm(Compilation &compilation);
-/// Machine code of a scene's program in this process: the entry points of `program` are set.
-bool reachProgram(Compilation &compilation);
 
 } // namespace rtsl::driver

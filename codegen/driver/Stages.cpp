@@ -2,7 +2,6 @@
 #include "codegen/driver/Stages.h"
 
 #include "codegen/driver/Compilation.h"
-#include "codegen/driver/HostCode.h"
 #include "codegen/driver/outputs/CppOutput.h"
 #include "codegen/driver/outputs/Reflection.h"
 #include "codegen/ir/Attributes.h"
@@ -16,9 +15,6 @@
 #include "frontend/syntax/Parser.h"
 #include "sema/Sema.h"
 
-#include "mlir/IR/Verifier.h"
-#include "llvm/IR/Module.h"
-
 #include <stdexcept>
 
 namespace rtsl {
@@ -31,10 +27,6 @@ static std::string showText(Compilation &compilation) {
 
 static std::string showIr(Compilation &compilation) {
   return print(*compilation.ir);
-}
-
-static std::string showLlvm(Compilation &compilation) {
-  return codegen::printLlvm(*compilation.llvm->module);
 }
 
 //===----------------------------------------------------------------------===//
@@ -139,73 +131,25 @@ bool reachMachine(Compilation &compilation) {
 }
 
 //===----------------------------------------------------------------------===//
-// LLVM IR, PTX and machine code
+// LLVM IR and PTX: driver/machine
 //===----------------------------------------------------------------------===//
 
-bool reachLlvm(Compilation &compilation) {
-  const CompileOptions &options = compilation.options;
-  if (compilation.input.scene) {
-    if (!reachMachine(compilation))
-      return false;
-    compilation.llvm.emplace(
-        megakernel(*compilation.ir, options, *compilation.program, /*forGpu=*/false));
-  } else {
-    if (!reachSsa(compilation))
-      return false;
-    declareSlots(*compilation.ir);
-    compilation.llvm.emplace(
-        translate(*compilation.ir, machineOptions(options, /*hostCpu=*/false)));
-  }
-  optimize(*compilation.llvm);
-  return true;
+static const MachineCode &machineCodeFor(const Compilation &compilation) {
+  if (!compilation.input.machineCode)
+    throw std::logic_error("this program has no generator of machine code");
+  return *compilation.input.machineCode;
 }
 
-/// Level 2 to level 1 and down again.
-static void restructureAndBack(mlir::ModuleOp ir) {
-  expectSuccess(
-      ir, [&] { return mlir::succeeded(restructure(ir)) && mlir::succeeded(mlir::verify(ir)); });
-  run(ir, codegen::buildSsaPipeline);
+static bool reachLlvm(Compilation &compilation) {
+  return machineCodeFor(compilation).reachLlvm(compilation);
 }
 
-/// The PTX of a module without a scene: one function for each method, or for each state if it
-/// traces. Slots and functions of runtime/device are only declared.
-static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
-  declareSlots(ir);
-  std::vector<std::string> facts;
-  for (auto function : ir.getOps<mlir::func::FuncOp>())
-    if (ir::attr::factOfScene.isOn(function))
-      facts.push_back(function.getSymName().str());
-  LlvmCode code = translate(ir, gpuOptions(options));
-  for (const std::string &fact : facts)
-    code.module->getFunction(fact)->setLinkage(llvm::Function::InternalLinkage);
-  for (llvm::Function &function : *code.module)
-    if (!function.hasLocalLinkage())
-      function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
-  return toPtx(std::move(code));
+static std::string showLlvm(Compilation &compilation) {
+  return machineCodeFor(compilation).printLlvm(compilation);
 }
 
-/// For a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
 static bool reachPtx(Compilation &compilation) {
-  if (!reachGpuMachine(compilation))
-    return false;
-  const CompileOptions &options = compilation.options;
-  compilation.text =
-      compilation.input.scene
-          ? toPtx(megakernel(*compilation.ir, options, *compilation.program, /*forGpu=*/true))
-          : modulePtx(*compilation.ir, options);
-  return true;
-}
-
-bool reachProgram(Compilation &compilation) {
-  const CompileOptions &options = compilation.options;
-  const bool isSplit =
-      options.target == Target::HostMegakernel || options.trace == TraceMode::Split;
-  if (!(isSplit ? reachMachine(compilation) : reachSsa(compilation)))
-    return false;
-  if (options.restructure)
-    restructureAndBack(*compilation.ir);
-  compileHostCode(compilation);
-  return true;
+  return machineCodeFor(compilation).reachPtx(compilation);
 }
 
 //===----------------------------------------------------------------------===//
@@ -244,20 +188,21 @@ static constexpr const char *noReflection =
 const std::vector<Stage> &stages() {
   using namespace driver;
   using Needs = Stage::Needs;
+  constexpr bool yes = true, no = false;
   // clang-format off
   static const std::vector<Stage> table = {
-      // name          needs              why no scene  events double  function           text
-      {"preprocessed", Needs::Text,       noText,       false, true,   reachPreprocessed, showText},
-      {"ast",          Needs::SyntaxTree, noText,       false, true,   reachAst,          showText},
-      {"typed-ast",    Needs::Module,     noText,       false, true,   reachTypedAst,     showText},
-      {"ir",           Needs::Module,     nullptr,      false, true,   reachIr,           showIr},
-      {"ssa",          Needs::Module,     nullptr,      false, true,   reachSsa,          showIr},
-      {"split",        Needs::Module,     nullptr,      false, true,   reachStates,       showIr},
-      {"structured",   Needs::Module,     nullptr,      false, true,   reachStructured,   showIr},
-      {"llvm",         Needs::Module,     nullptr,      false, true,   reachLlvm,         showLlvm},
-      {"ptx",          Needs::Module,     nullptr,      false, false,  reachPtx,          showText},
-      {"cpp",          Needs::Module,     noCpp,        true,  false,  reachCpp,          showText},
-      {"reflection",   Needs::Module,     noReflection, false, true,   reachReflection,   showText},
+      // name          needs              no scene      events, double, LLVM; function, text
+      {"preprocessed", Needs::Text,       noText,       no,  yes, no,  reachPreprocessed, showText},
+      {"ast",          Needs::SyntaxTree, noText,       no,  yes, no,  reachAst,          showText},
+      {"typed-ast",    Needs::Module,     noText,       no,  yes, no,  reachTypedAst,     showText},
+      {"ir",           Needs::Module,     nullptr,      no,  yes, no,  reachIr,           showIr},
+      {"ssa",          Needs::Module,     nullptr,      no,  yes, no,  reachSsa,          showIr},
+      {"split",        Needs::Module,     nullptr,      no,  yes, no,  reachStates,       showIr},
+      {"structured",   Needs::Module,     nullptr,      no,  yes, no,  reachStructured,   showIr},
+      {"llvm",         Needs::Module,     nullptr,      no,  yes, yes, reachLlvm,         showLlvm},
+      {"ptx",          Needs::Module,     nullptr,      no,  no,  yes, reachPtx,          showText},
+      {"cpp",          Needs::Module,     noCpp,        yes, no,  no,  reachCpp,          showText},
+      {"reflection",   Needs::Module,     noReflection, no,  yes, no,  reachReflection,   showText},
   };
   // clang-format on
   return table;

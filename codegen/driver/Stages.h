@@ -16,7 +16,8 @@ namespace rtsl {
 
 namespace driver {
 struct Compilation;
-}
+struct MachineCode;
+} // namespace driver
 
 /// The input of a compilation.
 struct CompileInput {
@@ -29,6 +30,8 @@ struct CompileInput {
   const LinkRequest *scene = nullptr;
   /// For a scene: bind the program to these objects, as for a package. Null: do not bind it.
   MakeObjects makeObjects = nullptr;
+  /// For a scene, and for stages of machine code.
+  const driver::MachineCode *machineCode = nullptr;
   CppRequest cpp = {};
 };
 
@@ -43,6 +46,7 @@ struct Stage {
   const char *whyNoScene;
   bool keepsEvents; // supports prints and exceptions without a scene, too
   bool hasDouble;   // arithmetic may be in double
+  bool isMachine;   // needs CompileInput::machineCode
   /// Takes the compilation to this stage. False if an error was reported.
   bool (*reach)(driver::Compilation &);
   std::string (*show)(driver::Compilation &);

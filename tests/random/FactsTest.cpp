@@ -61,7 +61,7 @@ struct Lowered {
   Diagnostics diagnostics{sources};
   std::unique_ptr<ast::TranslationUnit> unit;
   std::unique_ptr<typed::Module> module;
-  std::unique_ptr<mlir::MLIRContext> context = driver::makeContext();
+  std::unique_ptr<mlir::MLIRContext> context = driver::makeContext(nullptr);
   mlir::OwningOpRef<mlir::ModuleOp> ir;
 
 private:

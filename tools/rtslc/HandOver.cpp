@@ -1,6 +1,7 @@
 //===- HandOver.cpp - commands that rtslc-render runs ---------------------===//
 #include "HandOver.h"
 
+#include "codegen/driver/Stages.h"
 #include "support/ProgramFolder.h"
 #include "tools/rtslc/common/CommandLine.h"
 #include "tools/rtslc/common/SceneArguments.h"
@@ -30,12 +31,21 @@ void addHandedOverCommands(CLI::App &app) {
     app.add_subcommand(summary.command, summary.text);
 }
 
-/// A command of rtslc whose program is bound to a scene: the runtime makes its objects.
-static bool bindsScene(std::string_view command, char **arguments) {
+/// `--emit=NAME` and the NAME of `--emit NAME`. A file of that name is taken for it, which does no
+/// harm: rtslc-render has these commands as a whole.
+static bool namesMachineStage(std::string_view argument) {
+  const std::string_view name = argument.substr(argument.find('=') + 1);
+  return std::any_of(stages().begin(), stages().end(),
+                     [&](const Stage &stage) { return stage.isMachine && stage.name == name; });
+}
+
+/// Arguments of a command of rtslc with which it needs the runtime, which makes the objects of a
+/// scene, or code generators.
+static bool needsRender(std::string_view command, char **arguments) {
   if (command != "check" && command != "compile" && command != "explain")
     return false;
   for (; *arguments; ++arguments)
-    if (isScene(*arguments))
+    if (isScene(*arguments) || (command == "compile" && namesMachineStage(*arguments)))
       return true;
   return false;
 }
@@ -45,7 +55,7 @@ void handOver(char **argv) {
   const bool isHandedOver =
       std::any_of(std::begin(handedOver), std::end(handedOver),
                   [&](const Summary &summary) { return command == summary.command; });
-  if (isHandedOver || bindsScene(command, argv + 1)) {
+  if (isHandedOver || needsRender(command, argv + 1)) {
     const std::filesystem::path program = programFolder() / "rtslc-render";
     execv(program.c_str(), argv);
     if (errno == ENOMEM)

@@ -40,7 +40,7 @@ int main(int argc, char **argv) {
   Action action;
   addNewCommand(app, action);
   addCheckCommand(app, action, nullptr);
-  addCompileCommand(app, action, nullptr);
+  addCompileCommand(app, action, nullptr, nullptr);
   addExplainCommand(app, action, nullptr);
   addHandedOverCommands(app);
   app.add_subcommand("help", "show the options of a command");

@@ -3,6 +3,7 @@
 // Started by rtslc (HandOver.h); it can be called as well.
 //
 //===----------------------------------------------------------------------===//
+#include "codegen/driver/MachineCode.h"
 #include "tools/rtslc/compile/CheckCommand.h"
 #include "tools/rtslc/compile/CompileCommand.h"
 #include "tools/rtslc/explain/ExplainCommand.h"
@@ -15,7 +16,7 @@ int main(int argc, char **argv) {
   app.require_subcommand(1);
   Action action;
   addCheckCommand(app, action, &checkScene);
-  addCompileCommand(app, action, &translateScene);
+  addCompileCommand(app, action, &translateScene, &rtsl::driver::machineCode());
   addExplainCommand(app, action, &explainScene);
   addRenderCommand(app, action);
   addRunCommand(app, action);

@@ -1,6 +1,6 @@
-#include "codegen/driver/CodeCache.h"
+#include "codegen/driver/machine/CodeCache.h"
 
-#include "codegen/driver/CodeFiles.h"
+#include "codegen/driver/machine/CodeFiles.h"
 #include "codegen/emit/ObjectCode.h"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "codegen/driver/CodeFiles.h"
+#include "codegen/driver/machine/CodeFiles.h"
 
 #include "codegen/emit/ObjectCode.h"
 #include "support/AtomicFile.h"

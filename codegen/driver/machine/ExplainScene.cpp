@@ -1,5 +1,6 @@
 //===- ExplainScene.cpp - what a scene's program contains and omits -------===//
-#include "codegen/driver/Compilation.h"
+#include "codegen/driver/machine/LlvmSteps.h"
+#include "codegen/driver/machine/MachineStages.h"
 #include "codegen/ir/Rtsl.h"
 #include "frontend/source/Expansion.h"
 #include "sema/typed/Casting.h"
@@ -90,9 +91,9 @@ bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
   for (Compilation *compilation : {&checked, &unchecked}) {
     compilation->facts = &facts;
     reachMachine(*compilation);
-    compilation->llvm.emplace(megakernel(*compilation->ir, compilation->options,
-                                         *compilation->program,
-                                         options.floatingPoint != FloatingPoint::Double));
+    compilation->llvm = std::make_shared<LlvmCode>(
+        megakernel(*compilation->ir, compilation->options, *compilation->program,
+                   options.floatingPoint != FloatingPoint::Double));
   }
   // Optimisation takes most of the time, and most scenes have no index that needs a check.
   if (fingerprint(checked) == fingerprint(unchecked))
@@ -104,7 +105,7 @@ bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
 
 /// The size of a scene's bound program on a GPU. Nothing if it cannot be linked.
 std::optional<ProgramSize> measure(Compilation &compilation) {
-  if (!reachLlvm(compilation))
+  if (!machineCode().reachLlvm(compilation))
     return std::nullopt;
   ProgramSize size;
   size.frameBytes = compilation.report.frameSize();
@@ -176,6 +177,7 @@ explainScene(const typed::Module &module, const LinkRequest &request, const Comp
   CompileInput input;
   input.module = &module;
   input.scene = &request;
+  input.machineCode = &machineCode();
   input.makeObjects = [&](const auto &constructors) { return facts = makeObjects(constructors); };
   {
     Compilation compilation(input, options, diagnostics);

@@ -1,7 +1,10 @@
 //===- HostCode.cpp - linked IR as a program in this process --------------===//
-#include "codegen/driver/HostCode.h"
+#include "codegen/driver/machine/HostCode.h"
 
-#include "codegen/driver/CodeCache.h"
+#include "codegen/driver/Steps.h"
+#include "codegen/driver/machine/CodeCache.h"
+#include "codegen/driver/machine/LlvmSteps.h"
+#include "codegen/driver/machine/MachineStages.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/Parts.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
@@ -305,6 +308,7 @@ std::shared_ptr<const runtime::Program> compileProgram(const typed::Module &modu
   input.module = &module;
   input.scene = &request;
   input.makeObjects = makeObjects;
+  input.machineCode = &driver::machineCode();
   driver::Compilation compilation(input, options, diagnostics);
   compilation.usesThreads = true;
   return driver::reachProgram(compilation) ? compilation.program : nullptr;

@@ -1,5 +1,6 @@
 //===- Package.cpp - the program of a package -----------------------------===//
-#include "codegen/driver/Compilation.h"
+#include "codegen/driver/machine/LlvmSteps.h"
+#include "codegen/driver/machine/MachineStages.h"
 #include "codegen/emit/NativeImage.h"
 #include "runtime/program/DeviceBitcode.h"
 
@@ -40,6 +41,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   input.module = &module;
   input.scene = &request;
   input.makeObjects = makeObjects;
+  input.machineCode = &machineCode();
   Compilation compilation(input, options, diagnostics);
   if (!reachGpuMachine(compilation))
     return false;

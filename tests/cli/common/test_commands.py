@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import unittest
+from pathlib import Path
 
 from harness import EXAMPLES, RTSLC, Case
 
@@ -31,6 +32,11 @@ class Commands(Case):
         self.assertTrue(libraries)
         for unwanted in ("embree", "assimp", "tbb", "OpenEXR", "png", "OpenImageIO", "z3"):
             self.assertFalse([line for line in libraries if unwanted in line], libraries)
+
+    def test_checking_sources_loads_no_code_generator(self):
+        pass_of_llvm = b"NVPTX Assembly Printer"
+        self.assertIn(pass_of_llvm, Path(RTSLC).with_name("rtslc-render").read_bytes())
+        self.assertNotIn(pass_of_llvm, Path(RTSLC).read_bytes())
 
     def test_check_reads_standard_input(self):
         out, error = self.run_rtslc("check", "-", stdin=MATERIAL.encode())

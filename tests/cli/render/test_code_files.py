@@ -1,5 +1,5 @@
-"""Machine code that is kept for the next run (codegen/driver/CodeFiles.h): it changes no picture,
-and whatever happens to its files is no error."""
+"""Machine code that is kept for the next run (codegen/driver/machine/CodeFiles.h): it changes no
+picture, and whatever happens to its files is no error."""
 
 import json
 import os

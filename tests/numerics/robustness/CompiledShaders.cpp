@@ -1,6 +1,7 @@
 //===- CompiledShaders.cpp ------------------------------------------------===//
 #include "CompiledShaders.h"
 
+#include "codegen/driver/MachineCode.h"
 #include "codegen/driver/Stages.h"
 #include "codegen/driver/sources/SourceLoader.h"
 #include "rtsl/program.h"
@@ -68,6 +69,7 @@ CompiledShaders::compile(const std::vector<std::string> &files, std::vector<std:
       CompileInput input;
       input.module = module.get();
       input.scene = &request;
+      input.machineCode = &driver::machineCode();
       compiled.ptx = emit(stage("ptx"), input, options, diagnostics).value_or("");
     }
   }

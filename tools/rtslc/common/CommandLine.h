@@ -14,6 +14,10 @@
 #include <string>
 #include <vector>
 
+namespace rtsl::driver {
+struct MachineCode;
+} // namespace rtsl::driver
+
 namespace rtsl::tool {
 
 /// How a run ends, for scripts.
@@ -70,7 +74,7 @@ constexpr Summary compareSummary = {
 using Action = std::function<int()>;
 
 /// What commands do with a scene: checkScene, translateScene, explainScene. Null in rtslc, which
-/// hands scenes over.
+/// hands scenes over, and stages of machine code, too.
 struct CheckOptions;
 struct CompileCommandOptions;
 struct ExplainOptions;
@@ -84,7 +88,8 @@ using SceneExplainer = std::optional<std::string> (*)(const ExplainOptions &, Me
 
 void addNewCommand(CLI::App &app, Action &action);
 void addCheckCommand(CLI::App &app, Action &action, SceneChecker checkScene);
-void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene);
+void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene,
+                       const driver::MachineCode *machineCode);
 void addExplainCommand(CLI::App &app, Action &action, SceneExplainer explainScene);
 void addRenderCommand(CLI::App &app, Action &action);
 void addRunCommand(CLI::App &app, Action &action);

@@ -1,5 +1,6 @@
 //===- CheckScene.cpp - rtslc check of a scene ----------------------------===//
 #include "CheckCommand.h"
+#include "codegen/driver/MachineCode.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
 #include "tools/rtslc/common/MaterialCheck.h"
@@ -26,6 +27,7 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
   CompileInput input;
   input.module = &module;
   input.scene = &request;
+  input.machineCode = &driver::machineCode();
   input.makeObjects = storeScene(
       [&](const auto &constructors) { return scene::buildScene(launch, constructors); }, scene);
   emit(stage("ir"), input, options.common.compile, messages.diagnostics);

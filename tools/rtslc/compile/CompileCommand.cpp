@@ -17,9 +17,11 @@ namespace rtsl::tool {
 namespace {
 
 /// The text of the requested stage of RTSL files; nothing if there were errors.
-std::optional<std::string> translate(const CompileCommandOptions &options, Messages &messages,
+std::optional<std::string> translate(const CompileCommandOptions &options,
+                                     const driver::MachineCode *machineCode, Messages &messages,
                                      std::vector<std::string> &filesRead) {
   CompileInput input;
+  input.machineCode = machineCode;
   Shaders shaders(messages, options.common.preprocessor);
   std::unique_ptr<typed::Module> module;
   if (options.stage->needs == Stage::Needs::Text) {
@@ -67,14 +69,15 @@ void checkInputs(const CompileCommandOptions &options) {
     throw CLI::ValidationError("--keep", "is for scenes: a file alone keeps everything");
 }
 
-int compile(const CompileCommandOptions &options, SceneTranslator translateScene) {
+int compile(const CompileCommandOptions &options, SceneTranslator translateScene,
+            const driver::MachineCode *machineCode) {
   Messages messages(options.common);
   try {
     checkOutputs(options.output, options.common.dependencies, options.files);
     std::vector<std::string> filesRead;
-    const std::optional<std::string> text = isScene(options.files.front())
-                                                ? translateScene(options, messages, filesRead)
-                                                : translate(options, messages, filesRead);
+    const std::optional<std::string> text =
+        isScene(options.files.front()) ? translateScene(options, messages, filesRead)
+                                       : translate(options, machineCode, messages, filesRead);
     if (text && !messages.diagnostics.hasErrors()) {
       checkOutputs(options.output, options.common.dependencies, options.files, filesRead);
       // First what names the output: where that cannot be written, the old output stays.
@@ -89,7 +92,8 @@ int compile(const CompileCommandOptions &options, SceneTranslator translateScene
 
 } // namespace
 
-void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene) {
+void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateScene,
+                       const driver::MachineCode *machineCode) {
   auto options = std::make_shared<CompileCommandOptions>();
   CLI::App *command = app.add_subcommand("compile", "compile RTSL files, and print any stage");
   command
@@ -118,11 +122,11 @@ void addCompileCommand(CLI::App &app, Action &action, SceneTranslator translateS
                   "  rtslc compile Glass.rtsl --emit=ssa -o Glass.mlir\n"
                   "  rtslc compile Glass.rtsl --emit=cpp -o glass.cpp\n"
                   "  rtslc compile scene.json --emit=ptx --gpu-arch=sm_90 -o scene.ptx");
-  command->callback([options, command, translateScene, &action] {
+  command->callback([options, command, translateScene, machineCode, &action] {
     if (command->count("--trace") > 0)
       options->trace = options->common.compile.trace;
     checkInputs(*options);
-    action = [options, translateScene] { return compile(*options, translateScene); };
+    action = [=] { return compile(*options, translateScene, machineCode); };
   });
 }
 

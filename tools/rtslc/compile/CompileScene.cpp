@@ -1,5 +1,6 @@
 //===- CompileScene.cpp - rtslc compile of a scene ------------------------===//
 #include "CompileCommand.h"
+#include "codegen/driver/MachineCode.h"
 #include "codegen/driver/SceneProgram.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
@@ -24,6 +25,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
   CompileInput input;
   input.module = module.get();
   input.scene = &request;
+  input.machineCode = &driver::machineCode();
   input.makeObjects = storeScene(
       [&](const auto &constructors) { return scene::buildScene(description, constructors); },
       scene);

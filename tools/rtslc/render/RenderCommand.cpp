@@ -3,8 +3,8 @@
 
 #include "Preview.h"
 #include "RenderOnChange.h"
-#include "codegen/driver/CodeCache.h"
-#include "codegen/driver/CodeFiles.h"
+#include "codegen/driver/machine/CodeCache.h"
+#include "codegen/driver/machine/CodeFiles.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/files/KeptFiles.h"

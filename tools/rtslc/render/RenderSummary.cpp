@@ -1,6 +1,6 @@
 #include "RenderSummary.h"
 
-#include "codegen/driver/CodeCache.h"
+#include "codegen/driver/machine/CodeCache.h"
 #include "tools/common/Interruption.h"
 #include "tools/common/Outcome.h"
 #include "tools/common/Output.h"

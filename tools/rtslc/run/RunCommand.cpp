@@ -5,8 +5,8 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 
-#include "codegen/driver/CodeCache.h"
-#include "codegen/driver/CodeFiles.h"
+#include "codegen/driver/machine/CodeCache.h"
+#include "codegen/driver/machine/CodeFiles.h"
 #include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"

@@ -1,6 +1,7 @@
 // Is the output of `rtslc explain` true? For each thing that it calls needed the examples are
 // compiled without it, and the PTX must be another; what it calls left out can be taken away again,
 // and the PTX must stay.
+#include "codegen/driver/MachineCode.h"
 #include "codegen/driver/Stages.h"
 #include "scenefile/SceneFile.h"
 #include "tools/rtslc/common/SceneShaders.h"
@@ -62,6 +63,7 @@ public:
     CompileInput input;
     input.module = module.get();
     input.scene = &changed;
+    input.machineCode = &driver::machineCode();
     // The host runs methods to weigh what shines: with another class's in their place they would
     // read what is not there.
     const bool isDispatch = std::any_of(without.begin(), without.end(), [](const Finding &finding) {

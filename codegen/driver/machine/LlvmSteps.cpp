@@ -1,0 +1,207 @@
+//===- LlvmSteps.cpp - the steps to LLVM IR, PTX and machine code ---------===//
+#include "codegen/driver/machine/LlvmSteps.h"
+
+#include "codegen/driver/Steps.h"
+#include "codegen/emit/Ptx.h"
+#include "codegen/emit/StepCosts.h"
+#include "codegen/emit/patterns/ConvertToLlvm.h"
+#include "codegen/emit/rewrites/CheckNumbers.h"
+#include "codegen/emit/rewrites/DoublePrecision.h"
+#include "codegen/emit/rewrites/FastMath.h"
+#include "codegen/emit/rewrites/PackRecords.h"
+#include "codegen/emit/rewrites/WaveStates.h"
+#include "codegen/link/Link.h"
+#include "runtime/program/DeviceBitcode.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+
+namespace rtsl::driver {
+
+void fail(const std::string &message) {
+  if (message.find(std::strerror(ENOMEM)) != std::string::npos)
+    throw std::bad_alloc();
+  throw std::logic_error(message);
+}
+
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<Place> *numberPlaces) {
+  LlvmCode code;
+  code.kept = keptFunctions(ir);
+  run(ir, codegen::buildLlvmPipeline);
+  if (numberPlaces)
+    codegen::checkNumbers(ir, *numberPlaces);
+  code.options = options;
+  code.machine = take(codegen::createTargetMachine(options));
+  code.module = take(codegen::translateToLlvm(ir, *code.context, *code.machine));
+  if (options.floatingPoint == FloatingPoint::Fast)
+    codegen::relaxArithmetic(*code.module);
+  else if (options.floatingPoint == FloatingPoint::Double)
+    codegen::widenArithmetic(*code.module);
+  return code;
+}
+
+void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program) {
+  codegen::defineConstant(*code.module, "rtsl_needs", program.needs | program.sceneNeeds);
+  codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
+  codegen::defineConstant(*code.module, "rtsl_counts_steps", options.countsSteps);
+}
+
+const std::vector<std::string_view> &megakernelCode(bool forGpu) {
+  // They use functions of each other; what is not used is not linked.
+  static const std::vector<std::string_view> host = {
+      runtime::deviceBitcode(), runtime::wavefrontBitcode(), runtime::megakernelBitcode(),
+      runtime::deviceBitcode()};
+  static const std::vector<std::string_view> gpu = {
+      runtime::gpuDeviceBitcode(), runtime::gpuWavefrontBitcode(), runtime::gpuMegakernelBitcode(),
+      runtime::gpuDeviceBitcode()};
+  return forGpu ? gpu : host;
+}
+
+/// The number of "sm_80" and the like.
+static unsigned architecture(const std::string &gpu) {
+  return unsigned(std::strtoul(gpu.c_str() + std::strlen("sm_"), nullptr, 10));
+}
+
+/// Whether rays are chosen at random, and only `generate` waits for them.
+static bool followsPaths(const runtime::Program &program, const llvm::Module &module) {
+  return program.paths == runtime::Paths::Random &&
+         codegen::knownConstant(module, "rtsl_rays_wait_once").value_or(0) != 0;
+}
+
+static bool hasTree(const llvm::Module &module) {
+  return codegen::knownConstant(module, "rtsl_listed_instances").value_or(0) == 0;
+}
+
+bool hasList(const LlvmCode &code) {
+  return !hasTree(*code.module);
+}
+
+/// docs/gpu.md compares the schedules.
+static Schedule scheduleFor(const CompileOptions &options, const runtime::Program &program,
+                            const llvm::Module &module) {
+  if (options.schedule)
+    return *options.schedule;
+  if (program.paths != runtime::Paths::Random)
+    return Schedule::Prioritized;
+  const bool replace = codegen::knownConstant(module, "rtsl_rays_replace").value_or(0) != 0;
+  const bool isLit = program.needs & (RTSL_NEEDS_EMITTERS | RTSL_NEEDS_SAMPLING);
+  return followsPaths(program, module) && replace && !isLit && !hasTree(module)
+             ? Schedule::LeastWaste
+             : Schedule::Majority;
+}
+
+/// docs/gpu.md compares the organisations.
+static Organisation organisationFor(const CompileOptions &options, const runtime::Program &program,
+                                    const llvm::Module &module) {
+  if (options.organisation)
+    return *options.organisation;
+  if (options.countsSteps)
+    return Organisation::Megakernel;
+  return followsPaths(program, module) && hasTree(module) ? Organisation::Wavefront
+                                                          : Organisation::Megakernel;
+}
+
+/// How the lanes of a warp choose their steps.
+static void defineSchedule(llvm::Module &module, const CompileOptions &options,
+                           const runtime::Program &program) {
+  const Schedule schedule = scheduleFor(options, program, module);
+  codegen::defineConstant(module, "rtsl_schedule", std::uint32_t(schedule));
+  if (schedule == Schedule::LeastWaste) {
+    const std::uint64_t costs = codegen::stepCosts(module);
+    codegen::defineConstant(module, "rtsl_step_costs_low", std::uint32_t(costs));
+    codegen::defineConstant(module, "rtsl_step_costs_high", std::uint32_t(costs >> 32));
+  }
+  codegen::defineForward(module, "rtsl_least_of_warp",
+                         architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"
+                                                         : "rtsl_least_by_exchange");
+}
+
+/// What a program exports on a GPU.
+static std::vector<std::string> kernels(Organisation organisation) {
+  if (organisation == Organisation::Megakernel)
+    return {"rtsl_render", "rtsl_sum"};
+  return {"rtsl_wave_begin", "rtsl_wave_sample",     "rtsl_wave_trace",   "rtsl_wave_state",
+          "rtsl_sum",        "rtsl_wave_has_stacks", "rtsl_record_groups"};
+}
+
+LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program, bool forGpu) {
+  LlvmCode code =
+      translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
+  defineFacts(code, options, program);
+  if (forGpu)
+    defineSchedule(*code.module, options, program);
+  code.organisation = forGpu ? organisationFor(options, program, *code.module)
+                             : options.organisation.value_or(Organisation::Megakernel);
+  const bool isWavefront = code.organisation == Organisation::Wavefront;
+  if (isWavefront)
+    beginWavefront(code, program);
+  linkDeviceCode(code, megakernelCode(forGpu),
+                 forGpu ? kernels(code.organisation) : hostEntries(code.organisation));
+  if (isWavefront)
+    endWavefront(code, program);
+  code.options.isMegakernel = true;
+  return code;
+}
+
+void beginWavefront(LlvmCode &code, const runtime::Program &program) {
+  constexpr std::size_t besideStates = 2; // traversal, and the beginning of samples
+  codegen::defineConstant(*code.module, "rtsl_wave_steps",
+                          std::uint32_t(program.stateNames.size() + besideStates));
+}
+
+void endWavefront(LlvmCode &code, const runtime::Program &program) {
+  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()));
+  codegen::declareRecords(*code.module);
+}
+
+const std::vector<std::string> &hostEntries(std::optional<Organisation> organisation) {
+  static const std::vector<std::string> lanes = {"rtsl_lane_bytes", "rtsl_run_lane"};
+  static const std::vector<std::string> waves = {"rtsl_wave_bytes", "rtsl_run_wave",
+                                                 "rtsl_wave_state"};
+  return organisation == Organisation::Wavefront ? waves : lanes;
+}
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports) {
+  exports.insert(exports.end(), code.kept.begin(), code.kept.end());
+  if (llvm::Error error = codegen::linkDeviceCode(*code.module, bitcodes, exports))
+    throw std::logic_error(llvm::toString(std::move(error)));
+}
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.hostCpu = hostCpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+codegen::MachineOptions gpuOptions(const CompileOptions &options) {
+  codegen::MachineOptions machine;
+  machine.optimization = options.optimization;
+  machine.gpu = options.gpu;
+  machine.floatingPoint = options.floatingPoint;
+  return machine;
+}
+
+void optimize(LlvmCode &code) {
+  codegen::optimize(*code.module, *code.machine, code.options);
+}
+
+std::string toPtx(LlvmCode code, runtime::WaveFacts *facts) {
+  codegen::nameForPtx(*code.module);
+  optimize(code);
+  if (facts && code.module->getFunction("rtsl_wave_has_stacks")) {
+    facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
+    // Not known of code that is not optimised.
+    facts->hasStacks = codegen::takeConstant(*code.module, "rtsl_wave_has_stacks").value_or(1) != 0;
+  }
+  return take(codegen::printPtx(*code.module, *code.machine));
+}
+
+} // namespace rtsl::driver

@@ -1,0 +1,86 @@
+//===- LlvmSteps.h - the steps to LLVM IR, PTX and machine code -----------===//
+//
+// They follow those of driver/Steps.h, and fail like them.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "codegen/driver/Compiler.h"
+#include "codegen/emit/LlvmModule.h"
+#include "support/Error.h"
+
+#include "mlir/IR/BuiltinOps.h"
+#include "llvm/IR/LLVMContext.h"
+#include "llvm/IR/Module.h"
+#include "llvm/Support/Error.h"
+#include "llvm/Target/TargetMachine.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rtsl::driver {
+
+/// Throws std::logic_error, or std::bad_alloc if the message reports a lack of memory.
+[[noreturn]] void fail(const std::string &message);
+
+template <typename T>
+T take(llvm::Expected<T> expected) {
+  if (!expected)
+    fail(llvm::toString(expected.takeError()));
+  return std::move(*expected);
+}
+
+/// LLVM IR before code generation.
+struct LlvmCode {
+  LlvmCode() = default;
+  LlvmCode(LlvmCode &&) = default;
+  std::unique_ptr<llvm::LLVMContext> context = std::make_unique<llvm::LLVMContext>();
+  std::unique_ptr<llvm::TargetMachine> machine;
+  std::unique_ptr<llvm::Module> module;
+  codegen::MachineOptions options;
+  std::vector<std::string> kept; // functions that are kept although nothing calls them
+  Organisation organisation = Organisation::Megakernel; // of a self-contained program
+};
+
+/// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
+/// and their source locations are added there (CheckNumbers.h).
+LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
+                   std::vector<Place> *numberPlaces = nullptr);
+
+/// Is the program bound to a scene whose few primitives are tested one after the other?
+bool hasList(const LlvmCode &code);
+
+/// Defines constants with which the device code omits unused parts.
+void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
+
+/// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
+const std::vector<std::string_view> &megakernelCode(bool forGpu);
+
+/// The states of a linked program as a self-contained program
+/// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
+LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program, bool forGpu);
+
+/// The functions that such a program exports on the CPU: the size of a lane, and what runs it.
+const std::vector<std::string> &
+hostEntries(std::optional<Organisation> organisation = std::nullopt);
+
+/// Before linking with the device code of a wavefront, and after it.
+void beginWavefront(LlvmCode &code, const runtime::Program &program);
+void endWavefront(LlvmCode &code, const runtime::Program &program);
+
+void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
+                    std::vector<std::string> exports);
+
+codegen::MachineOptions machineOptions(const CompileOptions &options, bool hostCpu);
+codegen::MachineOptions gpuOptions(const CompileOptions &options);
+
+void optimize(LlvmCode &code);
+
+/// Optimises and prints. Sets the facts of a wavefront, if it is one.
+std::string toPtx(LlvmCode code, runtime::WaveFacts *facts = nullptr);
+
+} // namespace rtsl::driver
