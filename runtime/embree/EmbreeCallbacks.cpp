@@ -27,6 +27,16 @@ const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
   return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
 }
 
+/// After a hit that was committed, which the ray's search for the nearest one need not go beyond.
+/// `occluder`: what was hit.
+void endAtHit(const EmbreeContext &context, RTCRay &ray, const Occluder &occluder) {
+  ray.tfar = context.end(context.state->nearest);
+  if (!context.endsIfHidden || !device::isPointHidden(*context.state))
+    return;
+  ray.tfar = isOver;
+  context.occluder = occluder;
+}
+
 /// Passes an item to the visitor of the ray. False if the search is over.
 bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
   const EmbreeVisitor &visitor = *context.visitor;
@@ -52,7 +62,7 @@ void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
   if (context.visitor)
     visitBlock(context, ray, block);
   else if (testBlock(*context.state, rayOf<Ray>(context), block, false))
-    ray.tfar = context.end(context.state->nearest);
+    endAtHit(context, ray, {arguments->primID, false});
 }
 
 template <typename Ray>
@@ -90,7 +100,7 @@ void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
   if (context.visitor)
     visitItem(context, ray, itemOf<Ray>(context, context.space->primitives[arguments->primID]));
   else if (testPrimitive<Ray>(context, arguments->primID))
-    ray.tfar = context.end(context.state->nearest);
+    endAtHit(context, ray, {}); // no block or instance
 }
 
 template <typename Ray>
@@ -158,6 +168,7 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   context.space = one.inside;
   context.visitor = outer.visitor;
   context.seesAll = true; // what is inside
+  context.endsIfHidden = outer.endsIfHidden;
   context.toEmbree = 1;
   int exponent = 0;
   if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
@@ -192,8 +203,12 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
 void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  ray.tfar =
-      searchInstance<false>(context, arguments->primID) ? isOver : context.end(context.limit());
+  if (!searchInstance<false>(context, arguments->primID)) {
+    ray.tfar = context.end(context.limit());
+    return;
+  }
+  ray.tfar = isOver;
+  context.occluder = {arguments->primID, true};
 }
 
 void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {

@@ -32,8 +32,9 @@ struct EmbreeContext {
   const EmbreeSpace *space;
   const EmbreeVisitor *visitor; // null: candidates are tested, and committed if they win
   bool seesAll;                 // the ray sees all instances
+  bool endsIfHidden;            // the search is device::towardsPoint
   float toEmbree;               // a power of two that turns our t into Embree's
-  // for a ray that needs any hit only: the block in which one was found
+  // what was hit, if any hit was sufficient, or hides the point that the ray goes towards
   mutable Occluder occluder;
 
   /// Where Embree's search may end, if hits beyond t do not matter.
@@ -84,7 +85,7 @@ struct EmbreeScene::Implementation {
   static bool isInInstance(const EmbreeContext &context, std::uint32_t number);
 
   /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
-  [[gnu::always_inline]] std::uint32_t query(RtslState &state, bool anyHit, float toEmbree,
+  [[gnu::always_inline]] std::uint32_t query(RtslState &state, std::uint32_t how, float toEmbree,
                                              float fromEmbree) const {
     const device::TriangleRay triangleRay =
         device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection));
@@ -96,22 +97,25 @@ struct EmbreeScene::Implementation {
     context.space = &world;
     context.visitor = nullptr;
     context.seesAll = true;
+    context.endsIfHidden = how & device::towardsPoint;
     context.toEmbree = toEmbree;
     const RTCScene tree = world.treeFor(device::load(state.RayOrigin));
-    if (anyHit) {
-      LastOccluders &last = LastOccluders::towards(state.RayDirection);
+    const bool anyHit = how & RTSL_FIRST_HIT;
+    LastOccluders &last = LastOccluders::towards(state.RayDirection);
+    if (anyHit || context.endsIfHidden) {
       const auto meets = [&](const Occluder &occluder) {
-        return occluder.isInstance
-                   ? isInInstance(context, occluder.number)
-                   : testBlock(state, triangleRay, world.blocks[occluder.number], true);
+        const bool isHit = occluder.isInstance
+                               ? isInInstance(context, occluder.number)
+                               : testBlock(state, triangleRay, world.blocks[occluder.number], true);
+        return isHit && device::endsWithHit(state, how);
       };
       if (last.isMet(number, meets))
         return device::endSearch(state);
+    }
+    if (anyHit) {
       RTCRay ray;
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
-      if (context.occluder.number != Occluder::none)
-        last.learn(number, context.occluder);
     } else {
       RTCRayHit rayHit;
       fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
@@ -120,13 +124,15 @@ struct EmbreeScene::Implementation {
       rtcIntersect1(tree, &context.embree, &rayHit);
       device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
     }
+    if (context.occluder.number != Occluder::none)
+      last.learn(number, context.occluder);
     return device::endSearch(state);
   }
 };
 
 [[gnu::always_inline]] inline std::uint32_t EmbreeScene::traverseEasy(RtslState &state,
-                                                                      bool anyHit) const {
-  return self->query(state, anyHit, 1, 1);
+                                                                      std::uint32_t how) const {
+  return self->query(state, how, 1, 1);
 }
 
 } // namespace rtsl::runtime

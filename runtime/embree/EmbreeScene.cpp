@@ -152,12 +152,12 @@ bool EmbreeScene::canFollow(device::Vec3 origin, device::Vec3 direction) {
          exponent <= largestExponent;
 }
 
-std::uint32_t EmbreeScene::traverse(RtslState &state, bool anyHit) const {
+std::uint32_t EmbreeScene::traverse(RtslState &state, std::uint32_t how) const {
   if (isEasy(state))
-    return traverseEasy(state, anyHit);
+    return traverseEasy(state, how);
   ++rayCounters().rescaledRays;
   const int exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
-  return self->query(state, anyHit, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
+  return self->query(state, how, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
 }
 
 void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
@@ -174,6 +174,7 @@ void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
   context.space = &self->world;
   context.visitor = &visitor;
   context.seesAll = false;
+  context.endsIfHidden = false;
   context.toEmbree = device::powerOfTwo(exponent);
   RTCRayHit rayHit;
   Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),

@@ -51,11 +51,11 @@ public:
   static bool canFollow(device::Vec3 origin, device::Vec3 direction);
 
   /// rtsl_traverse for a ray that canFollow accepts. It sees all instances, and they accept all
-  /// hits.
-  std::uint32_t traverse(RtslState &state, bool anyHit) const;
+  /// hits. `how` is as for rtsl_traverse.
+  std::uint32_t traverse(RtslState &state, std::uint32_t how) const;
 
   /// The same for a ray that isEasy. In EmbreeRay.h.
-  std::uint32_t traverseEasy(RtslState &state, bool anyHit) const;
+  std::uint32_t traverseEasy(RtslState &state, std::uint32_t how) const;
 
   /// Calls `visitor` for items that the ray may hit. canFollow must accept the ray.
   void visit(RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;

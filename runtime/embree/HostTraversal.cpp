@@ -82,9 +82,8 @@ KeptTrees HostScene::takeTrees() {
 /// With any tree.
 template <typename Tree>
 std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
-  return how & RTSL_INVOKE_ANY_HIT
-             ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
-             : device::findHit(state, how & RTSL_FIRST_HIT, FilledSlots{slots}, tree);
+  return how & RTSL_INVOKE_ANY_HIT ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
+                                   : device::findHit(state, how, FilledSlots{slots}, tree);
 }
 
 /// With our own tree, on a launch that has it: the ray's launch may not have one.
@@ -116,7 +115,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
   }
   if (how & RTSL_INVOKE_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll)
     return search(state, how, EmbreeTree{*embree});
-  return embree->traverse(state, how & RTSL_FIRST_HIT);
+  return embree->traverse(state, how);
 }
 
 [[gnu::always_inline]] inline std::uint32_t HostScene::traverseFast(RtslState &state,
@@ -124,7 +123,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
   if (how & RTSL_INVOKE_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll ||
       !EmbreeScene::isEasy(state))
     return traverseAny(state, how);
-  return seenByAll->traverseEasy(state, how & RTSL_FIRST_HIT);
+  return seenByAll->traverseEasy(state, how);
 }
 
 std::uint32_t HostScene::traverse(RtslState &state, std::uint32_t how) const {

@@ -77,7 +77,7 @@ inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left) {
   if (!(density > 0 && density < infinity))
     return light;
   copyColor(light.radiance, state.SampleColor, components);
-  const RayStart start = startElsewhere(left, ray.origin, light.direction);
+  const RayStart start = startOf(left, ray.origin, light.direction);
   if (traverseShadow(ray, light.direction, start, infinity) == RTSL_MISS)
     light.density = density;
   return light;

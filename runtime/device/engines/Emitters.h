@@ -259,15 +259,13 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice cho
   light.direction =
       pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v) - ray.origin;
 
-  // How much the hit's distance may differ from that of the point.
-  constexpr float tolerance = 0x1p-10f;
   setDefaults(state, rtsl_color_components(&launch));
-  const RayStart start = startElsewhere(left, ray.origin, light.direction);
-  if (!(start.epsilon < 1 - tolerance))
+  const RayStart start = startOf(left, ray.origin, light.direction);
+  if (!(start.epsilon < hiddenBefore))
     return light;
-  setRay(state, ray.origin, light.direction, start, 1 + tolerance);
-  if (rtsl_traverse(&state, 0) != RTSL_HIT || state.instance != emitter.instance ||
-      !(state.HitDistance > 1 - tolerance))
+  setRay(state, ray.origin, light.direction, start, 2 - hiddenBefore);
+  if (rtsl_traverse(&state, towardsPoint) != RTSL_HIT || isPointHidden(state) ||
+      state.instance != emitter.instance)
     return light;
   describeHit(state);
   light.distance = state.HitDistance;

@@ -15,10 +15,9 @@ extern "C" {
 
 uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
   const bool mayInvoke = rtsl_needs(state->launch) & RTSL_NEEDS_ANY_HIT;
-  uint32_t answer =
-      mayInvoke && how & RTSL_INVOKE_ANY_HIT
-          ? device::traverseAsking(*state, how, device::LinkedPayloadSlots())
-          : device::traverseDevice(*state, how & RTSL_FIRST_HIT, device::LinkedSlots());
+  uint32_t answer = mayInvoke && how & RTSL_INVOKE_ANY_HIT
+                        ? device::traverseAsking(*state, how, device::LinkedPayloadSlots())
+                        : device::traverseDevice(*state, how, device::LinkedSlots());
   if (answer == RTSL_BAD_RAY)
     device::countUp(&state->launch->status->badRays);
   return answer;

@@ -50,6 +50,26 @@ inline bool reportHit(RtslState &state, float t) {
   return true;
 }
 
+/// Of a ray towards a point at distance 1, such as one of a light: a hit before this distance hides
+/// the point.
+constexpr float hiddenBefore = 1 - 0x1p-10f;
+
+/// How rtsl_traverse searches for such a ray, beside RTSL_FIRST_HIT and the others: for the nearest
+/// hit, or any one that hides the point.
+constexpr uint32_t towardsPoint = 8;
+static_assert(!(towardsPoint & (RTSL_FIRST_HIT | RTSL_INVOKE_ANY_HIT | RTSL_IN_ORDER)));
+
+/// Is the point hidden? By `nearest`, which only decreases during a search, so that the answer does
+/// not depend on the order of hits.
+inline bool isPointHidden(const RtslState &state) {
+  return state.nearest <= hiddenBefore;
+}
+
+/// Does a search end, now that a hit was committed?
+inline bool endsWithHit(const RtslState &state, uint32_t how) {
+  return how & RTSL_FIRST_HIT || (how & towardsPoint && isPointHidden(state));
+}
+
 /// Before a traversal: nothing is hit up to HitDistance, the ray's end.
 inline void beginSearch(RtslState &state) {
   state.nearest = state.HitDistance;

@@ -69,21 +69,6 @@ __attribute__((cold)) inline float spawnEpsilonOfExtremes(float error, Vec3 norm
   return error / (cosine * dot(direction, unit));
 }
 
-/// Does the ray start where `parent` hit a surface? Nearly all do.
-inline bool startsAtHit(const RtslState &parent, Vec3 origin) {
-  return parent.instance != RTSL_NO_HIT && origin.x == parent.HitPoint[0] &&
-         origin.y == parent.HitPoint[1] && origin.z == parent.HitPoint[2];
-}
-
-/// Can every traversal handle a ray as it is: finite, and of a size whose squares and reciprocals
-/// stay in range? True only for rays that start at the hit point, whose error bounds its size: it
-/// is at least 2^-23 of the largest coordinate. Other rays are checked when they are traced.
-inline bool isEasySpawn(const RtslState &parent, Vec3 origin, Vec3 direction) {
-  float square = dot(direction, direction);
-  return startsAtHit(parent, origin) && parent.hitPointError < 0x1p36f && square > 0x1p-38f &&
-         square < 0x1p38f;
-}
-
 /// Epsilon near the hit point, where the surface and the angle to it are known; `error` bounds the
 /// distance of the origin from the surface.
 inline float epsilonAtSurface(float error, Vec3 normal, Vec3 direction) {
@@ -125,6 +110,20 @@ inline LeftHit leftHit(const RtslState &parent) {
           load(parent.GeometricNormal), parent.hitPointError};
 }
 
+/// Does the ray start where a surface was hit? Nearly all do.
+inline bool startsAtHit(const LeftHit &hit, Vec3 origin) {
+  return hit.instance != RTSL_NO_HIT && origin.x == hit.point.x && origin.y == hit.point.y &&
+         origin.z == hit.point.z;
+}
+
+/// Can every traversal handle a ray as it is: finite, and of a size whose squares and reciprocals
+/// stay in range? True only for rays that start at the hit point, whose error bounds its size: it
+/// is at least 2^-23 of the largest coordinate. Other rays are checked when they are traced.
+inline bool isEasySpawn(const LeftHit &hit, Vec3 origin, Vec3 direction) {
+  float square = dot(direction, direction);
+  return startsAtHit(hit, origin) && hit.error < 0x1p36f && square > 0x1p-38f && square < 0x1p38f;
+}
+
 /// The rounding of an origin of which nothing is known but its size.
 inline float foreignError(Vec3 origin) {
   return foreignPointUnits * roundingUnit * largest(origin);
@@ -161,14 +160,17 @@ __attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3
 /// The start of a ray that a shader sends from `origin`. Leaving a surface at an angle with cosine
 /// c to the normal, a ray that starts d below it crosses it at distance d / c; what is skipped
 /// until then is within d of the tangent plane. So epsilon is d |n| / |direction . n|.
+__attribute__((always_inline)) inline RayStart startOf(const LeftHit &hit, Vec3 origin,
+                                                       Vec3 direction) {
+  if (isEasySpawn(hit, origin, direction))
+    return {epsilonAtSurface(hit.error, hit.normal, direction), 1, hit.instance, hit.primitive};
+  if (hit.instance == RTSL_NO_HIT)
+    return startInSpace(hit.primitive, origin, direction);
+  return startElsewhere(hit, origin, direction);
+}
 __attribute__((always_inline)) inline RayStart startOf(const RtslState &parent, Vec3 origin,
                                                        Vec3 direction) {
-  if (isEasySpawn(parent, origin, direction))
-    return {epsilonAtSurface(parent.hitPointError, load(parent.GeometricNormal), direction), 1,
-            parent.instance, leftPrimitive(parent)};
-  if (parent.instance == RTSL_NO_HIT)
-    return startInSpace(leftPrimitive(parent), origin, direction);
-  return startElsewhere(leftHit(parent), origin, direction);
+  return startOf(leftHit(parent), origin, direction);
 }
 
 inline float spawnEpsilon(const RtslState &parent, Vec3 origin, Vec3 direction) {

@@ -326,7 +326,7 @@ struct LaunchTree {
 /// rtsl_traverse for a good ray, with any tree. `slots` has the methods that it needs as members
 /// with the names of Slots.def.
 template <typename Slots, typename Tree>
-uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &tree) {
+uint32_t findHit(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
   TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
   const auto intersect = [&](RtslState *ray, RtslRef object) {
     slots.rt_Primitive_intersect(ray, object);
@@ -336,18 +336,19 @@ uint32_t findHit(RtslState &state, bool anyHit, const Slots &slots, const Tree &
       state, ray, [&] { return state.nearest; },
       [&](const RtslInstance &instance) { return isSeen(state, instance, slots); },
       [&](const auto &item, const auto &inItsSpace) {
-        return testIfSeen(state, inItsSpace, item, slots, intersect) && anyHit;
+        return testIfSeen(state, inItsSpace, item, slots, intersect) && endsWithHit(state, how);
       });
-  if (!anyHit)
+  if (!(how & RTSL_FIRST_HIT))
     findLostAttributes(state, ray, intersect);
   return endSearch(state);
 }
 
 /// rtsl_traverse with the tree of the launch.
 template <typename Slots>
-uint32_t traverseDevice(RtslState &state, bool anyHit, const Slots &slots) {
+uint32_t traverseDevice(RtslState &state, uint32_t how, const Slots &slots) {
   // A ray that ends at its first hit gains more from an early one.
-  return isGoodRay(state) ? findHit(state, anyHit, slots, LaunchTree{!anyHit}) : RTSL_BAD_RAY;
+  return isGoodRay(state) ? findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)})
+                          : RTSL_BAD_RAY;
 }
 
 } // namespace rtsl::device

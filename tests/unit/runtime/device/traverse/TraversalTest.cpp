@@ -276,6 +276,23 @@ TEST(EmbreeTraversal, MaskedRaysNeedNoSecondTree) {
   EXPECT_FALSE(embree.hasOwnTree());
 }
 
+namespace {
+
+/// A search towards a point at distance 1 ends at any hit that hides it. Otherwise it finds the
+/// nearest hit.
+void expectSameView(const HostScene &host, RtslState nearest, int i, int (&answers)[2]) {
+  RtslState seen = nearest;
+  const std::uint32_t found = host.traverse(nearest, 0);
+  ASSERT_EQ(host.traverse(seen, rtsl::device::towardsPoint), found) << i;
+  const bool isHidden = found == RTSL_HIT && rtsl::device::isPointHidden(nearest);
+  ASSERT_EQ(found == RTSL_HIT && rtsl::device::isPointHidden(seen), isHidden) << i;
+  if (!isHidden)
+    expectSame(seen, nearest, i);
+  ++answers[isHidden];
+}
+
+} // namespace
+
 // Bundles of shadow rays, as lights get them, in several scenes in turns: what was in the way of a
 // ray before is tested first (LastOccluders.h), and of one scene there are blocks that another one
 // does not have.
@@ -286,7 +303,7 @@ TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
   const RtslLaunch launches[] = {large.launch(), small.launch(), instances.launch()};
   std::mt19937 random(9);
   std::uniform_real_distribution<float> near(-0.05f, 0.05f), share(0.2f, 1.5f);
-  int answers[3][2] = {};
+  int answers[3][2] = {}, views[2] = {};
   for (int bundle = 0; bundle < 2400; ++bundle) {
     const int which = bundle % 3;
     const Ray first = bundle % 4 ? rayAtTriangle(random, launches[which], randomRay(random, 1).o)
@@ -300,8 +317,14 @@ TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
       const std::uint32_t found = embree[which].traverse(a, RTSL_FIRST_HIT);
       ASSERT_EQ(found, own[which].traverse(b, RTSL_FIRST_HIT)) << bundle << ", " << i;
       ++answers[which][found == RTSL_HIT];
+      a = makeState(launches[which], o, d, 1e-4f, 2 - rtsl::device::hiddenBefore);
+      b = makeState(own[which].deviceLaunch(), o, d, 1e-4f, 2 - rtsl::device::hiddenBefore);
+      ASSERT_NO_FATAL_FAILURE(expectSameView(embree[which], a, i, views));
+      ASSERT_NO_FATAL_FAILURE(expectSameView(own[which], b, i, views));
     }
   }
+  EXPECT_GT(views[0], 10000);
+  EXPECT_GT(views[1], 10000);
   for (const int (&ofScene)[2] : answers) {
     EXPECT_GT(ofScene[0], 1000);
     EXPECT_GT(ofScene[1], 1000);
