@@ -519,6 +519,33 @@ class Paths(PathCase):
                 self.run_rtslc("render", "scene.json", "-o", f"{i}.exr", "-q", *way)
                 self.run_rtslc("compare", "a.exr", f"{i}.exr", "--threshold", "0")
 
+    def test_lamps_need_no_search(self):
+        """From an Emitter no light is searched for. A lamp of the same kind that has a density, so
+        that it is, has the same picture."""
+        self.write(
+            "searching.rtsl",
+            """
+import std.materials;
+class Searching : Emitter {
+  void evaluatePDF() { rt_PDF = 0.0; }
+};
+""",
+        )
+        pictures = []
+        for name in ("Emitter", "Searching"):
+            lamp = {"class": name, "radiance": 4, "isTwoSided": True}
+            self.scene(
+                [
+                    (FLOOR, {"class": "Lambert"}),
+                    ({"class": "Sphere", "center": [0, 4, 3], "radius": 1}, lamp),
+                ],
+                spp=16,
+                **{"import": ["std.primitives", "std.materials", "shaders.rtsl", "searching.rtsl"]},
+            )
+            pictures.append(f"{name}.exr")
+            self.run_rtslc("render", "scene.json", "-o", pictures[-1], "-q", self.level)
+        self.assert_same_bits(*pictures)
+
     def test_a_package_does_the_same(self):
         """Emitters are found when the package is made."""
         self.scene(
