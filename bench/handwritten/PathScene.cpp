@@ -42,6 +42,18 @@ PathWorld readPathWorld(const std::string &file) {
       const vec3 reflectance = read(words);
       words >> path;
       world.meshes.push_back({reflectance, rtsl::runtime::loadMesh(path)});
+    } else if (kind == "lens") {
+      words >> world.lens.distance >> world.lens.radius >> world.lens.corners;
+    } else if (kind == "sky") {
+      for (vec3 *v : {&world.sky.zenith, &world.sky.horizon, &world.sky.ground})
+        *v = read(words);
+      words >> world.sky.blur;
+    } else if (kind == "glossy") {
+      GlossyMesh one{};
+      one.base = read(words);
+      words >> one.metallic >> one.roughness >> one.coat >> one.coatRoughness >> path;
+      one.mesh = rtsl::runtime::loadMesh(path);
+      world.glossy.push_back(std::move(one));
     }
     if (!words)
       throw std::runtime_error(file + " has an incomplete line: " + line);
@@ -56,11 +68,11 @@ PathScene::PathScene(PathWorld given) : world(std::move(given)) {
     one.area = glm::length(product);
     one.normal = product / one.area;
     if (one.isLamp())
-      lamp = &one;
+      lamps.push_back(&one);
     for (const vec3 &v : {one.anchor, one.side1, one.side2})
       extent = std::max({extent, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   }
-  if (!lamp)
+  if (lamps.empty())
     throw std::runtime_error("no parallelogram shines");
   for (const DiffuseMesh &one : world.meshes)
     for (const float coordinate : one.mesh.positions)
@@ -77,8 +89,11 @@ PathScene::PathScene(PathWorld given) : world(std::move(given)) {
   rtcSetSceneFlags(embree, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(embree, RTC_BUILD_QUALITY_MEDIUM);
   attachParallelograms();
-  for (DiffuseMesh &mesh : world.meshes)
-    attach(mesh);
+  unsigned number = 0;
+  for (DiffuseMesh &one : world.meshes)
+    attach(one.mesh, ++number);
+  for (GlossyMesh &one : world.glossy)
+    attach(one.mesh, ++number);
   rtcCommitScene(embree);
   if (RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
     throw std::runtime_error("Embree fails with error " + std::to_string(error));
@@ -109,9 +124,9 @@ void PathScene::attachParallelograms() {
   rtcReleaseGeometry(geometry);
 }
 
-void PathScene::attach(DiffuseMesh &one) {
-  RTCGeometry geometry = newTriangles(device, one.mesh);
-  rtcAttachGeometryByID(embree, geometry, 1 + unsigned(&one - world.meshes.data()));
+void PathScene::attach(rtsl::runtime::Mesh &mesh, unsigned number) {
+  RTCGeometry geometry = newTriangles(device, mesh);
+  rtcAttachGeometryByID(embree, geometry, number);
   rtcReleaseGeometry(geometry);
 }
 

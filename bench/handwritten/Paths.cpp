@@ -6,54 +6,18 @@
 // path tracer on Embree, whose hits are taken as they are.
 //
 //===----------------------------------------------------------------------===//
-#include "EmbreeRays.h"
-#include "PathScene.h"
+#include "PathSampling.h"
 #include "Program.h"
 
-#include "runtime/device/ray/Random.h"
-
-#include <embree3/rtcore.h>
-
-#include <limits>
 #include <memory>
 
 using namespace handwritten;
 
 namespace {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float pi = 3.1415927f;
-constexpr unsigned sureBounces = 3; // no path is ended at random before
-
-/// The random numbers of a path.
-class Dice {
-public:
-  Dice(std::uint32_t x, std::uint32_t y) : key{x, y} {}
-  float next() { return rtsl::device::randomNumber(key, dimension++); }
-
-private:
-  const std::uint32_t key[2];
-  std::uint32_t dimension = 0;
-};
-
-/// The power heuristic.
-float share(float density, float other) {
-  const float ratio = other / density;
-  return 1 / (1 + ratio * ratio);
-}
-
-/// A direction around the normal with density cosine / pi (Duff et al. 2017 for the frame).
-vec3 sampleCosine(vec3 n, float u, float v) {
-  const float side = std::copysign(1.0f, n.z), a = -1 / (side + n.z), b = n.x * n.y * a;
-  const vec3 x(1 + side * n.x * n.x * a, side * b, -side * n.x), y(b, side + n.y * n.y * a, -n.y);
-  const float radius = std::sqrt(u), turn = 2 * pi * v;
-  return radius * std::cos(turn) * x + radius * std::sin(turn) * y +
-         std::sqrt(std::max(1 - u, 1e-12f)) * n;
-}
-
 /// The lamp's light at a diffuse surface of reflectance 1, by a ray to a point of the lamp.
 vec3 searched(const PathScene &scene, vec3 point, vec3 normal, Dice &dice) {
-  const Parallelogram &lamp = *scene.lamp;
+  const Parallelogram &lamp = *scene.lamps.front();
   const float u = dice.next(), v = dice.next();
   const vec3 path = lamp.anchor + u * lamp.side1 + v * lamp.side2 - point;
   const float squared = glm::dot(path, path), distance = std::sqrt(squared);
@@ -70,13 +34,7 @@ vec3 followPath(const PathScene &scene, vec3 from, vec3 direction, unsigned maxD
   vec3 light(0), weight(1);
   float density = 0; // of the direction; 0: of the camera's ray
   for (unsigned depth = 0;; ++depth) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit found;
-    found.ray = embreeRay(from, direction, depth ? scene.epsilon : 0, infinity);
-    found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene.embree, &context, &found);
+    const RTCRayHit found = findHit(scene, from, direction, depth ? scene.epsilon : 0);
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID)
       return light;
     const Parallelogram *flat = scene.parallelogram(found.hit);
@@ -94,33 +52,20 @@ vec3 followPath(const PathScene &scene, vec3 from, vec3 direction, unsigned maxD
     light += weight * searched(scene, point, normal, dice);
     const float u = dice.next(), v = dice.next();
     from = point;
-    direction = sampleCosine(normal, u, v);
+    direction = Frame(normal).toWorld(sampleCosine(u, v));
     density = glm::dot(normal, direction) / pi;
-    if (depth >= sureBounces) {
-      const float largest = std::max(weight.x, std::max(weight.y, weight.z));
-      if (largest < 1) {
-        if (dice.next() >= largest)
-          return light;
-        weight /= largest;
-      }
-    }
+    if (endsAtRandom(weight, depth, dice))
+      return light;
   }
 }
 
 vec3 sample(const PathScene &scene, const Picture &picture, std::uint32_t x, std::uint32_t y,
             std::uint32_t index) {
-  using namespace rtsl::device;
-  const Words4 words = hash4(x, y, index, picture.seed);
-  const Words4 shift = hash4(x, y, 0xffffffffu, picture.seed); // the same for the whole pixel
-  float jitterX, jitterY;
-  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
-  const float aspect = float(picture.width) / float(picture.height),
-              across = 2 * (float(x) + jitterX) / float(picture.width) - 1,
-              upward = 1 - 2 * (float(y) + jitterY) / float(picture.height);
-  const vec3 direction =
-      glm::normalize(scene.forward + aspect * across * scene.right + upward * scene.upward);
-  Dice dice(words.x, words.y);
-  return followPath(scene, scene.world.view.eye, direction, picture.maxDepth, dice);
+  PictureSample drawn = beginSample(picture, x, y, index);
+  const float aspect = float(picture.width) / float(picture.height);
+  const vec3 direction = glm::normalize(scene.forward + aspect * drawn.across * scene.right +
+                                        drawn.upward * scene.upward);
+  return followPath(scene, scene.world.view.eye, direction, picture.maxDepth, drawn.dice);
 }
 
 } // namespace

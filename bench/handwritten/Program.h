@@ -9,6 +9,7 @@
 #include "Picture.h"
 
 #include "runtime/image/Image.h"
+#include "support/ProcessorTime.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -131,9 +132,11 @@ int runProgram(const Description &description, int argc, char **argv, Read read,
     const auto scene = build(std::move(meshes));
     const double buildSeconds = watch.lap();
     rtsl::runtime::Image image(picture.width, picture.height, 3);
+    const double processorStart = rtsl::processorSeconds();
     render(picture, threads, image, [&](std::uint32_t x, std::uint32_t y, std::uint32_t index) {
       return sample(*scene, picture, x, y, index);
     });
+    const double processorSeconds = rtsl::processorSeconds() - processorStart;
     const double renderSeconds = watch.lap();
     rtsl::runtime::writeImage(output, image);
     const nlohmann::ordered_json document = {
@@ -148,6 +151,7 @@ int runProgram(const Description &description, int argc, char **argv, Read read,
           {"build", buildSeconds},
           {"render", renderSeconds},
           {"image", watch.lap()}}},
+        {"processorSeconds", processorSeconds},
         {"samples", std::uint64_t(picture.width) * picture.height * picture.samplesPerPixel}};
     fmt::print("{}\n", document.dump(2));
     return 0;

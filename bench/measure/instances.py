@@ -49,7 +49,7 @@ def add(subcommands, common):
     summary = "many instances beside the hand-written program"
     parser = add_benchmark(subcommands, common, "instances", summary, part)
     add_count(parser, "--pairs", 8, "rounds in which every program runs")
-    add_count(parser, "--spp", 9, "samples a pixel, of which the first is not counted", least=2)
+    add_count(parser, "--spp", 9, "samples a pixel")
     add_size(parser, "640x360")
 
 

@@ -1,8 +1,10 @@
-"""Paths: rtslc's engine `path` beside the path tracer that was written by hand, which has the same
-estimator, in turns, by processor time. In the Cornell box, or in a hall of copies of a mesh."""
+"""Paths: rtslc's engine `path` beside path tracers that were written by hand, which have the same
+estimator, in turns, by processor time. In the Cornell box, in a hall of copies of a mesh, or in a
+product shot."""
 
 import functools
 import json
+import math
 from pathlib import Path
 
 from . import meshes
@@ -11,6 +13,7 @@ from .options import add_benchmark, add_count, add_size
 from .render import ROOT
 
 CORNELL = ROOT / "examples" / "cornell" / "scene.json"
+PRODUCT = ROOT / "examples" / "product-shot"
 LARGEST_MEAN_DIFFERENCE = 0.01  # relative; the paths are not the same, so chance plays a part
 STONE = [0.7, 0.68, 0.63]  # the reflectance of the hall
 
@@ -54,6 +57,69 @@ def write_cornell(folder):
     return CORNELL, write_twin(folder, json.loads(CORNELL.read_text()), [])
 
 
+def turned(line, angle):
+    """A line of an OBJ file; vectors are turned about the y axis, by an angle in radians."""
+    kind, *numbers_of = line.split()
+    if kind not in ("v", "vn"):
+        return line
+    x, y, z = map(float, numbers_of)
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return line_of(kind, [cosine * x + sine * z, y, cosine * z - sine * x])
+
+
+def write_parts(path, angle, folder):
+    """A file for each material of an OBJ file, turned. Gives their names by material."""
+    vectors, faces, material = [], {}, None
+    for line in path.read_text().splitlines():
+        if line.startswith("usemtl"):
+            material = line.split()[1]
+        elif line.startswith("f "):
+            faces.setdefault(material, []).append(line)
+        elif line.startswith("v"):
+            vectors.append(turned(line, angle))
+    files = {name: folder / f"{name}.obj" for name in faces}
+    for name, file in files.items():
+        file.write_text("\n".join([*vectors, *faces[name]]) + "\n")
+    return files
+
+
+def glossy_materials(path):
+    """Base color, metallic, roughness, coat and its roughness, as a scene reads them from an MTL
+    file (scenefile/obj/Material.cpp) of which no reflectance is that of another index than 1.5."""
+    given, made = {}, {}
+    for words in map(str.split, path.read_text().splitlines()):
+        if words and words[0] == "newmtl":
+            given[words[1]] = known = {}
+        elif words and not words[0].startswith("#"):
+            known[words[0]] = [float(word) for word in words[1:]]
+    for name, known in given.items():
+        is_mirror = known.get("illum") == [3]
+        exponent = known.get("Ns", [0])[0]
+        made[name] = [
+            *known["Ks" if is_mirror else "Kd"],
+            1 if is_mirror else known.get("Pm", [0])[0],
+            known["Pr"][0] if "Pr" in known else (2 / (exponent + 2)) ** 0.25,
+            *known.get("Pc", [0]),
+            *known.get("Pcr", [0.03]),
+        ]
+    return made
+
+
+def write_product(folder):
+    """The same for examples/product-shot."""
+    scene = json.loads((PRODUCT / "scene.json").read_text())
+    camera, sky, kettle = scene["camera"], scene["background"], scene["objects"][0]
+    angle = math.radians(kettle["transform"]["rotate"][1])
+    files = write_parts(PRODUCT / kettle["model"], angle, folder)
+    materials = glossy_materials((PRODUCT / kettle["model"]).with_suffix(".mtl"))
+    lines = [
+        line_of("lens", [camera[name] for name in ("focusDistance", "lensRadius", "blades")]),
+        line_of("sky", [*sky["zenith"], *sky["horizon"], *sky["ground"], sky["blur"]]),
+        *(line_of("glossy", materials[name], file) for name, file in files.items()),
+    ]
+    return PRODUCT / "scene.json", write_twin(folder, scene, lines)
+
+
 def write_paths_in_hall(mesh, grid, folder):
     """The same for a hall of grid x grid copies of a mesh, below a lamp."""
     write_hall(mesh, grid, folder / "hall.ply")
@@ -89,32 +155,37 @@ def write_paths_in_hall(mesh, grid, folder):
     return path, write_twin(folder, scene, [line_of("mesh", STONE, folder / "hall.ply")])
 
 
+def subject(text):
+    """What is rendered: `product-shot`, or a file and the width of a grid."""
+    return text if text == "product-shot" else hall(text)
+
+
 def add(subcommands, common):
-    summary = "paths in the Cornell box, or a hall, beside the hand-written path tracer"
+    summary = "paths in the Cornell box, a product shot or a hall, beside path tracers by hand"
     parser = add_benchmark(subcommands, common, "paths", summary, part)
     parser.add_argument(
-        "hall",
+        "subject",
         nargs="?",
-        type=hall,
-        metavar="MESH:N",
-        help="a hall of N x N copies of an OBJ file, in place of the Cornell box; nefertiti.obj:6 "
-        "has 3.6 million triangles",
+        type=subject,
+        metavar="product-shot|MESH:N",
+        help="in place of the Cornell box: examples/product-shot, or a hall of N x N copies of an "
+        "OBJ file; nefertiti.obj:6 has 3.6 million triangles",
     )
     add_count(parser, "--pairs", 8, "rounds in which every program runs")
-    add_count(parser, "--spp", 33, "samples a pixel, of which the first is not counted", least=2)
+    add_count(parser, "--spp", 33, "samples a pixel")
     add_size(parser, "256x256")
 
 
 def part(options):
     """Name, measured report, and how to show it."""
-    what, write = "the Cornell box", write_cornell
-    if options.hall:
-        file, grid = options.hall
+    what, write, program = "the Cornell box", write_cornell, "bench-paths"
+    if options.subject == "product-shot":
+        what, write, program = "the product shot", write_product, "bench-product"
+    elif options.subject:
+        file, grid = options.subject
         what = f"a hall of {grid * grid} copies of {Path(file).name}"
         write = functools.partial(write_paths_in_hall, read_mesh(Path(file)), grid)
-    report = meshes.measure(
-        options.build, options.pairs, options.spp, options.size, write, "bench-paths"
-    )
+    report = meshes.measure(options.build, options.pairs, options.spp, options.size, write, program)
     for ratio in report["ratios"]:
         pictures = ratio["pictures"]
         pictures["agree"] = pictures["largestMeanDifference"] <= LARGEST_MEAN_DIFFERENCE

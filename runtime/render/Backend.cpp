@@ -4,6 +4,7 @@
 #include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
+#include "support/ProcessorTime.h"
 
 #include <utility>
 
@@ -46,10 +47,12 @@ Image Backend::render(RenderStatistics *statistics) {
     begin();
     Watch watch(options);
     const Clock::time_point start = Clock::now();
+    const double processorStart = processorSeconds();
     run(watch);
-    const double seconds = secondsSince(start);
+    const double seconds = secondsSince(start), processor = processorSeconds() - processorStart;
     said = finish();
     said.renderSeconds = seconds;
+    said.processorSeconds = processor;
   } catch (...) { // a partial picture is not returned
     picture = Image();
     throw;

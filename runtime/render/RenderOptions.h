@@ -96,6 +96,7 @@ struct RenderStatistics {
   std::optional<TreeFigures> tree;       // of the traversal of GPUs, if there is one
   bool isRefitted = false;               // trees of an earlier scene have followed to this one
   double renderSeconds = 0;              // samples
+  double processorSeconds = 0;           // of all threads of the process meanwhile
   double kernelSeconds = 0;              // of these, on a GPU, by its own clock; otherwise 0
   std::uint64_t badRays = 0;             // not finite or without a direction: they saw color 0
   std::uint64_t retracedRays = 0;        // beyond what Embree can follow: by our own tree

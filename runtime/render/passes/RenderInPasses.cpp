@@ -5,6 +5,7 @@
 #include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
+#include "support/ProcessorTime.h"
 
 #include <fmt/format.h>
 
@@ -166,6 +167,7 @@ Image Backend::renderInPasses(const PassOptions &passes,
   if (picture.pixels.empty())
     makePicture(channels());
   sums = &rendering.sums;
+  const double processorStart = processorSeconds();
   try {
     runPasses(passes, progress, rendering);
     if (passes.checkpoint)
@@ -176,6 +178,7 @@ Image Backend::renderInPasses(const PassOptions &passes,
     throw;
   }
   sums = nullptr;
+  const double processor = processorSeconds() - processorStart;
   resolve(rendering.sums, options.withoutSample, picture);
 
   RenderStatistics said = rendering.met;
@@ -188,6 +191,7 @@ Image Backend::renderInPasses(const PassOptions &passes,
     said.pixels += !rendering.sums.isOpen(pixel) || rendering.sums.taken[pixel] == counts.most;
   said.isUnfinished = counts.least < counts.most || counts.least == 0;
   said.renderSeconds = rendering.state.seconds;
+  said.processorSeconds = processor;
   said.buildSeconds = buildSeconds;
   said.isRefitted = isRefitted;
   if (statistics)

@@ -1,11 +1,11 @@
 #include "MeasureItems.h"
 
 #include "runtime/render/Renderer.h"
+#include "support/ProcessorTime.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <memory>
 
 #include <linux/perf_event.h>
@@ -57,12 +57,6 @@ public:
 private:
   int descriptor = -1;
 };
-
-double processorSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 struct TimedRendering {
   double seconds = 0;

@@ -65,6 +65,7 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
                                        {"build", statistics.buildSeconds},
                                        {"render", statistics.renderSeconds},
                                        {"image", summary.times.image}}},
+                                     {"processorSeconds", statistics.processorSeconds},
                                      {"samples", statistics.samples},
                                      {"pixels", statistics.pixels},
                                      {"badRays", statistics.badRays},

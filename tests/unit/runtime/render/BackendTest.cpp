@@ -48,6 +48,7 @@ TEST(Backend, GivesThePictureAndWhatWasCountedAgainAndAgain) {
     EXPECT_EQ(statistics.samples, 600u);
     EXPECT_FALSE(statistics.isUnfinished);
     EXPECT_GE(statistics.renderSeconds, 0);
+    EXPECT_GT(statistics.processorSeconds, 0);
   }
 }
 
