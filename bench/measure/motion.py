@@ -23,18 +23,19 @@ class Paint : rt_Material {
   void shade() { rt_SampleColor = color(abs(rt_GeometricNormal.z)); }
 };
 """
-# By name: the first key and the last one, beside the place and the size of an instance.
+TURN = ({"rotate": [0, 0, 0]}, {"rotate": [0, 20, 0], "translate": [0.1, 0.05, 0]})
+# By name: the first key and the last one, beside the place and, unless it is rigid, the size of an
+# instance.
 TRANSFORMS = {
     "transforms at rest": None,
     "translations": ({}, {"translate": [0.1, 0.05, 0]}),
-    "translations and rotations": (
-        {"rotate": [0, 0, 0]},
-        {"rotate": [0, 20, 0], "translate": [0.1, 0.05, 0]},
-    ),
+    "translations and rotations": TURN,
     "matrices": (
         {"matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]},
         {"matrix": [1, 0.1, 0, 0, -0.1, 1, 0, 0, 0, 0, 1, 0, 0.1, 0.05, 0, 1]},
     ),
+    "rigid, at rest": None,
+    "rigid, translations and rotations": TURN,
 }
 MESHES = {
     "a mesh in world space": "torus.obj",
@@ -71,6 +72,8 @@ def write_scenes(folder):
                 {"rotate": [dice.uniform(0, 360) for _ in range(3)]},
                 {"translate": [dice.uniform(-6, 6), dice.uniform(-6, 6), dice.uniform(-6, 2)]},
             ]
+            if name.startswith("rigid"):
+                del place[0]
             children.append(
                 {"child": "torus", "transform": [{"keys": list(keys)}, *place] if keys else place}
             )
@@ -132,13 +135,14 @@ def show(report):
         "mesh of 686 triangles, and one such "
         f"mesh; medians of {report['rounds']} rounds"
     )
-    for names in (TRANSFORMS, MESHES):
-        rest = report["results"][next(iter(names))]["median"]
+    rigid = [name for name in TRANSFORMS if name.startswith("rigid")]
+    for names in ([name for name in TRANSFORMS if name not in rigid], rigid, list(MESHES)):
+        rest = report["results"][names[0]]["median"]
         for scene in names:
             rates = report["results"][scene]
             low, high = rates["interval"]
             print(
-                f"  {scene:30}{rates['median']:8.2f}  "
+                f"  {scene:34}{rates['median']:8.2f}  "
                 f"{f'{low:.2f} to {high:.2f}':16}{rates['median'] / rest:6.2f} of that at rest"
             )
 

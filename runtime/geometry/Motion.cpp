@@ -315,6 +315,32 @@ bool isScale(const MovingTransform &transform) {
   return areMaps(transform, [](const Transform &map) { return isScale(map); });
 }
 
+static bool isRotation(const Transform &map) {
+  const auto &m = map.columns;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j <= i; ++j) {
+      const double product = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
+      if (!(std::fabs(product - (i == j)) <= mostStretch))
+        return false;
+    }
+  return map.determinant() > 0;
+}
+
+bool isRigid(const MovingTransform &transform) {
+  if (!transform.moves())
+    return isRotation(transform.still());
+  // Between two different rotations, numbers that are interpolated are none.
+  const auto turnsAlike = [](const Transform &a, const Transform &b) {
+    return std::equal(a.columns.begin(), a.columns.begin() + 3, b.columns.begin());
+  };
+  const std::vector<MotionFactor> &factors = transform.factors();
+  return std::all_of(factors.begin(), factors.end(), [&](const MotionFactor &factor) {
+    return std::all_of(factor.maps.begin(), factor.maps.end(), [&](const Transform &map) {
+      return isRotation(map) && turnsAlike(map, factor.maps.front());
+    });
+  });
+}
+
 bool operator==(const MovingTransform &a, const MovingTransform &b) {
   return compare(a, b) == 0;
 }

@@ -74,6 +74,11 @@ private:
 bool isTranslation(const MovingTransform &transform);
 /// Is it a scale along the axes, and a translation, at all times?
 bool isScale(const MovingTransform &transform);
+/// Is it a rotation and a translation at all times? The product of its linear part with its
+/// transpose is the identity to within `mostStretch` in each number.
+bool isRigid(const MovingTransform &transform);
+/// What products of rotations in double stay far below, and 2^-16 of a rounding unit of floats.
+constexpr double mostStretch = 0x1p-40;
 
 bool operator==(const MovingTransform &a, const MovingTransform &b);
 /// An order of any kind, for sorted containers.

@@ -91,7 +91,8 @@ void Geometry::setShutter(float open, float close) {
 static std::uint32_t linearNeeds(const MovingTransform &transform) {
   if (isTranslation(transform))
     return 0;
-  return isScale(transform) ? RTSL_HAS_LINEAR : RTSL_HAS_LINEAR | RTSL_HAS_TURNS;
+  return RTSL_HAS_LINEAR | (isScale(transform) ? 0 : RTSL_HAS_TURNS) |
+         (isRigid(transform) ? 0 : RTSL_HAS_STRETCH);
 }
 
 /// Its index; 0 for the identity.

@@ -67,9 +67,9 @@ typedef struct RtslSelection {
 /// it moves, these are its values at time 0.
 typedef struct RtslTransform {
   float linear[9], translation[3];
-  double inverse[9]; // of `linear`
+  double inverse[9]; // of `linear`; of a rigid one, of the rotation that `linear` rounds
   uint32_t motion;   // of RtslLaunch::motions; 0: it does not move
-  uint32_t unused;   // 0: all bytes of a scene are defined
+  uint32_t isRigid;  // at all times: a rotation, whose transpose `inverse` is, and a translation
 } RtslTransform;
 
 /// A transform that depends on time: a product of factors, of which the first is applied first.
@@ -445,11 +445,12 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_LIGHT_TREE 33554432u        // emitters are chosen by a light tree
 #define RTSL_HAS_MASKS 67108864u             // some instance is invisible to rays of some masks
 #define RTSL_HAS_LINEAR 134217728u           // some transform is more than a translation
-#define RTSL_HAS_TURNS 268435456u // some transform is more than a scale and a translation
+#define RTSL_HAS_TURNS 268435456u    // some transform is more than a scale and a translation
+#define RTSL_HAS_STRETCH 1073741824u // some transform is not rigid
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
    RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS |       \
-   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR | RTSL_HAS_TURNS)
+   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR | RTSL_HAS_TURNS | RTSL_HAS_STRETCH)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u

@@ -37,7 +37,7 @@ public:
       : used(launch.transforms + number) {
     if (!moves(launch, *used))
       return;
-    moved = transformAt(launch, launch.motions[used->motion], time);
+    moved = transformAt(launch, *used, time);
     used = &moved;
   }
   TransformAt(const RtslLaunch &launch, const RtslInstance &instance, float time)
@@ -100,12 +100,28 @@ inline float rowToWorld(const RtslTransform &transform, int row, Vec3 v, double 
                     __builtin_fma(double(m[3 + row]), double(v.y),
                                   __builtin_fma(double(m[6 + row]), double(v.z), offset))));
 }
+
+/// The transpose of the inverse times a vector, plus an offset, rounded once.
+inline Vec3 transposedProduct(const double m[9], Vec3 v, Vec3 offset) {
+  const double x = double(v.x), y = double(v.y), z = double(v.z);
+  const auto row = [&](int i, float added) {
+    return float(
+        __builtin_fma(m[3 * i + 2], z,
+                      __builtin_fma(m[3 * i + 1], y, __builtin_fma(m[3 * i], x, double(added)))));
+  };
+  return {row(0, offset.x), row(1, offset.y), row(2, offset.z)};
+}
+
 inline Vec3 pointToWorld(const RtslTransform &transform, Vec3 p) {
   const float *t = transform.translation;
+  if (transform.isRigid)
+    return transposedProduct(transform.inverse, p, load(t));
   return {rowToWorld(transform, 0, p, double(t[0])), rowToWorld(transform, 1, p, double(t[1])),
           rowToWorld(transform, 2, p, double(t[2]))};
 }
 inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
+  if (transform.isRigid)
+    return transposedProduct(transform.inverse, v, {0, 0, 0});
   return {rowToWorld(transform, 0, v, 0), rowToWorld(transform, 1, v, 0),
           rowToWorld(transform, 2, v, 0)};
 }
@@ -119,24 +135,22 @@ inline Vec3 scaledToWorld(const RtslTransform &transform, Vec3 v, Vec3 offset) {
 }
 
 inline Vec3 pointToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
-  if (hasTurns(launch))
-    return pointToWorld(transform, p);
   const Vec3 translation = load(transform.translation);
+  if (hasTurns(launch))
+    return hasStretch(launch) ? pointToWorld(transform, p)
+                              : transposedProduct(transform.inverse, p, translation);
   return hasLinear(launch) ? scaledToWorld(transform, p, translation) : positive(p + translation);
 }
 inline Vec3 vectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
   if (hasTurns(launch))
-    return vectorToWorld(transform, v);
+    return hasStretch(launch) ? vectorToWorld(transform, v)
+                              : transposedProduct(transform.inverse, v, {0, 0, 0});
   return hasLinear(launch) ? scaledToWorld(transform, v, {0, 0, 0}) : positive(v);
 }
 
 /// The inverse transpose times a vector: not normalised.
 inline Vec3 covectorToWorld(const RtslTransform &transform, Vec3 n) {
-  const double *m = transform.inverse;
-  const double x = double(n.x), y = double(n.y), z = double(n.z);
-  return {float(__builtin_fma(m[2], z, __builtin_fma(m[1], y, __builtin_fma(m[0], x, 0.0)))),
-          float(__builtin_fma(m[5], z, __builtin_fma(m[4], y, __builtin_fma(m[3], x, 0.0)))),
-          float(__builtin_fma(m[8], z, __builtin_fma(m[7], y, __builtin_fma(m[6], x, 0.0))))};
+  return transposedProduct(transform.inverse, n, {0, 0, 0});
 }
 inline Vec3 covectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 n) {
   if (hasTurns(launch))

@@ -47,7 +47,9 @@ inline void describeAttributes(RtslState &state, const RtslMesh &mesh) {
 }
 
 /// Does the linear part of a transform mirror?
-inline bool isMirror(const RtslTransform &transform) {
+inline bool isMirror(const RtslLaunch &launch, const RtslTransform &transform) {
+  if (isRigid(launch, transform))
+    return false;
   const double *m = transform.inverse;
   return m[0] * (m[4] * m[8] - m[5] * m[7]) + m[3] * (m[7] * m[2] - m[1] * m[8]) +
              m[6] * (m[1] * m[5] - m[4] * m[2]) <
@@ -72,7 +74,7 @@ inline void attributesToWorld(RtslState &state, const RtslMesh &mesh,
                      at[0] = bitsOf(world.x);
                      at[1] = bitsOf(world.y);
                      at[2] = bitsOf(world.z);
-                     if (values.space == RTSL_ATTRIBUTE_TANGENT && isMirror(transform))
+                     if (values.space == RTSL_ATTRIBUTE_TANGENT && isMirror(launch, transform))
                        at[3] = bitsOf(-floatOf(at[3]));
                    });
 }

@@ -2,9 +2,9 @@
 //
 // What moves is computed for the time of a ray when the ray reaches it: a transform as a product of
 // its factors, in double, rounded once to the floats of an RtslTransform, so that everything else
-// treats it like one that rests; a vertex of a mesh by interpolation between its keys. Before its
-// first key and after its last one everything rests, and rays see nothing outside of the shutter's
-// time.
+// treats it like one that rests (a rigid one keeps its rotation in double, too); a vertex of a mesh
+// by interpolation between its keys. Before its first key and after its last one everything rests,
+// and rays see nothing outside of the shutter's time.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -37,6 +37,14 @@ inline bool hasLinear(const RtslLaunch &launch) {
 /// not, and only their diagonals are read: products with the zeros beside them would change no bit.
 inline bool hasTurns(const RtslLaunch &launch) {
   return (rtsl_needs(&launch) & RTSL_HAS_TURNS) != 0;
+}
+/// Is some transform not rigid, a rotation and a translation? Otherwise inverses are transposes:
+/// none is computed for what moves, lengths stay, and nothing is mirrored.
+inline bool hasStretch(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_STRETCH) != 0;
+}
+inline bool isRigid(const RtslLaunch &launch, const RtslTransform &transform) {
+  return !hasStretch(launch) || transform.isRigid != 0;
 }
 
 /// Has the mesh several keys?
@@ -150,8 +158,9 @@ inline void invert(RtslTransform &transform) {
     transform.inverse[i] = determinant != 0 ? cofactors[i] / determinant : 0.0;
 }
 
-/// A moving transform at a time.
-inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &motion, float time) {
+/// A transform that moves, which is `rest` at time 0, at a time.
+inline RtslTransform transformAt(const RtslLaunch &launch, const RtslTransform &rest, float time) {
+  const RtslMotion &motion = launch.motions[rest.motion];
   time = timeInShutter(launch, time);
   const RtslMotionFactor *factors = launch.motionFactors + motion.firstFactor;
   AffineMap map = factorAt(launch, factors[0], time);
@@ -162,11 +171,15 @@ inline RtslTransform transformAt(const RtslLaunch &launch, const RtslMotion &mot
     transform.linear[i] = float(map.numbers[i]);
   for (int i = 0; i < 3; ++i)
     transform.translation[i] = float(map.numbers[9 + i]) + 0.0f; // not -0
-  if (hasLinear(launch))
-    invert(transform);
-  else
+  if (!hasLinear(launch))
     for (int i = 0; i < 9; ++i)
       transform.inverse[i] = i % 4 == 0 ? 1.0 : 0.0;
+  else if (isRigid(launch, rest))
+    for (int i = 0; i < 9; ++i) // the transpose of the rotation before it is rounded
+      transform.inverse[i] = map.numbers[3 * (i % 3) + i / 3];
+  else
+    invert(transform);
+  transform.isRigid = rest.isRigid;
   transform.motion = 0;
   return transform;
 }

@@ -56,6 +56,7 @@ class EveryPath(GraphCase):
             "transforms",
             "linear parts of transforms",
             "rotations and shears of transforms",
+            "scales and shears of transforms",
             "counts",
             "selectors",
         }
@@ -64,28 +65,46 @@ class EveryPath(GraphCase):
             path = self.write("scene.json", json.dumps(one))
             self.assertEqual(self.graph_parts(path), needed)
 
-    def test_scales_have_the_bits_of_all_matrices(self):
-        ball = {"child": "ball"}
-        scaled = scene(
+    def assert_cheaper_form(self, needed, *transforms):
+        """A ball with each of these transforms has the bits of the general form, and of the graph
+        no other parts than these are needed."""
+        placed = scene(
             {
                 "ball": balls([0, 0, 0, 1], [0, 1, 0, 0.5]),
-                "all": {
-                    "children": [
-                        {**ball, "transform": {"scale": 0.7, "translate": [-1, 0, 0]}},
-                        {**ball, "transform": {"scale": [0.3, -1.1, 0.6], "translate": [1, 0, 1]}},
-                    ]
-                },
+                "all": {"children": [{"child": "ball", "transform": one} for one in transforms]},
             },
             root="all",
         )
-        path = self.write("scene.json", json.dumps(scaled))
-        self.assertEqual(
-            self.graph_parts(path), {"transforms", "linear parts of transforms", "counts"}
-        )
-        expected, _ = self.render_scene(scaled, "--keep=transforms")
-        for options in ([], ["--traversal=device"], ["--target=host-megakernel"]):
-            picture, _ = self.render_scene(scaled, *options)
+        path = self.write("scene.json", json.dumps(placed))
+        self.assertEqual(self.graph_parts(path), {"transforms", "counts", *needed})
+        expected, _ = self.render_scene(placed, "--keep=transforms")
+        for options in (
+            [],
+            ["--traversal=device", "--trace=recurse"],
+            ["--target=host-megakernel"],
+        ):
+            picture, _ = self.render_scene(placed, *options)
             self.assert_same_bits(picture, expected, options)
+
+    def test_scales_have_the_bits_of_all_matrices(self):
+        self.assert_cheaper_form(
+            {"linear parts of transforms", "scales and shears of transforms"},
+            {"scale": 0.7, "translate": [-1, 0, 0]},
+            {"scale": [0.3, -1.1, 0.6], "translate": [1, 0, 1]},
+        )
+
+    def test_rigid_transforms_have_the_bits_of_all_matrices(self):
+        turned = {"rotate": [20, 130, 45], "translate": [-1, 0, 0]}
+        turning = {"keys": [{"rotate": [0, 0, 0]}, {"rotate": [0, 170, 0], "translate": [1, 0, 0]}]}
+        linear = {"linear parts of transforms", "rotations and shears of transforms"}
+        self.assert_cheaper_form(linear, turned, {"translate": [2, 1, 0]})
+        self.assert_cheaper_form(
+            {*linear, "motion", "shutter"}, [turned, turning, {"translate": [1, 0, 1]}]
+        )
+        # Six digits are no rotation, and neither is what is mirrored.
+        rounded = {"matrix": [0.866025, 0, -0.5, 0, 0, 1, 0, 0, 0.5, 0, 0.866025, 0, 0, 0, 0, 1]}
+        for other in (rounded, [turned, {"scale": [-1, 1, 1]}]):
+            self.assert_cheaper_form({*linear, "scales and shears of transforms"}, turned, other)
 
     def test_each_thing_that_a_scene_does_not_have_can_be_kept(self):
         plain = scene({"one": {**balls([0, 0, 0, 1]), "count": 1}}, root="one", variables={})

@@ -219,6 +219,7 @@ class EveryPath(MotionCase):
             "transforms",
             "linear parts of transforms",
             "rotations and shears of transforms",
+            "scales and shears of transforms",
             "motion",
             "mesh keys",
             "shutter",

@@ -209,6 +209,7 @@ namespace {
 /// A form of the transforms of a scene, cheaper than that of all matrices.
 struct CheapForm {
   bool scales;          // along the axes; otherwise all are translations
+  bool turns;           // and rotations, some of which move
   std::uint32_t absent; // RTSL_HAS_*
 };
 
@@ -230,6 +231,10 @@ TEST_P(CheapForms, HaveTheBitsOfTheGeneralForm) {
       const double size = i % 7 == 0 ? 1e6 : i % 5 == 0 ? 0 : 8;
       const Transform moved = Transform::translate(
           size * unit(random), i % 3 ? 8 * unit(random) : 0, size * unit(random));
+      if (GetParam().turns)
+        return Transform(
+                   rotationOf(axisRotation({unit(random), unit(random), 1}, 360 * unit(random))))
+            .then(moved);
       if (!GetParam().scales)
         return moved;
       const double uniform = std::exp(unit(random)); // and mirrored, and not uniform
@@ -238,7 +243,11 @@ TEST_P(CheapForms, HaveTheBitsOfTheGeneralForm) {
     };
     Placement placement;
     placement.transform = place();
-    if (i % 4 == 1)
+    if (i % 4 == 1 && GetParam().turns)
+      placement.transform =
+          MovingTransform(MotionFactor{{0, 1}, {}, {turnAbout({unit(random), 1, 0}, 20, 300)}})
+              .then(placement.transform);
+    else if (i % 4 == 1)
       placement.transform = MovingTransform(MotionFactor{{0.25f, 0.75f}, {place(), place()}, {}});
     if (i % 2)
       scene.addPrimitive(ball, material, placement);
@@ -247,11 +256,11 @@ TEST_P(CheapForms, HaveTheBitsOfTheGeneralForm) {
   }
   const HostScene own(scene, false, 1);
   const RtslLaunch &cheap = own.deviceLaunch();
-  EXPECT_EQ(cheap.needs & (RTSL_HAS_LINEAR | RTSL_HAS_TURNS),
-            (RTSL_HAS_LINEAR | RTSL_HAS_TURNS) & ~GetParam().absent);
+  constexpr std::uint32_t all = RTSL_HAS_LINEAR | RTSL_HAS_TURNS | RTSL_HAS_STRETCH;
+  EXPECT_EQ(cheap.needs & all, all & ~GetParam().absent);
   EXPECT_NE(cheap.needs & RTSL_HAS_TRANSFORMS, 0u);
   RtslLaunch general = cheap;
-  general.needs |= RTSL_HAS_LINEAR | RTSL_HAS_TURNS;
+  general.needs |= all;
   int hits = 0;
   for (int i = 0; i < 20000; ++i) {
     const Ray ray = randomRay(random, 1);
@@ -283,9 +292,13 @@ TEST_P(CheapForms, HaveTheBitsOfTheGeneralForm) {
   }
   EXPECT_GT(hits, 500);
 }
-INSTANTIATE_TEST_SUITE_P(Transforms, CheapForms,
-                         testing::Values(CheapForm{false, RTSL_HAS_LINEAR | RTSL_HAS_TURNS},
-                                         CheapForm{true, RTSL_HAS_TURNS}),
-                         [](const auto &info) {
-                           return std::string(info.param.scales ? "Scales" : "Translations");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Transforms, CheapForms,
+    testing::Values(CheapForm{false, false, RTSL_HAS_LINEAR | RTSL_HAS_TURNS | RTSL_HAS_STRETCH},
+                    CheapForm{true, false, RTSL_HAS_TURNS},
+                    CheapForm{false, true, RTSL_HAS_STRETCH}),
+    [](const auto &info) {
+      return std::string(info.param.turns    ? "Turns"
+                         : info.param.scales ? "Scales"
+                                             : "Translations");
+    });

@@ -132,8 +132,10 @@ TEST(Motion, IsTheSameOnDevicesButForRounding) {
           EXPECT_NEAR(transform.linear[3 * column + row], exact.columns[column][row],
                       size * 0x1p-23);
           double sum = 0;
-          for (int k = 0; k < 3; ++k)
-            sum += double(transform.linear[3 * k + row]) * transform.inverse[3 * column + k];
+          for (int k = 0; k < 3; ++k) // a rigid one is inverted before it is rounded
+            sum += (transform.isRigid ? exact.columns[k][row]
+                                      : double(transform.linear[3 * k + row])) *
+                   transform.inverse[3 * column + k];
           EXPECT_NEAR(sum, row == column, 1e-11);
         }
       for (std::size_t row = 0; row < 3; ++row)
