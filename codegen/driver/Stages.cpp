@@ -68,7 +68,7 @@ static void leaveOutFootprints(Compilation &compilation) {
   const LinkRequest *scene = compilation.input.scene;
   if (!scene || scene->keep.has(Item::Outputs) || ir::readsFootprints(*compilation.ir))
     return;
-  compilation.program->needs &= ~RTSL_NEEDS_FOOTPRINT;
+  compilation.program->needs &= ~(RTSL_NEEDS_FOOTPRINT | RTSL_NEEDS_NORMAL_CHANGES);
   if (!compilation.findings)
     return;
   for (Finding &finding : *compilation.findings)

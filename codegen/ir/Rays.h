@@ -31,13 +31,17 @@ inline bool readsFootprints(mlir::ModuleOp program) {
   const auto isOfFootprint = [](llvm::StringRef state) {
     return llvm::StringSwitch<bool>(state)
 #define RTSL_STATE_VARIABLE(name, type, writer, need, ...)                                         \
-  .Case(#name, llvm::StringRef(#need) == "FOOTPRINT")
+  .Case(#name, llvm::StringRef(#need) == "FOOTPRINT" || llvm::StringRef(#need) == "NORMAL_"        \
+                                                                                  "CHANGES")
 #include "language/StateVariables.def"
         .Default(false);
   };
   return anyOperation(program, [&](mlir::Operation *op) {
     auto state = llvm::dyn_cast<StateOp>(op);
-    return state && isOfFootprint(state.getName()) && !state->use_empty();
+    return state && isOfFootprint(state.getName()) &&
+           llvm::any_of(state->getUsers(), [](mlir::Operation *user) { // `generate` writes some
+             return !llvm::isa<StoreOp>(user);
+           });
   });
 }
 

@@ -14,9 +14,16 @@ using namespace typed;
 
 void Changes::addParameters(AxisSet given) {
   for (const auto &parameter : function.parameters)
-    if (parameter->direction == ast::Direction::In && isDifferentiable(parameter->type))
+    if (isDifferentiable(parameter->type)) {
       varied.insert(parameter.get());
+      if (parameter->direction != ast::Direction::In) // the caller gets its change
+        used.insert(parameter.get());
+    }
   axesUsed.add(given);
+}
+
+bool Changes::followsOutputs(const Function &called) const {
+  return isAtHit && derivation.hasVariants(called);
 }
 
 bool Changes::isCallVaried(const Function &called, const std::vector<ExprPtr> &args) const {
@@ -78,6 +85,11 @@ bool Changes::isVaried(const Expr &expr) const {
 /// Finds what depends on what, and whose changes are used, in one walk over the body.
 void Changes::collect() {
   const auto useArgs = [&](const Function &called, const std::vector<ExprPtr> &args) {
+    if (followsOutputs(called))
+      for (std::size_t i = 0; i < args.size(); ++i)
+        if (called.parameters[i]->direction != ast::Direction::In &&
+            isDifferentiable(args[i]->type))
+          outputs.push_back({rootVariable(*args[i]), &called, &args});
     if (!isAtHit || !derivation.hasVariants(called) || !derivation.asks(called))
       return;
     axesUsed.add(AxisSet::both());
@@ -118,6 +130,10 @@ void Changes::use(const Expr &expr) {
 void Changes::find(AxisSet returned) {
   if (!isAtHit)
     return;
+  const auto any = [&](const std::vector<ExprPtr> &args) {
+    return std::any_of(args.begin(), args.end(),
+                       [&](const ExprPtr &arg) { return isVaried(*arg); });
+  };
   collect();
   axesUsed.add(returned);
   if (returned.has[0] || returned.has[1])
@@ -130,6 +146,10 @@ void Changes::find(AxisSet returned) {
     for (const auto &[variable, value] : dependences)
       if (isDifferentiable(variable->type) && isVaried(*value))
         varied.insert(variable);
+    for (const Output &output : outputs)
+      if (output.variable && isDifferentiable(output.variable->type) &&
+          (any(*output.args) || derivation.readsSeeds(*output.called)))
+        varied.insert(output.variable);
   }
   for (const Expr *root : roots)
     use(*root);
@@ -138,6 +158,10 @@ void Changes::find(AxisSet returned) {
     for (const auto &[variable, value] : dependences)
       if (used.count(variable))
         use(*value);
+    for (const Output &output : outputs)
+      if (used.count(output.variable))
+        for (const ExprPtr &arg : *output.args)
+          use(*arg);
   }
 }
 

@@ -20,6 +20,8 @@ public:
 
   /// May the value of the expression change? What cannot be followed does not.
   bool isVaried(const typed::Expr &expr) const;
+  /// Do calls of the function say how what it writes to `out` parameters changes?
+  bool followsOutputs(const typed::Function &called) const;
   /// Does a variable with its changes accompany this one?
   bool hasCompanions(const typed::Variable *variable) const {
     return varied.count(variable) != 0 && used.count(variable) != 0;
@@ -38,6 +40,13 @@ private:
   AxisSet axesUsed;
   // a variable, and an expression on which its value depends
   std::vector<std::pair<const typed::Variable *, const typed::Expr *>> dependences;
+  /// A variable that a call writes as an `out` argument.
+  struct Output {
+    const typed::Variable *variable;
+    const typed::Function *called;
+    const std::vector<typed::ExprPtr> *args;
+  };
+  std::vector<Output> outputs;
   std::vector<const typed::Expr *> roots; // whose changes are used
   std::set<const typed::Variable *> varied, used;
 };

@@ -18,6 +18,7 @@ const StateVariable *changeOf(StateVariable variable, Axis axis) {
   static constexpr StateVariable ofPoint[] = {StateVariable::dPdx, StateVariable::dPdy};
   static constexpr StateVariable ofUV[] = {StateVariable::dUVdx, StateVariable::dUVdy};
   static constexpr StateVariable ofUVW[] = {StateVariable::dUVWdx, StateVariable::dUVWdy};
+  static constexpr StateVariable ofNormal[] = {StateVariable::dNdx, StateVariable::dNdy};
   const auto index = static_cast<int>(axis);
   switch (variable) {
   case StateVariable::HitPoint:
@@ -26,6 +27,8 @@ const StateVariable *changeOf(StateVariable variable, Axis axis) {
     return &ofUV[index];
   case StateVariable::TextureUVW:
     return &ofUVW[index];
+  case StateVariable::ShadingNormal:
+    return &ofNormal[index];
   default:
     return nullptr;
   }

@@ -12,12 +12,13 @@
 // A local variable whose change is used somewhere gets a variable for it, an assignment to it one
 // to that. Functions are called in variants with parameters for the changes of their arguments:
 // `fWithFootprint` has the value of f, which contains dFdx or dFdy, `fDFdx` and `fDFdy` are the
-// changes of its value. Changes begin with rt_HitPoint, rt_TextureUV and rt_TextureUVW; elsewhere
+// changes of its value. Parameters that are written have `out` parameters for their changes in
+// `fWithFootprint`. Changes begin with rt_HitPoint, rt_TextureUV and rt_TextureUVW; elsewhere
 // than in materials and textures, and functions called from there, all changes are 0.
 //
 // Changes of 0 as well have: what language/Derivatives.def says, members, results of functions that
 // have other effects (they draw random numbers, say, or trace rays), of those with `out`
-// parameters, and of dFdx and dFdy themselves, and what these functions write.
+// parameters, and of dFdx and dFdy themselves.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -94,6 +94,18 @@ StmtPtr DerivedBody::declaration(const Variable &variable) const {
   return made;
 }
 
+StmtPtr DerivedBody::assignment(const Variable &variable, ExprPtr value) {
+  auto target = makeExpr<VariableExpr>(variable.type, variable.range);
+  target->variable = &variable;
+  auto assign = makeExpr<AssignExpr>(variable.type, variable.range);
+  assign->target = std::move(target);
+  assign->value = std::move(value);
+  auto made = std::make_unique<ExpressionStmt>();
+  made->range = variable.range;
+  made->expr = std::move(assign);
+  return made;
+}
+
 void DerivedBody::replace() {
   changes.find({});
   run();
@@ -108,7 +120,7 @@ void DerivedBody::vary(Result wanted) {
     variables[parameter.get()] = to.parameters.back().get();
   }
   for (const auto &parameter : from.parameters) {
-    if (parameter->direction != ast::Direction::In || !isDifferentiable(parameter->type))
+    if (!isDifferentiable(parameter->type))
       continue;
     Companions &made = companions[parameter.get()];
     for (Axis axis : axes) {
@@ -132,9 +144,15 @@ void DerivedBody::vary(Result wanted) {
 void DerivedBody::run() {
   auto body = std::make_unique<CompoundStmt>();
   body->range = from.body->range;
-  for (const auto &parameter : from.parameters)
-    if (!companions.count(parameter.get()) && changes.hasCompanions(parameter.get()))
+  for (const auto &parameter : from.parameters) {
+    const auto known = companions.find(parameter.get());
+    if (known == companions.end() && changes.hasCompanions(parameter.get()))
       addCompanions(*parameter, body->body, {Term(), Term()});
+    else if (known != companions.end() && parameter->direction == ast::Direction::Out)
+      for (const Variable *companion : known->second.along) // where nothing is written
+        if (companion)
+          body->body.push_back(assignment(*companion, zero(companion->type, from.range)));
+  }
   std::vector<StmtPtr> statements;
   statement(*from.body, statements);
   for (StmtPtr &inner : static_cast<CompoundStmt &>(*statements.back()).body)

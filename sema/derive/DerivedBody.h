@@ -60,6 +60,8 @@ private:
                                    const std::vector<typed::ExprPtr> &args);
   bool isCalledWithFootprint(const typed::Function &function,
                              const std::vector<typed::ExprPtr> &args);
+  typed::ExprPtr changeOfOutput(const typed::Variable &parameter, const typed::Expr &arg,
+                                Axis axis);
   std::vector<typed::ExprPtr> assignmentSteps(const typed::AssignExpr &expr);
 
   // DerivedChanges.cpp

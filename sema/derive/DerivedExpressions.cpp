@@ -36,9 +36,15 @@ ExprPtr DerivedBody::derivativeOf(const Expr &expr, Axis axis) {
   return derivation.isPure(expr) ? std::move(changed) : comma(copy(expr), std::move(changed));
 }
 
-/// Is a function that contains dFdx or dFdy called where its variant has another value?
+/// Is a function that contains dFdx or dFdy called where its variant has another value, or one
+/// that writes a variable whose change is used?
 bool DerivedBody::isCalledWithFootprint(const Function &function,
                                         const std::vector<ExprPtr> &args) {
+  if (changes.followsOutputs(function))
+    for (std::size_t i = 0; i < args.size(); ++i)
+      if (function.parameters[i]->direction != ast::Direction::In && companionsOf(*args[i]) &&
+          isDifferentiable(args[i]->type))
+        return true;
   if (!changes.atHit() || !derivation.hasVariants(function) || !derivation.asks(function))
     return false;
   const bool isReplaced = function.owner && function.owner->root != helperRoot;
@@ -47,13 +53,25 @@ bool DerivedBody::isCalledWithFootprint(const Function &function,
                      [&](const ExprPtr &arg) { return changes.isVaried(*arg); });
 }
 
+/// Where a call writes the change of an `out` argument: one that nobody uses into a variable of no
+/// further use.
+ExprPtr DerivedBody::changeOfOutput(const Variable &parameter, const Expr &arg, Axis axis) {
+  const Companions *written = companionsOf(arg);
+  if (written && written->along[static_cast<int>(axis)])
+    return companionPlace(arg, axis);
+  return use(addKept(parameter.type, arg.range), arg.range);
+}
+
 ExprPtr DerivedBody::callWithFootprint(const Expr &expr, const Function &function,
                                        const std::vector<ExprPtr> &args) {
   std::vector<ExprPtr> changed;
   for (std::size_t i = 0; i < args.size(); ++i)
-    if (function.parameters[i]->direction == ast::Direction::In &&
-        isDifferentiable(function.parameters[i]->type))
+    if (const Variable &parameter = *function.parameters[i]; isDifferentiable(parameter.type))
       for (Axis axis : axes) {
+        if (parameter.direction != ast::Direction::In) {
+          changed.push_back(changeOfOutput(parameter, *args[i], axis));
+          continue;
+        }
         Term value = change(*args[i], axis);
         changed.push_back(value.isZero() ? zero(args[i]->type, args[i]->range) : value.take());
       }

@@ -52,19 +52,22 @@ void DerivedBody::forgetWritten(const Expr &expr, std::vector<StmtPtr> &out) {
         out.push_back(evaluation(std::move(assign), place.range));
       }
   };
+  const auto forgetOutputs = [&](const Function &function, const std::vector<ExprPtr> &args) {
+    if (changes.followsOutputs(function)) // then the call writes them
+      return;
+    for (std::size_t i = 0; i < args.size(); ++i)
+      if (function.parameters[i]->direction != ast::Direction::In)
+        forget(*args[i]);
+  };
   forEachExpr(expr, [&](const Expr &inner) {
     if (auto *builtin = dynCast<BuiltinExpr>(&inner)) {
       for (std::size_t i = 0; i < builtin->args.size(); ++i)
         if (isOutArgument(builtin->builtin, i))
           forget(*builtin->args[i]);
     } else if (auto *call = dynCast<CallExpr>(&inner)) {
-      for (std::size_t i = 0; i < call->args.size(); ++i)
-        if (call->function->parameters[i]->direction != ast::Direction::In)
-          forget(*call->args[i]);
+      forgetOutputs(*call->function, call->args);
     } else if (auto *call = dynCast<MethodCallExpr>(&inner); call && call->function) {
-      for (std::size_t i = 0; i < call->args.size(); ++i)
-        if (call->function->parameters[i]->direction != ast::Direction::In)
-          forget(*call->args[i]);
+      forgetOutputs(*call->function, call->args);
     }
   });
 }

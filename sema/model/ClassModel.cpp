@@ -142,11 +142,15 @@ static RootModel lightModel() {
 }
 
 static RootModel rayGenerationModel() {
-  const StateSet sees = everyRay | StateSet{S::RayOrigin, S::RayDirection, S::ScreenCoord,
-                                            S::LensCoord, S::SampleColor};
+  const StateSet sees =
+      everyRay | StateSet{S::RayOrigin,   S::RayDirection, S::ScreenCoord, S::LensCoord,
+                          S::SampleColor, S::ConeWidth,    S::ConeSpread};
   return {"rt_RayGeneration",
           sees,
-          {{"generate", sees, {S::SampleColor}, {A::Trace, A::Random, A::WriteBuffers}}},
+          {{"generate",
+            sees,
+            {S::SampleColor, S::ConeWidth, S::ConeSpread},
+            {A::Trace, A::Random, A::WriteBuffers}}},
           false};
 }
 

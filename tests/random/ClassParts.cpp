@@ -168,7 +168,7 @@ void Generator::addConstructor(ClassPlan &plan, Node &members) {
   for (unsigned n = below(4); n-- > 0;)
     made.signature.parameters.push_back({anyType(), ast::Direction::In});
   context = Context();
-  context.returns = false;
+  context.returns = context.changes = false;
   references.clear();
   std::vector<Variable> visible = around(plan);
   for (Variable &variable : visible)

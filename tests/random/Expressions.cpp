@@ -1,6 +1,8 @@
 //===- Expressions.cpp - a value of a type --------------------------------===//
 #include "Generator.h"
 
+#include <algorithm>
+
 namespace rtsl::random {
 
 NodePtr Generator::expression(const Type *type, unsigned depth) {
@@ -268,10 +270,23 @@ NodePtr Generator::effect(const Type *type, unsigned depth) {
   return make(type, "($ = $)", std::move(place), converted(type, depth - 1));
 }
 
+/// `dFdx(e)` or `dFdy(e)`, where they may stand. It may copy parts of e, so e is not deep.
+NodePtr Generator::change(const Type *type, unsigned depth) {
+  const std::string root = context.self ? context.self->root : std::string();
+  if (context.constantOnly || !context.changes || type->scalar() != types.floatType ||
+      type->isMatrix() || (!root.empty() && root != "rt_Material" && root != "rt_Texture"))
+    return nullptr;
+  work += 20 * context.weight;
+  return make(type, chance(50) ? "dFdx($)" : "dFdy($)", expression(type, std::min(depth, 2u)));
+}
+
 /// What the ray or an object has to say.
 NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   if (context.constantOnly)
     return nullptr;
+  if ((type->isScalar() || type->isVector()) && chance(20))
+    if (NodePtr changed = change(type, depth))
+      return changed;
   if (type == types.floatType && context.rand && chance(30))
     return make(type, chance(70) ? "rand()" : "randOpen()");
   if (type == types.color && context.traces >= context.weight && chance(60)) {

@@ -75,6 +75,7 @@ struct Context {
   const Type *result = nullptr;     // of `return`; null: void
   std::string onReturn;             // what a method does before it returns
   bool returns = true;              // may return early
+  bool changes = true;              // dFdx and dFdy may stand here, if they may in such a class
   unsigned loops = 0, switches = 0; // around
   bool canContinue = false;         // breaks and continues have a target
   unsigned weight = 1;              // how often the place runs, at most
@@ -134,6 +135,7 @@ private:
   NodePtr constructor(const Type *type, unsigned depth);
   NodePtr partOfExpression(const Type *type, unsigned depth);
   NodePtr effect(const Type *type, unsigned depth);
+  NodePtr change(const Type *type, unsigned depth);
   NodePtr ofObject(const Type *type, unsigned depth);
   NodePtr condition(unsigned depth) { return expression(types.boolType, depth); }
 

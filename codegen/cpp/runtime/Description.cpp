@@ -37,7 +37,8 @@ constexpr Need allNeeds[] = {{RTSL_NEEDS_NORMALS, "RTSL_NEEDS_NORMALS"},
                              {RTSL_NEEDS_ATTRIBUTES, "RTSL_NEEDS_ATTRIBUTES"},
                              {RTSL_NEEDS_CAMERA_RAY, "RTSL_NEEDS_CAMERA_RAY"},
                              {RTSL_NEEDS_EMITTERS, "RTSL_NEEDS_EMITTERS"},
-                             {RTSL_NEEDS_FOOTPRINT, "RTSL_NEEDS_FOOTPRINT"}};
+                             {RTSL_NEEDS_FOOTPRINT, "RTSL_NEEDS_FOOTPRINT"},
+                             {RTSL_NEEDS_NORMAL_CHANGES, "RTSL_NEEDS_NORMAL_CHANGES"}};
 
 constexpr std::uint32_t bitsOf(const Need *first, const Need *last) {
   return first == last ? 0 : first->bit | bitsOf(first + 1, last);

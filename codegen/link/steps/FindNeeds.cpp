@@ -20,10 +20,11 @@ namespace {
 
 std::uint32_t needsOf(llvm::StringRef state) {
   constexpr std::uint32_t RTSL_NEEDS_NOTHING = 0;
-  return llvm::StringSwitch<std::uint32_t>(state)
+  const auto needs = llvm::StringSwitch<std::uint32_t>(state)
 #define RTSL_STATE_VARIABLE(name, type, writer, need, ...) .Case(#name, RTSL_NEEDS_##need)
 #include "language/StateVariables.def"
-      .Default(0);
+                         .Default(0);
+  return needs & RTSL_NEEDS_NORMAL_CHANGES ? needs | RTSL_NEEDS_FOOTPRINT : needs;
 }
 
 /// Whether the function may run for `intersect`, before the ray is known to hit the primitive;

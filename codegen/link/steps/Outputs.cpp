@@ -52,6 +52,7 @@ constexpr Computed computed[] = {
     {RTSL_NEEDS_LAUNCH, "rt_LaunchIndex, rt_LaunchSize"},
     {RTSL_NEEDS_LENS, "rt_LensCoord"},
     {RTSL_NEEDS_FOOTPRINT, footprintSubject},
+    {RTSL_NEEDS_NORMAL_CHANGES, "changes of normals"},
     {RTSL_NEEDS_CAMERA_RAY, "the camera's ray in `generate`"},
     {RTSL_NEEDS_EMITTERS, "surfaces that shine as lights"},
     {RTSL_NEEDS_CANDIDATE, "rt_BoundMin, rt_BoundMax and other state of the object in `intersect`"},

@@ -21,7 +21,7 @@ inline void clearForBackground(RtslState &state) {
   clearCoordinates(state, rtsl_needs(state.launch));
   if (rtsl_needs(state.launch) & RTSL_NEEDS_FOOTPRINT) {
     state.ConeWidth = state.coneAtOrigin;
-    clearFootprint(state);
+    clearFootprint(state, rtsl_needs(state.launch));
   }
   if (rtsl_needs(state.launch) & RTSL_NEEDS_TRANSFORMS)
     describeTransforms(state, 0); // textures that it looks up may read them

@@ -429,9 +429,10 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_NEEDS_CAMERA_RAY 65536u    // RayOrigin RayDirection in `generate`
 #define RTSL_NEEDS_EMITTERS 131072u     // no state: points are lit by surfaces that shine
 #define RTSL_NEEDS_FOOTPRINT 536870912u // ConeWidth ConeSpread dPdx dPdy dUVdx dUVdy dUVWdx dUVWdy
+#define RTSL_NEEDS_NORMAL_CHANGES 2147483648u // dNdx dNdy; with RTSL_NEEDS_FOOTPRINT
 #define RTSL_NEEDS_ALL                                                                             \
   (8191u | RTSL_NEEDS_INSTANCE_ID | RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS |                  \
-   RTSL_NEEDS_FOOTPRINT)
+   RTSL_NEEDS_FOOTPRINT | RTSL_NEEDS_NORMAL_CHANGES)
 // RtslLaunch::needs only, and not in RTSL_NEEDS_ALL: properties of the scene, not of its classes.
 #define RTSL_HAS_TRANSFORMS 8192u   // some instance has a transform
 #define RTSL_HAS_ROOTS 16384u       // some instance is not below root 0, or below another one

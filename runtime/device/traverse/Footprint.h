@@ -24,7 +24,11 @@ inline uint32_t withFootprint(uint32_t needs) {
 }
 
 /// No footprint.
-inline void clearFootprint(RtslState &state) {
+inline void clearFootprint(RtslState &state, uint32_t needs) {
+  if (needs & RTSL_NEEDS_NORMAL_CHANGES) {
+    store(state.dNdx, {0, 0, 0});
+    store(state.dNdy, {0, 0, 0});
+  }
   store(state.dPdx, {0, 0, 0});
   store(state.dPdy, {0, 0, 0});
   state.dUVdx[0] = state.dUVdx[1] = state.dUVdy[0] = state.dUVdy[1] = 0;
@@ -62,10 +66,9 @@ inline FootprintAxes footprintAxes(Vec3 direction, Vec3 normal) {
   return axes;
 }
 
-/// Solves dP = dPdu du + dPdv dv for vectors of the tangent plane: writes (du, dv) for `x` and `y`.
-/// Where dPdu and dPdv do not span a plane, it writes 0.
-inline void solveForCoordinates(const RtslState &state, Vec3 x, Vec3 y, float *ofX, float *ofY) {
-  const Vec3 du = load(state.dPdu), dv = load(state.dPdv);
+/// Solves dP = du u + dv v for vectors dP of the plane of `du` and `dv`: writes (u, v) for `x` and
+/// `y`. Where `du` and `dv` do not span a plane, it writes nothing.
+inline void solveForCoordinates(Vec3 du, Vec3 dv, Vec3 x, Vec3 y, float *ofX, float *ofY) {
   const float lengthU = squareRoot(dot(du, du)), lengthV = squareRoot(dot(dv, dv));
   if (!(lengthU > 0x1p-60f && lengthV > 0x1p-60f && lengthU < 0x1p+60f && lengthV < 0x1p+60f))
     return;
@@ -85,10 +88,10 @@ inline void solveForCoordinates(const RtslState &state, Vec3 x, Vec3 y, float *o
 
 /// The footprint of the state's ray at its hit, of which ConeWidth, the normal and the derivatives
 /// are known in world space.
-inline void describeFootprint(RtslState &state, const RtslInstance &instance) {
+inline void describeFootprint(RtslState &state, const RtslInstance &instance, uint32_t needs) {
   const RtslLaunch &launch = *state.launch;
   const float width = state.ConeWidth;
-  clearFootprint(state);
+  clearFootprint(state, needs);
   const Vec3 normal = normalized(load(state.GeometricNormal));
   const Vec3 direction = normalized(load(state.RayDirection));
   if (!(width > 0) || !(largest(normal) > 0) || !isFinite(normal) || !isFinite(direction))
@@ -97,7 +100,7 @@ inline void describeFootprint(RtslState &state, const RtslInstance &instance) {
   const Vec3 x = axes.along * (width * axes.stretch), y = axes.across * width;
   store(state.dPdx, x);
   store(state.dPdy, y);
-  solveForCoordinates(state, x, y, state.dUVdx, state.dUVdy);
+  solveForCoordinates(load(state.dPdu), load(state.dPdv), x, y, state.dUVdx, state.dUVdy);
   // The third coordinates are the point in object space.
   if (isTransformed(launch, instance)) {
     const TransformAt transform(launch, instance, state.Time);

@@ -207,6 +207,47 @@ inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint
     attributesToWorld(state, mesh, transform);
 }
 
+/// The change of a normalised vector v / |v| if v changes by `change`; 0 for v = 0.
+inline Vec3 changeOfNormalized(Vec3 v, Vec3 change) {
+  const float square = dot(v, v);
+  if (!(square > 0 && square < infinity))
+    return {0, 0, 0};
+  const float reciprocal = 1 / squareRoot(square);
+  const Vec3 unit = v * reciprocal;
+  return (change - unit * dot(unit, change)) * reciprocal;
+}
+
+/// The changes of the shading normal across the footprint, of a mesh whose vertices have normals:
+/// those of the sum that triangleNormals normalises, which is linear in barycentric coordinates.
+inline void describeNormalChanges(RtslState &state, const RtslInstance &instance) {
+  const RtslLaunch &launch = *state.launch;
+  const RtslMesh &mesh = launch.meshes[instance.mesh];
+  if (!mesh.normals)
+    return;
+  const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
+  float ofX[2] = {0, 0}, ofY[2] = {0, 0}; // changes of u and v
+  solveForCoordinates(p.v1 - p.v0, p.v2 - p.v0, load(state.dUVWdx), load(state.dUVWdy), ofX, ofY);
+  const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
+  const auto normal = [&](int corner) {
+    return vertexAt(launch, mesh, mesh.normals, index[corner], state.Time);
+  };
+  const Vec3 n0 = normal(0), n1 = normal(1), n2 = normal(2);
+  const float u = state.u, v = state.v, w = (1.0f - u) - v;
+  const Vec3 sum = n0 * w + n1 * u + n2 * v;
+  const auto changed = [&](const float *by) {
+    return changeOfNormalized(sum, (n1 - n0) * by[0] + (n2 - n0) * by[1]);
+  };
+  Vec3 x = changed(ofX), y = changed(ofY);
+  if (isTransformed(launch, instance)) {
+    const TransformAt transform(launch, instance, state.Time);
+    const Vec3 world = covectorToWorld(launch, transform, normalized(sum));
+    x = changeOfNormalized(world, covectorToWorld(launch, transform, x));
+    y = changeOfNormalized(world, covectorToWorld(launch, transform, y));
+  }
+  store(state.dNdx, x);
+  store(state.dNdy, y);
+}
+
 /// The same for an RTSL primitive.
 template <typename Slots>
 void describePrimitiveHit(RtslState &state, const RtslInstance &instance, uint32_t needs,
@@ -244,7 +285,9 @@ void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
   if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT) // rays that leave the hit have a cone in any case
     state.ConeWidth = coneWidthAtHit(state);
   if (needs & RTSL_NEEDS_FOOTPRINT)
-    describeFootprint(state, instance);
+    describeFootprint(state, instance, needs);
+  if (needs & RTSL_NEEDS_NORMAL_CHANGES && instance.primitive == 0)
+    describeNormalChanges(state, instance);
 }
 
 inline void describeHit(RtslState &state) {

@@ -159,13 +159,28 @@ PROGRAMS = {
     ),
     "parameters that change": "vec2 q = p; q.x = moved(q, 2.0); return q.x * q.y;",
     "parts of functions": "return (p.x > 0.0 && p.y > 0.0 ? outer(p.y, p.yx) : 0.0) * (1.0 - p.x);",
+    "output parameters": (
+        "float a, b = p.x; vec3 v = vec3(1.0); split(p, a, b); split(p.yx, v.x, v.z); "
+        "float once = b; if (general.parts(p, once) > 0.0) once *= 2.0; seeded(a, v[1]); "
+        "return a * b + v.x * v.z + once + v.y;"
+    ),
+    "output parameters that stay": ("float a = p.x * p.y; keep(p, a); return a + p.y;"),
     "points": "vec3 q = point(p); return dot(q, q.zxy) + q.x;",
 }
 
 DERIVED = """
 struct Pair { float f; vec3 v; int i; };
 class Shape { float at(vec2 p) { return p.x; } };
-class Round : Shape { public float scale = 1.5; float at(vec2 p) { return scale * length(p); } };
+class Round : Shape { public float scale = 1.5; float at(vec2 p) { return scale * length(p); }
+  float parts(vec2 p, inout float x) { x += scale * p.x * p.y; return 1.0; } };
+void split(vec2 p, out float a, inout float b) {
+  a = p.x * p.x + 2.0 * p.y;
+  if (p.y > 100.0)
+    return;
+  b *= a;
+}
+void keep(vec2 p, inout float a) { if (p.x > 100.0) a = 1.0; }
+void seeded(float x, out float y) { float z = x; y = x; split(vec2(y * x, x), y, z); }
 float weigh(vec3 v) { return v.x + 2.0 * v.y - 0.5 * v.z; }
 float whole(float x) { float n; return modf(x, n) + n; }
 float twice(float x) { return x * x + x; }
@@ -390,6 +405,109 @@ class Talks : Eye {
             self.expect_footprint(one, one[1], to_mirror)
         self.same_bits()
 
+    SENDS = """
+struct Told { vec2 cone; };
+class Tells : rt_Material {
+  void closestHit(inout Told told) { told.cone = vec2(rt_ConeWidth, rt_ConeSpread); }
+};
+class Sends : rt_RayGeneration {
+  void generate() {
+    Told told = Told(vec2(7.0));
+    vec3 origin = vec3(0.0, 0.0, float(1u + rt_LaunchIndex.x));
+    trace(origin, vec3(0.0, 0.0, -2.0), 0.0, 1e30, told);
+    vec2 before = told.cone;
+    rt_ConeWidth = 0.25;
+    rt_ConeSpread = 0.125;
+    trace(origin, vec3(0.0, 0.0, -2.0), 0.0, 1e30, told);
+    vec2 first = told.cone;
+    rt_ConeSpread *= 2.0;
+    trace(origin, vec3(0.0, 0.0, -2.0), 0.0, 1e30, told);
+    print(before, first, told.cone, rt_ConeWidth);
+    rt_SampleColor = color(first.x, told.cone.x, told.cone.y);
+  }
+};
+"""
+
+    def test_generate_says_which_cones_its_rays_have(self):
+        floor = {"class": "Parallelogram", "constructor": [[-5, -5, 0], [10, 0, 0], [0, 10, 0]]}
+        self.scene(
+            self.SENDS,
+            [{"primitive": floor, "material": {"class": "Tells"}}],
+            rayGeneration={"class": "Sends"},
+            render={"engine": "programs", "size": [3, 1], "spp": 1, "depth": 2},
+        )
+        lines = self.printed()
+        self.assertEqual(len(lines), 3)
+        for i, line in enumerate(lines):
+            far = 1 + i
+            expected = [0, 0, 0.25 + 0.125 * far, 0.125, 0.25 + 0.25 * far, 0.25, 0.25]
+            self.assertEqual(line, expected)
+        self.same_bits()
+
+    def test_generate_may_write_cones_that_nobody_reads(self):
+        self.scene(
+            "class Sends : rt_RayGeneration { void generate() { rt_ConeWidth = 1.0; "
+            "rt_SampleColor = trace(vec3(0.0, 0.0, 2.0), vec3(0.0, 0.0, -1.0)); } };"
+            "class Plain : rt_Material { void shade() { rt_SampleColor = color(0.5); } };",
+            [{"primitive": PLANE, "material": {"class": "Plain"}}],
+            rayGeneration={"class": "Sends"},
+            render={"engine": "programs", "size": [3, 1], "spp": 1},
+        )
+        said, _ = self.run_rtslc("explain", "scene.json", "--json", "--no-savings")
+        self.assertIn(("footprints of rays", False), list(self.items(json.loads(said))))
+
+    NORMALS = """
+class Bent : rt_Material {
+  void shade() {
+    vec3 weighted = rt_ShadingNormal * rt_HitPoint.x;
+    print(rt_HitPoint, rt_dPdx, rt_dPdy, rt_ShadingNormal, rt_dNdx, rt_dNdy, dFdx(weighted),
+          dFdy(rt_GeometricNormal.x));
+    rt_SampleColor = color(dFdx(rt_ShadingNormal.x), dFdy(rt_ShadingNormal.y), rt_dNdx.z);
+  }
+};
+"""
+    CORNERS = ([-2, -2, 0], [3, -1.5, 0.5], [0, 2.5, -0.5])
+    BENT = ([-0.5, 0, 1], [0.6, -0.2, 0.9], [0.1, 0.7, 0.8])
+
+    def bent_normal(self, point, scale):
+        """The shading normal at a point in world space, of the triangle that is scaled."""
+        at = [x / s for x, s in zip(point, scale)]
+        a, b = (add(corner, self.CORNERS[0], -1) for corner in self.CORNERS[1:])
+        across = cross(a, b)
+        from_first = add(at, self.CORNERS[0], -1)
+        u = dot(cross(from_first, b), across) / dot(across, across)
+        v = dot(cross(a, from_first), across) / dot(across, across)
+        normals = [unit(n) for n in self.BENT]
+        mixed = add(add([(1 - u - v) * x for x in normals[0]], normals[1], u), normals[2], v)
+        return unit([x / s for x, s in zip(unit(mixed), scale)])
+
+    def test_changes_of_normals_of_meshes(self):
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in self.CORNERS)
+        text += "".join("vn %.9f %.9f %.9f\n" % tuple(unit(n)) for n in self.BENT)
+        self.write("bent.obj", text + "f 1//1 2//2 3//3\n")
+        for scale in ([1, 1, 1], [2, 0.5, 0.75]):
+            nodes = {"bent": {"mesh": "bent.obj", "material": {"class": "Bent"}}}
+            self.scene(
+                self.NORMALS,
+                [],
+                (4, 4),
+                nodes=nodes,
+                root={"child": "bent", "transform": {"scale": scale}},
+            )
+            lines = self.printed()
+            self.assertGreater(len(lines), 4)
+            for line in lines:
+                point, px, py, normal, nx, ny, weighted = (line[i : i + 3] for i in range(0, 21, 3))
+                self.assertEqual(line[21:], [0])
+                self.assert_close(normal, self.bent_normal(point, scale), 1e-5)
+                for p, n in ((px, nx), (py, ny)):
+                    step = 1e-3 / math.sqrt(dot(p, p))
+                    ahead = self.bent_normal(add(point, p, step), scale)
+                    behind = self.bent_normal(add(point, p, -step), scale)
+                    self.assert_close(n, [x / (2 * step) for x in add(ahead, behind, -1)], 2e-3)
+                self.assert_close(weighted, add([x * point[0] for x in nx], normal, px[0]), 1e-4)
+            self.same_bits()
+
     def test_strange_surfaces_have_no_footprint(self):
         self.write(
             "flat.obj",
@@ -459,16 +577,15 @@ class Talks : Eye {
     def test_what_is_not_followed_has_derivative_0(self):
         shaders = """
 float drawn(float x, float y) { return x * y; }
-void write(float x, out float y) { y = x; }
+float write(float x, out float y) { y = x; return x; }
 class Zero : rt_Material {
   public float member = 2.0;
   float random(float x) { return x * rand(); }
   void shade() {
     vec2 p = rt_TextureUV;
-    float written = p.x;
-    write(p.x, written);
+    float written, unknown = write(p.x, written);
     print(dFdx(member), dFdx(floor(p.x)), dFdx(step(0.3, p.x)), dFdx(float(int(9.0 * p.x))), dFdx(rand()),
-          dFdx(written), dFdx(dFdx(p.x * p.x)), dFdx(random(p.x)), dFdx(rt_GeometricNormal.x),
+          dFdx(unknown), dFdx(dFdx(p.x * p.x)), dFdx(random(p.x)), dFdx(rt_GeometricNormal.x),
           dFdx(luminance(color(p.x))), dFdx(rt_dUVdx.x));
     float draw = rand();
     print(dFdx(p.x * draw) / rt_dUVdx.x - draw);
