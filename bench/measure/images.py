@@ -1,5 +1,6 @@
 """Bilinear lookups in an image: of a shader, of a plain loop by hand, and of OpenImageIO's texture
-system."""
+system. And lookups that are filtered over the footprints of rays, on a plane that is seen at an
+angle, beside those in the finest level."""
 
 import json
 import random
@@ -27,6 +28,46 @@ class Lookups : rt_RayGeneration {
   }
 };
 """
+FILTERED = """
+class Filtered : rt_Material {
+  public sampler2D image;
+  void shade() {
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 16; ++i)
+      sum += image.sample(rt_TextureUV * 40.0 + 0.37 * float(i));
+    rt_SampleColor = color(sum.r, sum.g, sum.b) / 16.0;
+  }
+};
+"""
+FILTERS = ("bilinear", "trilinear", "anisotropic")
+
+
+def write_filtered(folder):
+    """A scene for each filter. A pixel in the middle of the picture covers 3 x 14 texels."""
+    (folder / "filtered.rtsl").write_text(FILTERED)
+    for kind in FILTERS:
+        scene = {
+            "rtsl": 1,
+            "import": ["filtered.rtsl", "std.cameras", "std.primitives"],
+            "camera": {
+                "class": "PerspectiveCamera",
+                "constructor": [[0, -4, 1], [0, 0, 0], [0, 0, 1]],
+            },
+            "objects": [
+                {
+                    "primitive": {
+                        "class": "Parallelogram",
+                        "constructor": [[-20, -3, 0], [40, 0, 0], [0, 40, 0]],
+                    },
+                    "material": {
+                        "class": "Filtered",
+                        "image": {"file": "image.png", "filter": kind},
+                    },
+                }
+            ],
+            "render": {"size": [WIDTH // 2, HEIGHT // 2], "spp": SAMPLES},
+        }
+        (folder / f"{kind}.json").write_text(json.dumps(scene))
 
 
 def write_image(folder):
@@ -88,32 +129,33 @@ def programs(folder):
                 yield name, [str(program), str(folder / image)]
 
 
+def time_of(build, folder, scene, arithmetic):
+    """Seconds to render a scene on one core."""
+    command = [str(build / "bin" / "rtslc"), "render", str(folder / scene), "--json"]
+    command += ["--threads", "1", f"--fp={arithmetic}", "-o", str(folder / "picture.exr")]
+    return json.loads(process.run(command).output)["seconds"]["render"]
+
+
 def measure(build, rounds):
-    results = {}
+    results, filtered = {}, {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         write_image(folder)
+        write_filtered(folder)
         by_hand = list(programs(folder))
         for _ in range(rounds):
             for arithmetic in ("strict", "fast"):
-                run = json.loads(
-                    process.run(
-                        [
-                            str(build / "bin" / "rtslc"),
-                            "render",
-                            str(folder / "scene.json"),
-                            "--json",
-                            "--threads",
-                            "1",
-                            f"--fp={arithmetic}",
-                            "-o",
-                            str(folder / "picture.exr"),
-                        ]
-                    ).output
-                )
                 results.setdefault(f"rtslc, {arithmetic}", []).append(
-                    run["seconds"]["render"] * 1e9 / (WIDTH * HEIGHT * SAMPLES * LOOKUPS)
+                    time_of(build, folder, "scene.json", arithmetic)
+                    * 1e9
+                    / (WIDTH * HEIGHT * SAMPLES * LOOKUPS)
                 )
+                for kind in FILTERS:
+                    filtered.setdefault(f"{kind}, {arithmetic}", []).append(
+                        time_of(build, folder, f"{kind}.json", arithmetic)
+                        * 4e9
+                        / (WIDTH * HEIGHT * SAMPLES * LOOKUPS)
+                    )
             for program, command in by_hand:
                 results.setdefault(program, []).append(
                     json.loads(process.run(command).output)["nanoseconds"]
@@ -121,6 +163,7 @@ def measure(build, rounds):
     return {
         "rounds": rounds,
         "results": {program: summarise(times).as_json() for program, times in results.items()},
+        "filtered": {kind: summarise(times).as_json() for kind, times in filtered.items()},
     }
 
 
@@ -136,6 +179,14 @@ def show(report):
         print(
             f"  {program:32}{times['median']:8.1f}  "
             f"{f'{low:.1f} to {high:.1f}':16}{times['median'] / ours:6.2f} of the time of strict"
+        )
+    print("filtered over the footprints of rays (bilinear: in the finest level)")
+    finest = report["filtered"]["bilinear, strict"]["median"]
+    for kind, times in report["filtered"].items():
+        low, high = times["interval"]
+        print(
+            f"  {kind:32}{times['median']:8.1f}  "
+            f"{f'{low:.1f} to {high:.1f}':16}{times['median'] / finest:6.2f} of the finest, strict"
         )
 
 
