@@ -500,6 +500,13 @@ PLACES = [
 ]
 SPACES = [
     spaces(PLACES),
+    spaces(  # rigid
+        [
+            *PLACES,
+            {"rotate": [20, 30, 40], "translate": [0, 1.5, -1]},
+            {"keys": [{"rotate": [0, 0, 0]}, {"rotate": [0, 90, 200]}]},
+        ]
+    ),
     spaces(
         [
             *PLACES,
