@@ -43,9 +43,11 @@ enum class Schedule : std::uint32_t {
 };
 
 /// How the steps of samples are organised on a GPU: all in one kernel, each lane with a sample of
-/// its own (runtime/device/engines/Megakernel.h), or a kernel for each step, with many more samples
-/// in flight than lanes (runtime/device/engines/Wavefront.h). The picture is the same, bit for bit.
-enum class Organisation : std::uint8_t { Megakernel, Wavefront };
+/// its own (runtime/device/engines/Megakernel.h); a kernel for each step, with many more samples in
+/// flight than lanes (runtime/device/engines/Wavefront.h); or all in one kernel, and each block of
+/// lanes has samples of its own in shared memory (runtime/device/engines/Persistent.h). The picture
+/// is the same, bit for bit.
+enum class Organisation : std::uint8_t { Megakernel, Wavefront, Persistent };
 
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR

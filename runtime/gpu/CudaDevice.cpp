@@ -39,6 +39,8 @@ void CudaDevice::open(int ordinal) {
       10 * attribute(cuda::ComputeCapabilityMajor) + attribute(cuda::ComputeCapabilityMinor);
   multiprocessorCount = attribute(cuda::MultiprocessorCount);
   threadsOfMultiprocessor = attribute(cuda::ThreadsOfMultiprocessor);
+  sharedBytesOfMultiprocessor = attribute(cuda::SharedBytesOfMultiprocessor);
+  mostSharedBytesOfBlock = attribute(cuda::MostSharedBytesOfBlock);
   f.check(f.primaryContextRetain(&context, device), "cuDevicePrimaryCtxRetain");
   use();
   for (void *&event : events)
@@ -178,10 +180,18 @@ CudaDevice::Kernel CudaDevice::kernel(const char *name, const Module &code) cons
   return kernel;
 }
 
+void CudaDevice::giveSharedMemory(Kernel &kernel, unsigned bytes) const {
+  driver->check(
+      driver->functionSetAttribute(kernel.function, cuda::MostDynamicSharedBytes, int(bytes)),
+      "cuFuncSetAttribute");
+  kernel.sharedBytes = bytes;
+}
+
 int CudaDevice::blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const {
   int blocks = 0;
-  driver->check(driver->occupancy(&blocks, kernel.function, int(threadsPerBlock), 0),
-                "cuOccupancyMaxActiveBlocksPerMultiprocessor");
+  driver->check(
+      driver->occupancy(&blocks, kernel.function, int(threadsPerBlock), kernel.sharedBytes),
+      "cuOccupancyMaxActiveBlocksPerMultiprocessor");
   return blocks;
 }
 
@@ -199,8 +209,8 @@ double CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned thread
 
 void CudaDevice::launchLater(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
                              void **arguments) {
-  driver->check(driver->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1, 0, nullptr,
-                               arguments, nullptr),
+  driver->check(driver->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1,
+                               kernel.sharedBytes, nullptr, arguments, nullptr),
                 "cuLaunchKernel");
 }
 

@@ -34,6 +34,9 @@ public:
   int multiprocessors() const { return multiprocessorCount; }
   /// Of a multiprocessor, at once.
   int mostThreads() const { return threadsOfMultiprocessor; }
+  /// The shared memory of a multiprocessor, and how much of it a block may have.
+  int sharedBytes() const { return sharedBytesOfMultiprocessor; }
+  int mostSharedBytes() const { return mostSharedBytesOfBlock; }
   std::size_t freeMemory() const;
 
   using Address = cuda::Driver::Address;
@@ -63,12 +66,15 @@ public:
 
   struct Kernel {
     void *function = nullptr;
-    int registers = 0;  // of a thread
-    int localBytes = 0; // of a thread: spills and arrays
+    int registers = 0;        // of a thread
+    int localBytes = 0;       // of a thread: spills and arrays
+    unsigned sharedBytes = 0; // of a block, beside those in its code
     // Bytes, in the code; nothing if the log does not say.
     std::optional<int> spillStores, spillLoads;
   };
   Kernel kernel(const char *name, const Module &code) const;
+  /// Sets Kernel::sharedBytes, up to mostSharedBytes().
+  void giveSharedMemory(Kernel &kernel, unsigned bytes) const;
   /// How many blocks of the kernel run at once on a multiprocessor.
   int blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const;
   /// Runs a kernel and waits for it. `arguments` points to as many pointers to arguments as it has.
@@ -95,6 +101,7 @@ private:
   void *events[2] = {}; // before and after a kernel
   std::string deviceName;
   int computeCapability = 0, multiprocessorCount = 0, threadsOfMultiprocessor = 0;
+  int sharedBytesOfMultiprocessor = 0, mostSharedBytesOfBlock = 0;
 };
 
 } // namespace rtsl::runtime

@@ -56,6 +56,7 @@ void Driver::open() {
   find(moduleUnload, "cuModuleUnload");
   find(moduleGetFunction, "cuModuleGetFunction");
   find(functionGetAttribute, "cuFuncGetAttribute");
+  find(functionSetAttribute, "cuFuncSetAttribute");
   find(occupancy, "cuOccupancyMaxActiveBlocksPerMultiprocessor");
   find(launch, "cuLaunchKernel");
   find(synchronize, "cuCtxSynchronize");

@@ -25,8 +25,10 @@ enum DeviceAttribute {
   MultiprocessorCount = 16,
   ComputeCapabilityMajor = 75,
   ComputeCapabilityMinor = 76,
+  SharedBytesOfMultiprocessor = 81,
+  MostSharedBytesOfBlock = 97,
 };
-enum FunctionAttribute { LocalSizeBytes = 3, RegisterCount = 4 };
+enum FunctionAttribute { LocalSizeBytes = 3, RegisterCount = 4, MostDynamicSharedBytes = 8 };
 enum StreamFlag : unsigned { NonBlocking = 1 };
 enum JitOption {
   MaxRegisters = 0,
@@ -81,6 +83,7 @@ public:
   int (*moduleUnload)(void *module);
   int (*moduleGetFunction)(void **function, void *module, const char *name);
   int (*functionGetAttribute)(int *, int attribute, void *function);
+  int (*functionSetAttribute)(void *function, int attribute, int value);
   int (*occupancy)(int *blocks, void *function, int threads, std::size_t sharedBytes);
   int (*launch)(void *function, unsigned gridX, unsigned gridY, unsigned gridZ, unsigned blockX,
                 unsigned blockY, unsigned blockZ, unsigned sharedBytes, void *stream,

@@ -48,7 +48,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
   figures.spillLoads = kernel.spillLoads;
   figures.occupancy =
       double(device.blocksAtOnce(kernel, threadsPerBlock)) * threadsPerBlock / device.mostThreads();
-  figures.laneBytes = waves ? waves->stackBytes() : code.laneBytes;
+  figures.laneBytes = waves ? waves->stackBytes() : blocks ? blocks->stackBytes() : code.laneBytes;
   figures.threadsPerBlock = threadsPerBlock;
   try {
     prepare();
@@ -64,6 +64,11 @@ void GpuRenderer::loadKernels(const GpuCode &code) {
   sumKernel = device.kernel("rtsl_sum", program);
   if (code.wave.states == 0) {
     kernel = device.kernel("rtsl_render", program);
+    return;
+  }
+  if (code.wave.isPersistent) {
+    blocks.emplace(device, program, code.wave, code.laneBytes);
+    kernel = blocks->kernel();
     return;
   }
   waves.emplace(device, program, code.wave, code.laneBytes);
@@ -95,6 +100,12 @@ std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
     figures.blocks = (waves->slots() + threadsPerBlock - 1) / threadsPerBlock;
     figures.laneBytes = waves->slotBytes();
     return bytes;
+  }
+  if (blocks) {
+    job.slots = blocks->slots();
+    figures.blocks = blocks->setBlocks(samplesInMemory());
+    figures.laneBytes = blocks->slotBytes() + blocks->stackBytes();
+    return blocks->stacksBytes(figures.blocks);
   }
   figures.blocks = blockCount(device, kernel, pixelCount(), job.laneBytes);
   return std::uint64_t(figures.blocks) * threadsPerBlock * job.laneBytes;

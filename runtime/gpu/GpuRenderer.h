@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/gpu/CudaDevice.h"
+#include "runtime/gpu/GpuBlocks.h"
 #include "runtime/gpu/GpuWaves.h"
 #include "runtime/render/Megakernel.h"
 
@@ -75,7 +76,8 @@ private:
   CudaDevice &device;
   CudaDevice::Module program;
   CudaDevice::Kernel kernel, sumKernel;
-  std::optional<GpuWaves> waves; // in place of `kernel`
+  std::optional<GpuWaves> waves;   // in place of `kernel`
+  std::optional<GpuBlocks> blocks; // of `kernel`, if it runs persistent blocks
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;

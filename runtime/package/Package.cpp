@@ -17,7 +17,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 9;
+constexpr std::uint32_t formatVersion = 10;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -63,10 +63,11 @@ struct Info {
   Layouts layouts;
   std::uint32_t width, height, slices, samplesPerPixel, maxDepth, seed;
   std::uint32_t stateCount, frameBytes, hostStackBytes, registers;
-  std::uint32_t waveStates, waveGroups, waveHasStacks; // WaveFacts
+  std::uint32_t waveStates, waveGroups, waveHasStacks, waveIsPersistent; // WaveFacts
+  std::uint32_t padding;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
-static_assert(sizeof(Info) == 104);
+static_assert(sizeof(Info) == 112);
 
 std::string_view bytesOf(const void *data, std::size_t size) {
   return {static_cast<const char *>(data), size};
@@ -101,6 +102,7 @@ Info infoOf(const Package &package) {
   info.waveStates = package.wave.states;
   info.waveGroups = package.wave.groups;
   info.waveHasStacks = package.wave.hasStacks;
+  info.waveIsPersistent = package.wave.isPersistent;
   info.hostLaneBytes = package.host.laneBytes;
   info.hostRunLane = package.host.runLane;
   return info;
@@ -234,7 +236,8 @@ private:
     std::memcpy(package.laneBytes.data(), laneBytes.data(), sizeof package.laneBytes);
     package.host.stackBytes = info.hostStackBytes;
     package.registers = info.registers;
-    package.wave = {info.waveStates, info.waveGroups, info.waveHasStacks != 0};
+    package.wave = {info.waveStates, info.waveGroups, info.waveHasStacks != 0,
+                    info.waveIsPersistent != 0};
     package.host.laneBytes = info.hostLaneBytes;
     package.host.runLane = info.hostRunLane;
     const std::uint64_t code = content(SectionKind::HostCode).size();

@@ -28,6 +28,10 @@ std::string_view gpuMegakernelBitcode();
 std::string_view wavefrontBitcode();
 std::string_view gpuWavefrontBitcode();
 
+/// The functions that run persistent blocks (runtime/device/engines/Persistent.h).
+std::string_view persistentBitcode();
+std::string_view gpuPersistentBitcode();
+
 /// memcpy and similar functions, for host machine code that runs without a C library.
 std::string_view hostMemoryBitcode();
 

@@ -127,11 +127,13 @@ struct MegakernelCode {
   std::uint64_t stackBytes = 0; // of the calling thread
 };
 
-/// Of a wavefront for a GPU (runtime/device/engines/Wavefront.h).
+/// Of a wavefront or of persistent blocks for a GPU (runtime/device/engines/Wavefront.h,
+/// Persistent.h).
 struct WaveFacts {
-  std::uint32_t states = 0; // each has a kernel; 0: it is a megakernel
-  std::uint32_t groups = 0; // of four words, in the record of a sample in flight
-  bool hasStacks = false;   // otherwise the only level of its rays is in the record
+  std::uint32_t states = 0;  // of a wavefront each has a kernel; 0: it is a megakernel
+  std::uint32_t groups = 0;  // of four words, in the record of a sample in flight
+  bool hasStacks = false;    // otherwise the only level of its rays is in the record
+  bool isPersistent = false; // one kernel of persistent blocks
 };
 
 /// How the rays of a program go on where they hit: they do not, they send rays that depend on the

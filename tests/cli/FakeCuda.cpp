@@ -52,6 +52,7 @@ struct Device {
   std::size_t allocated = 0;
   std::string code;                    // of all programs
   std::size_t waveStates = 0;          // of the last one
+  std::uint32_t sharedBytes = 0;       // of a persistent block
   RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
 };
 Device devices[mostDevices];
@@ -60,6 +61,10 @@ thread_local Device *current = nullptr; // of this thread
 int deviceCount() {
   const char *count = std::getenv("FAKE_CUDA_DEVICES");
   return count ? std::atoi(count) : 1;
+}
+
+int mostSharedBytes() {
+  return is("little-shared-memory") ? 4096 : 101376;
 }
 
 std::size_t totalMemory() {
@@ -92,13 +97,14 @@ void paint(const RtslJob &job, std::uint64_t sample) {
     job.samples[3 * sample + c] = float(number + 1) * color[c];
 }
 
-int render(const RtslJob &job, unsigned blocks, unsigned threads) {
+/// With so many bytes for rays.
+int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t rays) {
   if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
   const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
   bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
-  isFine &= isAllocated(job.lanes, blocks * threads * job.laneBytes);
+  isFine &= isAllocated(job.lanes, rays);
   isFine &= isAllocated(job.samples, samples * launch.colorComponents * sizeof(float));
   isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
             job.status->nextSample < samples && job.status->stop == 0;
@@ -174,6 +180,14 @@ int sampleWave(const RtslJob &job, std::uint32_t turn) {
   return Success;
 }
 
+/// The kernel of persistent blocks: their slots are in shared memory, apart from the stacks.
+int persist(const RtslJob &job, unsigned blocks, unsigned threads) {
+  if (!isAllocated(&job, sizeof job) || job.slots == 0 || job.slots % 32 != 0 ||
+      job.slots * 16 > current->sharedBytes)
+    return IllegalAddress;
+  return render(job, blocks, threads, std::uint64_t(blocks) * job.slots * job.laneBytes);
+}
+
 /// The kernel that adds the samples to the sums; it must follow the other one.
 int sum(const RtslJob &job) {
   const std::uint64_t pixels = std::uint64_t(job.width) * job.height;
@@ -201,12 +215,12 @@ int sum(const RtslJob &job) {
 
 /// What the driver gives out as kernels: those of programs, and those that build trees.
 const char *const kernels[] = {
-    "rtsl_render",     "rtsl_sum",         "rtsl_wave_begin",
-    "rtsl_wave_trace", "rtsl_wave_sample", "rtsl_wave_state_",
+    "rtsl_render",      "rtsl_sum",         "rtsl_wave_begin", "rtsl_wave_trace",
+    "rtsl_wave_sample", "rtsl_wave_state_", "rtsl_persistent",
 #define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
 #include "runtime/device/trees/Steps.def"
 };
-constexpr std::size_t programKernels = 6;
+constexpr std::size_t programKernels = 7;
 constexpr const char *entry = ".entry ";
 
 bool hasKernel(const char *code, const char *name) {
@@ -264,6 +278,8 @@ int cuDeviceGetAttribute(int *value, int attribute, int) {
   *value = attribute == 16   ? int(multiprocessors)
            : attribute == 39 ? 1024
            : attribute == 75 ? 7
+           : attribute == 81 ? 102400
+           : attribute == 97 ? mostSharedBytes()
                              : 5;
   return Success;
 }
@@ -395,9 +411,9 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
     for (const char *at = code; (at = std::strstr(at, state.c_str())); at += state.size())
       ++current->waveStates;
     const bool isWavefront = hasKernel(code, "rtsl_wave_begin(");
-    return hasKernel(code, "rtsl_sum(") && isWavefront != hasKernel(code, "rtsl_render(")
-               ? Success
-               : InvalidValue;
+    const int organisations =
+        isWavefront + hasKernel(code, "rtsl_render(") + hasKernel(code, "rtsl_persistent(");
+    return hasKernel(code, "rtsl_sum(") && organisations == 1 ? Success : InvalidValue;
   }
   for (std::size_t i = programKernels; i < std::size(kernels); ++i)
     if (!hasKernel(code, (std::string(kernels[i]) + "(").c_str()))
@@ -422,13 +438,17 @@ int cuFuncGetAttribute(int *value, int, void *) {
   *value = 40;
   return Success;
 }
+int cuFuncSetAttribute(void *, int attribute, int value) {
+  current->sharedBytes = std::uint32_t(value);
+  return attribute == 8 && value <= mostSharedBytes() ? Success : InvalidValue;
+}
 int cuOccupancyMaxActiveBlocksPerMultiprocessor(int *blocks, void *, int, std::size_t) {
   *blocks = blocksAtOnce;
   return Success;
 }
 
 int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
-                   unsigned, unsigned, void *, void **arguments, void **) {
+                   unsigned, unsigned sharedBytes, void *, void **arguments, void **) {
   if (is("fault"))
     return Success; // it shows when the kernel is waited for
   const auto kernel = std::size_t(static_cast<const char *const *>(function) - kernels);
@@ -444,7 +464,9 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
   const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
   const std::string name = kernels[kernel];
   if (name == "rtsl_render")
-    return render(job, blocks, threads);
+    return render(job, blocks, threads, std::uint64_t(blocks) * threads * job.laneBytes);
+  if (name == "rtsl_persistent")
+    return sharedBytes == current->sharedBytes ? persist(job, blocks, threads) : InvalidValue;
   if (name == "rtsl_sum")
     return sum(job);
   if (name == "rtsl_wave_begin")

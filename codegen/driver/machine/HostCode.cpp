@@ -193,15 +193,16 @@ LlvmCode PartCompiler::rest() {
                             options.checksNumbers ? &program.numberPlaces : nullptr);
   defineFacts(code, options, program);
   const bool isMegakernel = options.target == Target::HostMegakernel;
-  const bool isWavefront = isMegakernel && options.organisation == Organisation::Wavefront;
-  if (isWavefront)
-    beginWavefront(code, program);
+  const bool keepsRecords =
+      isMegakernel && options.organisation && *options.organisation != Organisation::Megakernel;
+  if (keepsRecords)
+    beginRecords(code, program);
   std::vector<std::string_view> linked = bitcodes;
   if (!isMegakernel && hasList(code))
     linked = {runtime::deviceBitcode(), runtime::listTraversalBitcode(), runtime::deviceBitcode()};
   linkDeviceCode(code, linked, exports);
-  if (isWavefront)
-    endWavefront(code, program);
+  if (keepsRecords)
+    endRecords(code, program);
   code.options.isMegakernel = isMegakernel;
   return code;
 }

@@ -53,11 +53,11 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
   // They use functions of each other; what is not used is not linked.
   static const std::vector<std::string_view> host = {
-      runtime::deviceBitcode(), runtime::wavefrontBitcode(), runtime::megakernelBitcode(),
-      runtime::deviceBitcode()};
+      runtime::deviceBitcode(), runtime::wavefrontBitcode(), runtime::persistentBitcode(),
+      runtime::megakernelBitcode(), runtime::deviceBitcode()};
   static const std::vector<std::string_view> gpu = {
-      runtime::gpuDeviceBitcode(), runtime::gpuWavefrontBitcode(), runtime::gpuMegakernelBitcode(),
-      runtime::gpuDeviceBitcode()};
+      runtime::gpuDeviceBitcode(), runtime::gpuWavefrontBitcode(), runtime::gpuPersistentBitcode(),
+      runtime::gpuMegakernelBitcode(), runtime::gpuDeviceBitcode()};
   return forGpu ? gpu : host;
 }
 
@@ -124,6 +124,9 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
 static std::vector<std::string> kernels(Organisation organisation) {
   if (organisation == Organisation::Megakernel)
     return {"rtsl_render", "rtsl_sum"};
+  if (organisation == Organisation::Persistent)
+    return {"rtsl_persistent", "rtsl_block_state", "rtsl_sum", "rtsl_block_has_stacks",
+            "rtsl_record_groups"};
   return {"rtsl_wave_begin", "rtsl_wave_sample",     "rtsl_wave_trace",   "rtsl_wave_state",
           "rtsl_sum",        "rtsl_wave_has_stacks", "rtsl_record_groups"};
 }
@@ -137,24 +140,24 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
     defineSchedule(*code.module, options, program);
   code.organisation = forGpu ? organisationFor(options, program, *code.module)
                              : options.organisation.value_or(Organisation::Megakernel);
-  const bool isWavefront = code.organisation == Organisation::Wavefront;
-  if (isWavefront)
-    beginWavefront(code, program);
+  const bool keepsRecords = code.organisation != Organisation::Megakernel;
+  if (keepsRecords)
+    beginRecords(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
                  forGpu ? kernels(code.organisation) : hostEntries(code.organisation));
-  if (isWavefront)
-    endWavefront(code, program);
+  if (keepsRecords)
+    endRecords(code, program);
   code.options.isMegakernel = true;
   return code;
 }
 
-void beginWavefront(LlvmCode &code, const runtime::Program &program) {
+void beginRecords(LlvmCode &code, const runtime::Program &program) {
   constexpr std::size_t besideStates = 2; // traversal, and the beginning of samples
   codegen::defineConstant(*code.module, "rtsl_wave_steps",
                           std::uint32_t(program.stateNames.size() + besideStates));
 }
 
-void endWavefront(LlvmCode &code, const runtime::Program &program) {
+void endRecords(LlvmCode &code, const runtime::Program &program) {
   codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()));
   codegen::declareRecords(*code.module);
 }
@@ -163,7 +166,11 @@ const std::vector<std::string> &hostEntries(std::optional<Organisation> organisa
   static const std::vector<std::string> lanes = {"rtsl_lane_bytes", "rtsl_run_lane"};
   static const std::vector<std::string> waves = {"rtsl_wave_bytes", "rtsl_run_wave",
                                                  "rtsl_wave_state"};
-  return organisation == Organisation::Wavefront ? waves : lanes;
+  static const std::vector<std::string> blocks = {"rtsl_block_bytes", "rtsl_run_block",
+                                                  "rtsl_block_state"};
+  return organisation == Organisation::Wavefront    ? waves
+         : organisation == Organisation::Persistent ? blocks
+                                                    : lanes;
 }
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
@@ -196,11 +203,12 @@ void optimize(LlvmCode &code) {
 std::string toPtx(LlvmCode code, runtime::WaveFacts *facts) {
   codegen::nameForPtx(*code.module);
   optimize(code);
-  if (facts && code.module->getFunction("rtsl_wave_has_stacks")) {
-    facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
-    // Not known of code that is not optimised.
-    facts->hasStacks = codegen::takeConstant(*code.module, "rtsl_wave_has_stacks").value_or(1) != 0;
-  }
+  for (const char *hasStacks : {"rtsl_wave_has_stacks", "rtsl_block_has_stacks"})
+    if (facts && code.module->getFunction(hasStacks)) {
+      facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
+      // Not known of code that is not optimised.
+      facts->hasStacks = codegen::takeConstant(*code.module, hasStacks).value_or(1) != 0;
+    }
   return take(codegen::printPtx(*code.module, *code.machine));
 }
 

@@ -68,9 +68,10 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
 const std::vector<std::string> &
 hostEntries(std::optional<Organisation> organisation = std::nullopt);
 
-/// Before linking with the device code of a wavefront, and after it.
-void beginWavefront(LlvmCode &code, const runtime::Program &program);
-void endWavefront(LlvmCode &code, const runtime::Program &program);
+/// Before linking with the device code of an organisation that keeps samples in records, and after
+/// it.
+void beginRecords(LlvmCode &code, const runtime::Program &program);
+void endRecords(LlvmCode &code, const runtime::Program &program);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
                     std::vector<std::string> exports);

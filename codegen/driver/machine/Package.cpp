@@ -31,6 +31,8 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
 static std::uint32_t registersFor(Organisation organisation, runtime::Paths paths) {
   if (organisation == Organisation::Wavefront)
     return 0; // as many as each step needs
+  if (organisation == Organisation::Persistent)
+    return 168; // its shared memory leaves room for a few warps only
   return paths == runtime::Paths::Alike ? 128 : 72;
 }
 
@@ -51,8 +53,10 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   LlvmCode code = megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true);
   const Organisation organisation = code.organisation;
   package.ptx = toPtx(std::move(code), &package.wave);
-  if (organisation == Organisation::Wavefront)
+  if (organisation != Organisation::Megakernel) {
     package.wave.states = std::uint32_t(compilation.program->stateNames.size());
+    package.wave.isPersistent = organisation == Organisation::Persistent;
+  }
   package.registers = registersFor(organisation, compilation.program->paths);
   package.stateNames = compilation.program->stateNames;
   package.host = hostImage(compilation);

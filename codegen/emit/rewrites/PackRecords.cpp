@@ -130,13 +130,22 @@ llvm::FunctionPassManager simplification() {
   return passes;
 }
 
+/// Address spaces of a GPU.
+constexpr unsigned anyMemory = 0, globalMemory = 1, sharedMemory = 3;
+
+/// The memory that the records of a program are in.
+unsigned memoryOfRecords(const llvm::Module &module) {
+  if (!module.getTargetTriple().isNVPTX())
+    return anyMemory;
+  return module.getFunction("rtsl_persistent") ? sharedMemory : globalMemory;
+}
+
 /// The address of word `place` of the record that an access is for.
 llvm::Value *addressOf(llvm::IRBuilder<> &builder, const llvm::CallInst &access, unsigned place,
-                       bool isGpu) {
-  constexpr unsigned globalMemory = 1; // of a GPU
+                       unsigned memory) {
   llvm::Value *records = access.getArgOperand(recordsArgument);
-  if (isGpu)
-    records = builder.CreateAddrSpaceCast(records, builder.getPtrTy(globalMemory));
+  if (memory != anyMemory)
+    records = builder.CreateAddrSpaceCast(records, builder.getPtrTy(memory));
   const auto wide = [&](unsigned argument) {
     return builder.CreateZExt(access.getArgOperand(argument), builder.getInt64Ty());
   };
@@ -148,10 +157,10 @@ llvm::Value *addressOf(llvm::IRBuilder<> &builder, const llvm::CallInst &access,
   return builder.CreateConstGEP1_64(builder.getInt32Ty(), begin, place % wordsOfGroup);
 }
 
-void lowerAccess(llvm::CallInst &access, unsigned place, bool isGpu) {
+void lowerAccess(llvm::CallInst &access, unsigned place, unsigned memory) {
   llvm::IRBuilder<> builder(&access);
   const llvm::Align alignment(place % wordsOfGroup == 0 ? wordsOfGroup * wordBytes : wordBytes);
-  llvm::Value *address = addressOf(builder, access, place, isGpu);
+  llvm::Value *address = addressOf(builder, access, place, memory);
   if (access.getCalledFunction()->getName() == loadName)
     access.replaceAllUsesWith(builder.CreateAlignedLoad(builder.getInt32Ty(), address, alignment));
   else
@@ -191,13 +200,13 @@ llvm::PreservedAnalyses PackRecordsPass::run(llvm::Module &module,
         functions.invalidate(function, simplify.run(function, functions));
       }
   } while (removeUseless(module));
-  const bool isGpu = module.getTargetTriple().isNVPTX();
+  const unsigned memory = memoryOfRecords(module);
   unsigned place = 0;
   for (const auto &numbered : wordsOf(module)) {
     for (llvm::CallInst *load : numbered.second.loads)
-      lowerAccess(*load, place, isGpu);
+      lowerAccess(*load, place, memory);
     for (llvm::CallInst *store : numbered.second.stores)
-      lowerAccess(*store, place, isGpu);
+      lowerAccess(*store, place, memory);
     ++place;
   }
   defineGroups(module, (place + wordsOfGroup - 1) / wordsOfGroup);

@@ -29,13 +29,13 @@ llvm::Function *runThisState(llvm::Function &runState, unsigned state) {
   return copy;
 }
 
-/// rtsl_wave_state for one state.
-llvm::Function *waveState(llvm::Function &any, llvm::Function &run, unsigned state) {
+/// rtsl_wave_state or rtsl_block_state for one state.
+llvm::Function *stateCopy(llvm::Function &any, llvm::Function &run, unsigned state) {
   llvm::ValueToValueMapTy values;
   llvm::Argument *number = any.getArg(any.arg_size() - 1);
   values[number] = llvm::ConstantInt::get(number->getType(), state);
   llvm::Function *copy = llvm::CloneFunction(&any, values);
-  copy->setName(waveStateName(state));
+  copy->setName(any.getName() + "_" + llvm::Twine(state));
   for (llvm::Instruction &instruction : llvm::instructions(copy))
     if (auto *call = llvm::dyn_cast<llvm::CallBase>(&instruction);
         call && call->getCalledFunction() &&
@@ -44,7 +44,7 @@ llvm::Function *waveState(llvm::Function &any, llvm::Function &run, unsigned sta
   return copy;
 }
 
-/// rtsl_wave_run_state(..., number): the copy for `number`.
+/// rtsl_wave_run_state(..., number) or rtsl_block_run_state: the copy for `number`.
 void defineSwitch(llvm::Function &function, llvm::ArrayRef<llvm::Function *> copies) {
   llvm::LLVMContext &context = function.getContext();
   llvm::IRBuilder<> builder(llvm::BasicBlock::Create(context, "", &function));
@@ -68,24 +68,23 @@ void defineSwitch(llvm::Function &function, llvm::ArrayRef<llvm::Function *> cop
 
 } // namespace
 
-std::string waveStateName(unsigned state) {
-  return "rtsl_wave_state_" + std::to_string(state);
-}
-
 void makeWaveStates(llvm::Module &module, unsigned count) {
   llvm::Function *any = module.getFunction("rtsl_wave_state");
+  if (!any)
+    any = module.getFunction("rtsl_block_state");
   llvm::Function *runState = module.getFunction("rtsl_run_state");
   assert(any && runState && "the device code of a wavefront is linked");
   llvm::SmallVector<llvm::Function *> copies;
   for (unsigned state = 1; state <= count; ++state)
-    copies.push_back(waveState(*any, *runThisState(*runState, state), state));
+    copies.push_back(stateCopy(*any, *runThisState(*runState, state), state));
   any->eraseFromParent();
   assert(module.getFunction("rtsl_run_this_state")->use_empty() && "all calls are in the copies");
-  if (llvm::Function *choice = module.getFunction("rtsl_wave_run_state")) {
-    for (llvm::Function *copy : copies)
-      copy->setLinkage(llvm::GlobalValue::InternalLinkage);
-    defineSwitch(*choice, copies);
-  }
+  for (const char *name : {"rtsl_wave_run_state", "rtsl_block_run_state"})
+    if (llvm::Function *choice = module.getFunction(name)) {
+      for (llvm::Function *copy : copies)
+        copy->setLinkage(llvm::GlobalValue::InternalLinkage);
+      defineSwitch(*choice, copies);
+    }
 }
 
 } // namespace rtsl::codegen

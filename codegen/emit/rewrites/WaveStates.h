@@ -2,12 +2,12 @@
 //
 // The device code of a wavefront has one function that runs a state of all slots that wait for it,
 // `rtsl_wave_state` (runtime/device/engines/Wavefront.cpp). A program needs it once for each state,
-// so that each kernel has the registers of its state alone.
+// so that each kernel has the registers of its state alone. That of persistent blocks has one for a
+// task, `rtsl_block_state` (Persistent.cpp), whose copies load and store only what their state
+// needs.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
-
-#include <string>
 
 namespace llvm {
 class Module;
@@ -15,11 +15,9 @@ class Module;
 
 namespace rtsl::codegen {
 
-/// The kernel of a state, from 1 on.
-std::string waveStateName(unsigned state);
-
-/// Replaces `rtsl_wave_state` by copies for the states 1 to `count`, which call only what their
-/// state consists of. On a host it also defines `rtsl_wave_run_state`, the switch over them.
+/// Replaces `rtsl_wave_state`, or `rtsl_block_state`, by copies for the states 1 to `count`, which
+/// call only what their state consists of: `rtsl_wave_state_1` and so on. Where they are declared
+/// it also defines `rtsl_wave_run_state` and `rtsl_block_run_state`, the switch over them.
 void makeWaveStates(llvm::Module &module, unsigned count);
 
 } // namespace rtsl::codegen

@@ -308,9 +308,8 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
   state.LightDistance = light.distance * length;
   // The radiance of a white diffuse surface that faces the light.
   const float factor = 1 / (3.14159274f * light.density);
-  for (uint32_t i = 0; i < RTSL_MAX_COLOR; ++i)
-    if (i < components)
-      state.LightColor[i] = light.radiance[i] * factor;
+  forEachComponent(components,
+                   [&](uint32_t i) { state.LightColor[i] = light.radiance[i] * factor; });
   state.PDF = light.density;
   return true;
 }
@@ -370,8 +369,8 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   describeHit(state);
   rtsl_rt_Material_emission(&state, instance.material);
   float mean = 0;
-  for (uint32_t i = 0; i < components; ++i)
-    mean += state.EmissionColor[i] / float(components);
+  forEachComponent(components,
+                   [&](uint32_t i) { mean += state.EmissionColor[i] / float(components); });
   return mean * area;
 }
 

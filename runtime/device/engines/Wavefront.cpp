@@ -6,13 +6,11 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/Wavefront.h"
+#include "runtime/device/engines/RunThisState.h"
 
 using namespace rtsl;
 
 extern "C" {
-
-/// Defined by the code generator for each copy of rtsl_wave_state: rtsl_run_state of its state.
-int32_t rtsl_run_this_state(RtslState *state, RtslRef object, void *frame);
 
 /// Whether slots have a stack; a constant.
 uint32_t rtsl_wave_has_stacks() {
@@ -20,18 +18,6 @@ uint32_t rtsl_wave_has_stacks() {
 }
 
 } // extern "C"
-
-namespace {
-
-/// The call is in rtsl_wave_state itself, where the code generator finds it.
-struct RunThisState {
-  RTSL_INLINED void operator()(device::Rays &rays) const {
-    device::CurrentRay &ray = rays.ray;
-    device::endState(rays, rtsl_run_this_state(&ray.state, ray.object, device::frameOf(ray)));
-  }
-};
-
-} // namespace
 
 #ifdef __NVPTX__
 
@@ -76,7 +62,7 @@ __attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob *job, uint32_t
 __attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob *job, uint32_t turn,
                                                    int32_t number) {
   device::stateWave(*job, waveOf(*job), turn, number, threadNumber(), threadCount(),
-                    RunThisState());
+                    device::RunThisState());
 }
 
 } // extern "C"
@@ -90,7 +76,7 @@ void rtsl_wave_run_state(const RtslJob *job, const device::Wave *wave, uint32_t 
                          int32_t number);
 
 void rtsl_wave_state(const RtslJob *job, const device::Wave *wave, uint32_t turn, int32_t number) {
-  device::stateWave(*job, *wave, turn, number, 0, 1, RunThisState());
+  device::stateWave(*job, *wave, turn, number, 0, 1, device::RunThisState());
 }
 
 static device::WaveMemory memoryOfThread(uint32_t maxDepth, uint32_t referenceChain) {

@@ -166,14 +166,17 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       "each step in its turn; or that of the first lane. auto: prioritized, but where shaders "
       "choose rays at random majority, or least-waste where each of these rays takes the place of "
       "the one that sent it, in a scene without a tree. The picture is the same");
-  addChoice(command, "--organisation", options.compile.organisation,
-            Choices<std::optional<Organisation>>{{"auto", std::nullopt},
-                                                 {"megakernel", Organisation::Megakernel},
-                                                 {"wavefront", Organisation::Wavefront}},
-            "how the steps of samples are organised on a GPU: megakernel, all in one kernel; "
-            "wavefront, a kernel for each step and queues of samples between them; auto: wavefront "
-            "where rays are chosen at random in a scene with a tree, and only `generate` waits for "
-            "them. The picture is the same");
+  addChoice(
+      command, "--organisation", options.compile.organisation,
+      Choices<std::optional<Organisation>>{{"auto", std::nullopt},
+                                           {"megakernel", Organisation::Megakernel},
+                                           {"wavefront", Organisation::Wavefront},
+                                           {"persistent", Organisation::Persistent}},
+      "how the steps of samples are organised on a GPU: megakernel, all in one kernel; "
+      "wavefront, a kernel for each step and queues of samples between them; persistent, all "
+      "in one kernel and blocks of lanes with queues of their own; auto: wavefront where rays "
+      "are chosen at random in a scene with a tree, and only `generate` waits for them. The "
+      "picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,

@@ -118,9 +118,9 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 10;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 10, and this program reads format "
-                            "9: use a newer rtsl-run");
+  newer[8] = 11;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 11, and this program reads format "
+                            "10: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
@@ -148,7 +148,7 @@ TEST(Package, ContentsThatContradictEachOtherAreRefused) {
     EXPECT_NE(refusal(forged(sections + i * sectionBytes + 16, 0x7fffffff)), "") << i; // size
   }
   EXPECT_NE(refusal(forged(info, 1)).find("rtslc 1.2.3"), std::string::npos); // layout of a launch
-  EXPECT_NE(refusal(forged(info + 88, 3)), ""); // an entry after the code
+  EXPECT_NE(refusal(forged(info + 96, 3)), ""); // an entry after the code
   std::uint64_t scene;
   const std::string whole = serialize(smallPackage());
   std::memcpy(&scene, &whole[sections + 3 * sectionBytes + 8], sizeof scene);
