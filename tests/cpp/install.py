@@ -52,6 +52,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
         f"-DCMAKE_PREFIX_PATH={prefix}",
         f"-DGLASS={glass}",
         "-DCMAKE_BUILD_TYPE=Debug",
+        "-GNinja",
     )
     run(cmake, "--build", example)
     picture = folder / "glass.png"
@@ -64,7 +65,7 @@ with tempfile.TemporaryDirectory(prefix="rtsl-install-") as name:
         """Does a build compile the shaders again? That shows in the file's time, for it is written
         anew even if it is the same."""
         before = generated.stat().st_mtime_ns
-        run(cmake, "--build", example)
+        run(cmake, "--build", example, "--target", generated.relative_to(example))
         return generated.stat().st_mtime_ns != before
 
     first = generated.read_text()

@@ -270,11 +270,11 @@ NodePtr Generator::effect(const Type *type, unsigned depth) {
   return make(type, "($ = $)", std::move(place), converted(type, depth - 1));
 }
 
-/// `dFdx(e)` or `dFdy(e)`, where they may stand. It may copy parts of e, so e is not deep.
+/// `dFdx(e)` or `dFdy(e)` in a method of a material: other functions may be called where these must
+/// not stand, such as in `illumination`. It may copy parts of e, so e is not deep.
 NodePtr Generator::change(const Type *type, unsigned depth) {
-  const std::string root = context.self ? context.self->root : std::string();
   if (context.constantOnly || !context.changes || type->scalar() != types.floatType ||
-      type->isMatrix() || (!root.empty() && root != "rt_Material" && root != "rt_Texture"))
+      type->isMatrix() || !context.self || context.self->root != "rt_Material")
     return nullptr;
   work += 20 * context.weight;
   return make(type, chance(50) ? "dFdx($)" : "dFdy($)", expression(type, std::min(depth, 2u)));
