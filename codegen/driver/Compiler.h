@@ -33,7 +33,7 @@ enum class TraceMode : std::uint8_t { Recurse, Split };
 /// traverses like a GPU.
 enum class Target : std::uint8_t { Host, HostMegakernel };
 
-/// How the lanes of a warp choose the next step (runtime/device/engines/Schedule.h).
+/// How the lanes of a warp choose the next step (runtime/device/organisations/Schedule.h).
 enum class Schedule : std::uint32_t {
   Majority = RTSL_SCHEDULE_MAJORITY,
   Prioritized = RTSL_SCHEDULE_PRIORITIZED,
@@ -43,10 +43,10 @@ enum class Schedule : std::uint32_t {
 };
 
 /// How the steps of samples are organised on a GPU: all in one kernel, each lane with a sample of
-/// its own (runtime/device/engines/Megakernel.h); a kernel for each step, with many more samples in
-/// flight than lanes (runtime/device/engines/Wavefront.h); or all in one kernel, and each block of
-/// lanes has samples of its own in shared memory (runtime/device/engines/Persistent.h). The picture
-/// is the same, bit for bit.
+/// its own (runtime/device/organisations/Megakernel.h); a kernel for each step, with many more
+/// samples in flight than lanes (runtime/device/organisations/Wavefront.h); or all in one kernel,
+/// and each block of lanes has samples of its own in shared memory
+/// (runtime/device/organisations/Persistent.h). The picture is the same, bit for bit.
 enum class Organisation : std::uint8_t { Megakernel, Wavefront, Persistent };
 
 struct CompileOptions {
@@ -75,7 +75,7 @@ struct CompileOptions {
   std::optional<Schedule> schedule;
   /// Of programs for GPUs and for Target::HostMegakernel; there, none is Megakernel.
   std::optional<Organisation> organisation;
-  /// Megakernels count the steps of warps (runtime/device/engines/StepCounts.h).
+  /// Megakernels count the steps of warps (runtime/device/organisations/StepCounts.h).
   bool countsSteps = false;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.
   std::uint32_t sampler = 0;

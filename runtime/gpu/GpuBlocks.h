@@ -1,12 +1,12 @@
 //===- GpuBlocks.h - persistent blocks on a CUDA device -------------------===//
 //
 // As many blocks as run at once, each with samples in its shared memory
-// (runtime/device/engines/Persistent.h).
+// (runtime/device/organisations/Persistent.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/BlockMemory.h"
+#include "runtime/device/organisations/BlockMemory.h"
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/program/Program.h"
 

@@ -1,12 +1,13 @@
 //===- GpuWaves.h - runs the kernels of a wavefront -----------------------===//
 //
 // A turn starts a kernel for each step that samples in flight wait for, one after the other, and
-// then reads how many wait for each step in the next turn (runtime/device/engines/Wavefront.h).
+// then reads how many wait for each step in the next turn
+// (runtime/device/organisations/Wavefront.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/WaveMemory.h"
+#include "runtime/device/organisations/WaveMemory.h"
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/program/Program.h"
 

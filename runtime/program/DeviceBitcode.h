@@ -20,15 +20,15 @@ std::string_view gpuDeviceBitcode();
 std::string_view listTraversalBitcode();
 
 /// rtsl_traverse and the functions that run lanes: for self-contained programs
-/// (runtime/device/engines/Megakernel.h).
+/// (runtime/device/organisations/Megakernel.h).
 std::string_view megakernelBitcode();
 std::string_view gpuMegakernelBitcode();
 
-/// The functions that run a wavefront (runtime/device/engines/Wavefront.h).
+/// The functions that run a wavefront (runtime/device/organisations/Wavefront.h).
 std::string_view wavefrontBitcode();
 std::string_view gpuWavefrontBitcode();
 
-/// The functions that run persistent blocks (runtime/device/engines/Persistent.h).
+/// The functions that run persistent blocks (runtime/device/organisations/Persistent.h).
 std::string_view persistentBitcode();
 std::string_view gpuPersistentBitcode();
 

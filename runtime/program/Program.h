@@ -119,15 +119,15 @@ struct SceneFacts {
 /// generation.
 enum class Engine : std::uint8_t { Classic, Programs, Either };
 
-/// Self-contained code that renders a flat scene (runtime/device/engines/Megakernel.h); null if
-/// there is none.
+/// Self-contained code that renders a flat scene (runtime/device/organisations/Megakernel.h); null
+/// if there is none.
 struct MegakernelCode {
   std::uint64_t (*laneBytes)(std::uint32_t maxDepth, std::uint32_t referenceChain) = nullptr;
   void (*runLane)(const RtslJob *, std::uint32_t lane) = nullptr;
   std::uint64_t stackBytes = 0; // of the calling thread
 };
 
-/// Of a wavefront or of persistent blocks for a GPU (runtime/device/engines/Wavefront.h,
+/// Of a wavefront or of persistent blocks for a GPU (runtime/device/organisations/Wavefront.h,
 /// Persistent.h).
 struct WaveFacts {
   std::uint32_t states = 0;  // of a wavefront each has a kernel; 0: it is a megakernel

@@ -1,7 +1,7 @@
 #include "runtime/render/HostMegakernel.h"
 
 #include "runtime/accel/trees/HostBuildDevice.h"
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/SampleSums.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 

@@ -1,6 +1,6 @@
 #include "runtime/render/Megakernel.h"
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/program/PrintLog.h"
 #include "runtime/render/Watch.h"
 #include "support/Clock.h"

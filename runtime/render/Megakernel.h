@@ -1,8 +1,8 @@
 //===- Megakernel.h - backends that run the megakernel --------------------===//
 //
-// The common part of running the megakernel (runtime/device/engines/Megakernel.h) on a CPU and on a
-// GPU: a scene in one block of bytes, a status, memory for the rays of each lane, and the job that
-// points to them.
+// The common part of running the megakernel (runtime/device/organisations/Megakernel.h) on a CPU
+// and on a GPU: a scene in one block of bytes, a status, memory for the rays of each lane, and the
+// job that points to them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

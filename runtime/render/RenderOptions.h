@@ -108,7 +108,7 @@ struct RenderStatistics {
   std::uint64_t exceptions[RTSL_EXCEPTIONS] = {}; // samples that ended so, by RTSL_EXCEPTION_*
   RtslTreeVisits visits{};                        // of the traversal of GPUs, if steps are counted
   std::vector<RtslStepCount>
-      steps; // of warps, by placeOfStep (runtime/device/engines/StepCounts.h)
+      steps; // of warps, by placeOfStep (runtime/device/organisations/StepCounts.h)
 };
 
 void add(const RtslTreeVisits &part, RtslTreeVisits &all);

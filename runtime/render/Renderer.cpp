@@ -1,6 +1,6 @@
 #include "runtime/render/Renderer.h"
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/embree/HostScene.h"
 #include "runtime/render/HostThreads.h"
 #include "runtime/render/Watch.h"

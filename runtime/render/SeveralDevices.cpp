@@ -12,7 +12,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// The rows of a picture are numbered in bands of so many (runtime/device/engines/Slice.h).
+/// The rows of a picture are numbered in bands of so many (runtime/device/organisations/Slice.h).
 constexpr std::uint32_t rowsOfBand = 4;
 
 /// Of a pixel: with so many the lanes of a warp, which begin with following samples, begin with the

@@ -1,7 +1,7 @@
 //===- World.cpp - a small scene that a random program runs in ------------===//
 #include "World.h"
 
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/program/PrintLog.h"

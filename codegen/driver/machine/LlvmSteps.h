@@ -60,7 +60,7 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
 const std::vector<std::string_view> &megakernelCode(bool forGpu);
 
 /// The states of a linked program as a self-contained program
-/// (runtime/device/engines/Megakernel.h), before optimisation: for a GPU, or for the CPU.
+/// (runtime/device/organisations/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 

@@ -1,8 +1,8 @@
 //===- PackRecords.h - where the words of a sample in flight are ----------===//
 //
 // The steps of a wavefront load and store the words of records by number, a thousand of them, with
-// rtsl_record_load and rtsl_record_store (runtime/device/engines/LaneRecord.h). Most of them no
-// step ever needs. This pass, over all steps together, until nothing changes:
+// rtsl_record_load and rtsl_record_store (runtime/device/organisations/LaneRecord.h). Most of them
+// no step ever needs. This pass, over all steps together, until nothing changes:
 //
 //   - removes stores of words that no step loads, and stores of what was loaded from there,
 //   - replaces loads of words that always have the same constant,

@@ -1,10 +1,10 @@
 //===- WaveStates.h - a kernel for each state -----------------------------===//
 //
 // The device code of a wavefront has one function that runs a state of all slots that wait for it,
-// `rtsl_wave_state` (runtime/device/engines/Wavefront.cpp). A program needs it once for each state,
-// so that each kernel has the registers of its state alone. That of persistent blocks has one for a
-// task, `rtsl_block_state` (Persistent.cpp), whose copies load and store only what their state
-// needs.
+// `rtsl_wave_state` (runtime/device/organisations/Wavefront.cpp). A program needs it once for each
+// state, so that each kernel has the registers of its state alone. That of persistent blocks has
+// one for a task, `rtsl_block_state` (Persistent.cpp), whose copies load and store only what their
+// state needs.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

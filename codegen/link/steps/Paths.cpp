@@ -2,7 +2,7 @@
 //
 // The lanes of a GPU begin with similar rays. Where shaders choose the next ray at random, rays of
 // neighbouring lanes soon have nothing in common; otherwise they stay similar for long. How the
-// megakernel uses its lanes depends on it (runtime/device/engines/Schedule.h).
+// megakernel uses its lanes depends on it (runtime/device/organisations/Schedule.h).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Rays.h"

@@ -307,15 +307,15 @@ typedef struct RtslStepCount {
   uint64_t steps, lanes;
 } RtslStepCount;
 
-/// A slice of a rendering for the megakernel (runtime/device/engines/Megakernel.h): some samples of
-/// each pixel in a window of the launch. They are numbered pixel by pixel, in the order of
-/// runtime/device/engines/Slice.h; there are less than 2^31. Lanes take them in order.
+/// A slice of a rendering for the megakernel (runtime/device/organisations/Megakernel.h): some
+/// samples of each pixel in a window of the launch. They are numbered pixel by pixel, in the order
+/// of runtime/device/organisations/Slice.h; there are less than 2^31. Lanes take them in order.
 typedef struct RtslJob {
   const RtslLaunch *launch;
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16; of a wavefront on a GPU, of the stack of a slot
-  uint32_t slots;     // of a wavefront on a GPU (runtime/device/engines/WaveMemory.h)
+  uint32_t slots;     // of a wavefront on a GPU (runtime/device/organisations/WaveMemory.h)
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice
@@ -326,7 +326,8 @@ typedef struct RtslJob {
   uint32_t placeCount;
   const uint32_t *taken; // sums.taken, if some pixels have samples of the slice already; or null
   float *pixels;         // the means, colorComponents per pixel, row by row; null: not wanted
-  RtslStepCount *stepCounts; // by step (runtime/device/engines/StepCounts.h), if they are counted
+  RtslStepCount
+      *stepCounts; // by step (runtime/device/organisations/StepCounts.h), if they are counted
 } RtslJob;
 
 /// What happens in a sample, apart from its color.

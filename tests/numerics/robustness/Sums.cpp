@@ -4,7 +4,7 @@
 #include "Timing.h"
 #include "Worst.h"
 
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/SampleSums.h"
 
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "tests/unit/runtime/render/PaintingProgram.h"
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 
 #include <chrono>
 #include <thread>

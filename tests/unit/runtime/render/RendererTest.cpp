@@ -1,7 +1,7 @@
 #include "tests/unit/runtime/FakeProgram.h"
 
 #include "report/measures/ErrorMetrics.h"
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/SampleSums.h"
 #include "runtime/render/Renderer.h"
 
 #include <gtest/gtest.h>

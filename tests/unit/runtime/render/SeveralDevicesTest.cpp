@@ -1,7 +1,7 @@
 // One picture on several devices, which are host megakernels here, has the bits of one.
 #include "tests/unit/runtime/render/PaintingProgram.h"
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/render/SeveralDevices.h"
 #include "support/Error.h"
 

@@ -2,7 +2,7 @@
 // can be interrupted anywhere. The host's megakernel runs a program whose samples have known laws.
 #include "runtime/render/passes/Adaptive.h"
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/device/ray/Random.h"
 #include "runtime/render/HostMegakernel.h"
 #include "support/Error.h"

@@ -13,10 +13,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/QueuePlace.h"
-#include "runtime/device/engines/SlotRecords.h"
-#include "runtime/device/engines/StepCounts.h"
-#include "runtime/device/engines/WaveMemory.h"
+#include "runtime/device/organisations/QueuePlace.h"
+#include "runtime/device/organisations/SlotRecords.h"
+#include "runtime/device/organisations/StepCounts.h"
+#include "runtime/device/organisations/WaveMemory.h"
 #include "runtime/device/ray/Warp.h"
 
 namespace rtsl::device {

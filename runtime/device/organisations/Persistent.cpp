@@ -5,9 +5,9 @@
 // makes a copy of rtsl_block_state for each state (codegen/emit/rewrites/WaveStates.h).
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/engines/Persistent.h"
+#include "runtime/device/organisations/Persistent.h"
 
-#include "runtime/device/engines/RunThisState.h"
+#include "runtime/device/organisations/RunThisState.h"
 
 using namespace rtsl;
 

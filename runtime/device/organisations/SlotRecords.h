@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/LaneRecord.h"
-#include "runtime/device/engines/Megakernel.h"
+#include "runtime/device/organisations/LaneRecord.h"
+#include "runtime/device/organisations/Megakernel.h"
 
 extern "C" {
 /// Defined by the compiled program: its number of steps.

@@ -9,9 +9,9 @@
 #pragma once
 
 #include "runtime/device/engines/Machine.h"
-#include "runtime/device/engines/Schedule.h"
-#include "runtime/device/engines/Slice.h"
-#include "runtime/device/engines/StepCounts.h"
+#include "runtime/device/organisations/Schedule.h"
+#include "runtime/device/organisations/Slice.h"
+#include "runtime/device/organisations/StepCounts.h"
 #include "runtime/device/ray/Abi.h"
 
 namespace rtsl::device {

@@ -1,6 +1,6 @@
 // The numbers of the samples in a slice, and the sums of slices.
-#include "runtime/device/engines/Slice.h"
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/Slice.h"
+#include "runtime/device/organisations/SampleSums.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 //===- RunThisState.h - the states that the code generator copies ---------===//
 #pragma once
 
-#include "runtime/device/engines/SlotRecords.h"
+#include "runtime/device/organisations/SlotRecords.h"
 
 extern "C" {
 /// Defined by the code generator for each copy of rtsl_wave_state and rtsl_block_state:

@@ -4,9 +4,9 @@
 // memory functions, and the entry points that run lanes.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/engines/Megakernel.h"
+#include "runtime/device/organisations/Megakernel.h"
 
-#include "runtime/device/engines/SampleSums.h"
+#include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/traverse/AnyHit.h"
 
 using namespace rtsl;

@@ -5,8 +5,8 @@
 // makes a copy of rtsl_wave_state for each state (codegen/emit/rewrites/WaveStates.h).
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/engines/Wavefront.h"
-#include "runtime/device/engines/RunThisState.h"
+#include "runtime/device/organisations/Wavefront.h"
+#include "runtime/device/organisations/RunThisState.h"
 
 using namespace rtsl;
 

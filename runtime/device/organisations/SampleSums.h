@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/Slice.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Vector.h"

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/Schedule.h"
+#include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Warp.h"
 

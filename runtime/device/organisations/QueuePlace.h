@@ -1,7 +1,7 @@
 //===- QueuePlace.h - lanes that join queues of steps ---------------------===//
 #pragma once
 
-#include "runtime/device/engines/Schedule.h"
+#include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/ray/Warp.h"
 
 #include <stdint.h>
