@@ -8,6 +8,7 @@
 //===----------------------------------------------------------------------===//
 #include "EmbreeRays.h"
 #include "Program.h"
+#include "SamplePoint.h"
 #include "Triangles.h"
 
 #include "runtime/device/ray/Random.h"
@@ -151,15 +152,10 @@ vec3 arriving(const Scene &scene, const std::uint32_t key[2], vec3 point, vec3 n
 
 vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::uint32_t y,
             std::uint32_t index) {
-  using namespace rtsl::device;
-  const Words4 words = hash4(x, y, index, picture.seed);
-  const Words4 shift = hash4(x, y, 0xffffffffu, picture.seed); // the same for the whole pixel
-  float jitterX, jitterY;
-  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
+  const SamplePoint at = samplePoint(picture, x, y, index);
   const Camera &camera = scene.camera;
   const vec3 direction =
-      glm::normalize(camera.corner + (float(x) + jitterX) / float(picture.width) * camera.across +
-                     (1 - (float(y) + jitterY) / float(picture.height)) * camera.upward);
+      glm::normalize(camera.corner + at.right * camera.across + (1 - at.down) * camera.upward);
 
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -175,7 +171,7 @@ vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::ui
   const vec3 normal = glm::normalize(scene.normal(found.hit));
   // The normals of the file say which side is outside, not its winding.
   const bool isFront = (glm::dot(geometric, direction) < 0) == (glm::dot(geometric, normal) > 0);
-  const std::uint32_t key[2] = {words.x, words.y};
+  const std::uint32_t key[2] = {at.words.x, at.words.y};
   return scene.albedo * arriving(scene, key, point, isFront ? normal : -normal);
 }
 

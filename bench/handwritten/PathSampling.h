@@ -3,6 +3,7 @@
 
 #include "EmbreeRays.h"
 #include "PathScene.h"
+#include "SamplePoint.h"
 
 #include "runtime/device/ray/Random.h"
 
@@ -83,13 +84,8 @@ struct PictureSample {
 
 inline PictureSample beginSample(const Picture &picture, std::uint32_t x, std::uint32_t y,
                                  std::uint32_t index) {
-  using namespace rtsl::device;
-  const Words4 words = hash4(x, y, index, picture.seed);
-  const Words4 shift = hash4(x, y, 0xffffffffu, picture.seed); // the same for the whole pixel
-  float jitterX, jitterY;
-  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
-  return {2 * (float(x) + jitterX) / float(picture.width) - 1,
-          1 - 2 * (float(y) + jitterY) / float(picture.height), Dice(words.x, words.y)};
+  const SamplePoint point = samplePoint(picture, x, y, index);
+  return {2 * point.right - 1, 1 - 2 * point.down, Dice(point.words.x, point.words.y)};
 }
 
 } // namespace handwritten

@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #include "Radiance.h"
 #include "EmbreeRays.h"
+#include "SamplePoint.h"
 
 #include "runtime/device/ray/Random.h"
 
@@ -153,17 +154,11 @@ vec3 radiance(const Scene &scene, const Picture &picture, const Ray &ray) {
 
 vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::uint32_t y,
             std::uint32_t index) {
-  using namespace rtsl::device;
-  const Words4 key = hash4(x, y, index, picture.seed);
-  const Words4 shift = hash4(x, y, 0xffffffffu, picture.seed); // the same for the whole pixel
-  float jitterX, jitterY;
-  pixelSample(index, shift.x, shift.y, &jitterX, &jitterY);
-  const float screenX = (float(x) + jitterX) / float(picture.width);
-  const float screenY = 1 - (float(y) + jitterY) / float(picture.height);
+  const SamplePoint point = samplePoint(picture, x, y, index);
   const Camera &camera = scene.camera;
-  const vec3 direction =
-      glm::normalize(camera.corner + screenX * camera.across + screenY * camera.upward);
-  return radiance(scene, picture, {camera.eye, direction, 0, 0, {key.x, key.y}});
+  const vec3 direction = glm::normalize(camera.corner + point.right * camera.across +
+                                        (1 - point.down) * camera.upward);
+  return radiance(scene, picture, {camera.eye, direction, 0, 0, {point.words.x, point.words.y}});
 }
 
 const char *compilerFlags() {

@@ -8,7 +8,15 @@
 #include "codegen/link/UnrollRecursion.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 
+#include <stdexcept>
+
 namespace rtsl::driver {
+
+const MachineCode &Compilation::machineCode() const {
+  if (!input.machineCode)
+    throw std::logic_error("this program has no generator of machine code");
+  return *input.machineCode;
+}
 
 static bool linkForScene(Compilation &compilation) {
   const CompileOptions &options = compilation.options;
@@ -28,9 +36,8 @@ static void bindToScene(Compilation &compilation) {
     request.keep.add(ItemSet::ofMembers());
     request.keep.add(Item::Lights);
   }
-  const runtime::SceneFacts facts = compilation.facts
-                                        ? *compilation.facts
-                                        : compilation.input.machineCode->makeObjects(compilation);
+  const runtime::SceneFacts facts =
+      compilation.facts ? *compilation.facts : compilation.machineCode().makeObjects(compilation);
   compilation.program->sceneNeeds = graphNeeds(facts, request, compilation.findings);
   bindScene(*compilation.ir, facts, request, compilation.findings);
 }

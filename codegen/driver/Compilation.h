@@ -45,6 +45,9 @@ struct Compilation {
   std::shared_ptr<LlvmCode> llvm;
   std::string text;
 
+  /// Throws std::logic_error if the program was linked without it.
+  const MachineCode &machineCode() const;
+
   bool isBound() const { return input.makeObjects || facts; }
 };
 

@@ -134,22 +134,16 @@ bool reachMachine(Compilation &compilation) {
 // LLVM IR and PTX: driver/machine
 //===----------------------------------------------------------------------===//
 
-static const MachineCode &machineCodeFor(const Compilation &compilation) {
-  if (!compilation.input.machineCode)
-    throw std::logic_error("this program has no generator of machine code");
-  return *compilation.input.machineCode;
-}
-
 static bool reachLlvm(Compilation &compilation) {
-  return machineCodeFor(compilation).reachLlvm(compilation);
+  return compilation.machineCode().reachLlvm(compilation);
 }
 
 static std::string showLlvm(Compilation &compilation) {
-  return machineCodeFor(compilation).printLlvm(compilation);
+  return compilation.machineCode().printLlvm(compilation);
 }
 
 static bool reachPtx(Compilation &compilation) {
-  return machineCodeFor(compilation).reachPtx(compilation);
+  return compilation.machineCode().reachPtx(compilation);
 }
 
 //===----------------------------------------------------------------------===//

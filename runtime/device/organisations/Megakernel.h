@@ -39,6 +39,15 @@ inline uint64_t laneBytes(uint32_t maxDepth, uint32_t referenceChain) {
   return stackSize(nullptr, maxDepth, referenceChain);
 }
 
+/// Whether the memory of a lane, or of the stack of a slot, has as many bytes as the program needs;
+/// otherwise the job has a problem.
+inline bool hasLaneBytes(const RtslJob &job, uint64_t needed) {
+  if (needed <= job.laneBytes)
+    return true;
+  __atomic_store_n(&job.status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+  return false;
+}
+
 /// Starts a sample of the slice. False if it was rendered before.
 inline bool beginSample(const RtslJob &job, uint32_t sample, Rays &rays) {
   const uint32_t place = sample / job.sampleCount;
@@ -60,10 +69,8 @@ inline void storeSample(const RtslJob &job, uint32_t sample, Rays &rays) {
 
 /// rtsl_run_lane.
 inline void runLane(const RtslJob &job, uint32_t number) {
-  if (laneBytes(job.launch->maxDepth, job.launch->referenceChain) > job.laneBytes) {
-    __atomic_store_n(&job.status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+  if (!hasLaneBytes(job, laneBytes(job.launch->maxDepth, job.launch->referenceChain)))
     return;
-  }
   alignas(16) char local[localStackBytes];
   Rays rays;
   rays.bottom = hasLocalStack(job.launch, job.launch->maxDepth, job.launch->referenceChain)

@@ -38,15 +38,6 @@ static void runBlock(const RtslJob &job, const device::Block &block, uint32_t la
 
 #ifdef __NVPTX__
 
-static bool hasRoom(const RtslJob &job, uint64_t stackBytes) {
-  const RtslLaunch &launch = *job.launch;
-  if (!rtsl_block_has_stacks() ||
-      device::stackSize(&launch, launch.maxDepth, launch.referenceChain) <= stackBytes)
-    return true;
-  __atomic_store_n(&job.status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
-  return false;
-}
-
 extern "C" {
 
 /// The memory of a block; its size is decided when the kernel is launched.
@@ -54,7 +45,8 @@ extern __attribute__((address_space(3), aligned(16))) uint8_t rtsl_block_memory[
 
 /// One thread per lane; a block has job->slots slots.
 __attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob *job) {
-  if (!hasRoom(*job, job->laneBytes))
+  const RtslLaunch &launch = *job->launch;
+  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return;
   const device::BlockMemory size = {job->slots, rtsl_wave_steps(job->launch), rtsl_record_groups(),
                                     job->laneBytes};
@@ -69,30 +61,25 @@ __attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob *job) {
 #else
 
 /// Of a block of one lane on a CPU.
-static device::BlockMemory sizeOfBlock(uint64_t stackBytes) {
+static device::BlockMemory sizeOfBlock(uint32_t maxDepth, uint32_t referenceChain) {
   constexpr uint32_t slots = 64;
   return {slots, rtsl_wave_steps(nullptr), rtsl_record_groups(),
-          rtsl_block_has_stacks() ? stackBytes : 0};
+          device::slotStackBytes(maxDepth, referenceChain)};
 }
 
 extern "C" {
 
 /// The counterparts of rtsl_lane_bytes and rtsl_run_lane.
 uint64_t rtsl_block_bytes(uint32_t maxDepth, uint32_t referenceChain) {
-  const device::BlockMemory size =
-      sizeOfBlock(device::stackSize(nullptr, maxDepth, referenceChain));
+  const device::BlockMemory size = sizeOfBlock(maxDepth, referenceChain);
   return size.sharedBytes() + size.slots * size.stackBytes;
 }
 
 void rtsl_run_block(const RtslJob *job, uint32_t number) {
   const RtslLaunch &launch = *job->launch;
-  const uint64_t stackBytes =
-      device::stackSize(job->launch, launch.maxDepth, launch.referenceChain);
-  const device::BlockMemory size = sizeOfBlock(stackBytes);
-  if (size.sharedBytes() + size.slots * size.stackBytes > job->laneBytes) {
-    __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+  const device::BlockMemory size = sizeOfBlock(launch.maxDepth, launch.referenceChain);
+  if (!device::hasLaneBytes(*job, size.sharedBytes() + size.slots * size.stackBytes))
     return;
-  }
   uint8_t *memory = job->lanes + number * job->laneBytes;
   runBlock(*job, device::Block(size, memory, memory + size.sharedBytes()), 0, 1);
 }

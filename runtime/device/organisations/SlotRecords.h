@@ -23,6 +23,11 @@ uint32_t rtsl_record_groups();
 
 namespace rtsl::device {
 
+/// The bytes of a slot's stack: 0 if the only level of its rays is in the record.
+inline uint64_t slotStackBytes(uint32_t maxDepth, uint32_t referenceChain) {
+  return hasLevelInRecord() ? 0 : laneBytes(maxDepth, referenceChain);
+}
+
 class SlotRecords {
 public:
   /// `stackBytes` of each slot.

@@ -43,11 +43,8 @@ extern "C" {
 
 __attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob *job) {
   const RtslLaunch &launch = *job->launch;
-  if (rtsl_wave_has_stacks() &&
-      device::stackSize(&launch, launch.maxDepth, launch.referenceChain) > job->laneBytes) {
-    job->status->problem = RTSL_PROBLEM_STACK;
+  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return; // no slot is in flight, and the wave is over
-  }
   device::beginWave(waveOf(*job), threadNumber(), threadCount());
 }
 
@@ -80,9 +77,8 @@ void rtsl_wave_state(const RtslJob *job, const device::Wave *wave, uint32_t turn
 }
 
 static device::WaveMemory memoryOfThread(uint32_t maxDepth, uint32_t referenceChain) {
-  const uint64_t stack =
-      rtsl_wave_has_stacks() ? device::stackSize(nullptr, maxDepth, referenceChain) : 0;
-  return {device::slotsOfThread, rtsl_wave_steps(nullptr), rtsl_record_groups(), stack};
+  return {device::slotsOfThread, rtsl_wave_steps(nullptr), rtsl_record_groups(),
+          device::slotStackBytes(maxDepth, referenceChain)};
 }
 
 /// The counterparts of rtsl_lane_bytes and rtsl_run_lane.
@@ -93,10 +89,8 @@ uint64_t rtsl_wave_bytes(uint32_t maxDepth, uint32_t referenceChain) {
 void rtsl_run_wave(const RtslJob *job, uint32_t lane) {
   const RtslLaunch &launch = *job->launch;
   const device::WaveMemory size = memoryOfThread(launch.maxDepth, launch.referenceChain);
-  if (size.bytes() > job->laneBytes) {
-    __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
+  if (!device::hasLaneBytes(*job, size.bytes()))
     return;
-  }
   const device::Wave wave(size, job->lanes + lane * job->laneBytes);
   for (uint32_t turn = 0; turn < 2; ++turn)
     wave.clearCounts(turn);

@@ -315,7 +315,8 @@ typedef struct RtslJob {
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16; of a wavefront on a GPU, of the stack of a slot
-  uint32_t slots;     // of a wavefront on a GPU (runtime/device/organisations/WaveMemory.h)
+  // Of a wavefront on a GPU (runtime/device/organisations/WaveMemory.h), or of a persistent block.
+  uint32_t slots;
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice
@@ -326,8 +327,8 @@ typedef struct RtslJob {
   uint32_t placeCount;
   const uint32_t *taken; // sums.taken, if some pixels have samples of the slice already; or null
   float *pixels;         // the means, colorComponents per pixel, row by row; null: not wanted
-  RtslStepCount
-      *stepCounts; // by step (runtime/device/organisations/StepCounts.h), if they are counted
+  // By step (runtime/device/organisations/StepCounts.h), if they are counted.
+  RtslStepCount *stepCounts;
 } RtslJob;
 
 /// What happens in a sample, apart from its color.
