@@ -640,7 +640,10 @@ Scene buildScene(const SceneDescription &description, std::shared_ptr<const Prog
 
 AddedPart addPart(const SceneDescription &part, Scene &scene, ValueCompletion complete) {
   NamedBuffers buffers;
-  return SceneBuilder(part, scene, buffers, std::move(complete)).buildPart();
+  AddedPart added;
+  scene.addAllOrNothing(
+      [&] { added = SceneBuilder(part, scene, buffers, std::move(complete)).buildPart(); });
+  return added;
 }
 
 } // namespace rtsl::scene

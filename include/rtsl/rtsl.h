@@ -248,7 +248,7 @@ int32_t rtslSceneLoadMovingMeshPart(RtslScene *scene, const char *path, const ch
  * as instances where rtslPlace and its like, rtslMark and rtslSetRoots say, below the node that is
  * entered. Its materials are classes of the library (rtslSceneLoad lists them). The nodes of the
  * file move while the shutter is open if rtslSceneSetShutter was called before. Lights stay where
- * they are when a node is moved. If it fails, the scene may have a part of the model. */
+ * they are when a node is moved. If it fails, nothing is added. */
 typedef struct RtslAnimation {
   const char *name;       /* null: the first one of the file */
   double framesPerSecond; /* 0: 24 */

@@ -475,6 +475,30 @@ std::uint32_t Geometry::primitiveCount(std::uint32_t instance) const {
   return one.primitive == 0 ? meshTable[one.mesh].triangleCount : std::max(one.boxCount, 1u);
 }
 
+Geometry::Extent Geometry::extent() const {
+  return {meshes.size(), transforms.size(), motions.size(), motionFactors.size(), motionKeys.size(),
+          boxes.size(),  selections.size(), sets.size(),    instances.size(),     treeItems,
+          needs};
+}
+
+void Geometry::cutBack(const Extent &to) {
+  meshes.resize(to.meshes);
+  meshTable.resize(to.meshes);
+  moving.erase(moving.lower_bound(std::uint32_t(to.transforms)), moving.end());
+  transforms.resize(to.transforms);
+  motions.resize(to.motions);
+  motionFactors.resize(to.motionFactors);
+  motionKeys.resize(to.motionKeys);
+  boxes.resize(to.boxes);
+  selections.resize(to.selections);
+  for (auto set = sets.begin(); set != sets.end();)
+    set = set->second.number < to.sets ? std::next(set) : sets.erase(set);
+  instances.resize(to.instances);
+  instanceNames.resize(to.instances);
+  treeItems = to.treeItems;
+  needs = to.needs;
+}
+
 void Geometry::fill(RtslLaunch &launch) const {
   launch.instances = instances.data();
   launch.meshes = meshTable.data();

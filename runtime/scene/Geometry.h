@@ -71,6 +71,17 @@ public:
   std::uint32_t primitiveCount(std::uint32_t instance) const;
   const std::string &name(std::uint32_t instance) const { return instanceNames.at(instance); }
 
+  /// How much there is.
+  struct Extent {
+    std::size_t meshes, transforms, motions, motionFactors, motionKeys, boxes, selections, sets,
+        instances;
+    std::uint64_t treeItems;
+    std::uint32_t needs;
+  };
+  Extent extent() const;
+  /// Removes what has been added since; nothing else may have changed.
+  void cutBack(const Extent &to);
+
   /// Sets the launch's fields about instances and meshes.
   void fill(RtslLaunch &launch) const;
 

@@ -280,6 +280,20 @@ std::vector<OutputBuffer> Objects::outputs(RtslRef reference) const {
   return outputs;
 }
 
+Objects::Extent Objects::extent() const {
+  return {records.size(), objects.size(), bufferMemory.size(), blocks, longestChain};
+}
+
+void Objects::cutBack(const Extent &to) {
+  for (std::size_t i = to.objects; i < objects.size(); ++i)
+    chains.erase(objects[i].reference);
+  records.resize(to.recordBytes);
+  objects.resize(to.objects);
+  bufferMemory.resize(to.bufferMemory);
+  blocks = to.blocks;
+  longestChain = to.longestChain;
+}
+
 void Objects::fill(RtslLaunch &launch) {
   launch.records = records.data();
   launch.colorComponents = code->colorComponents;

@@ -79,6 +79,26 @@ public:
   void fill(RtslLaunch &launch);
 
 private:
+  /// A member that uses a block of memory as its buffer: of which ray generation, 0 if of another
+  /// object, and whether it is an output buffer.
+  struct BlockUse {
+    RtslRef launched;
+    bool isOutput;
+  };
+  using Blocks = std::map<std::shared_ptr<Value::Words>, std::vector<BlockUse>>;
+
+public:
+  /// How much there is.
+  struct Extent {
+    std::size_t recordBytes, objects, bufferMemory;
+    Blocks blocks;
+    std::uint32_t longestChain;
+  };
+  Extent extent() const;
+  /// Removes what has been added since; nothing else may have changed.
+  void cutBack(const Extent &to);
+
+private:
   void runConstructor(const Object &object, const ObjectValues &values,
                       const std::function<RtslLaunch()> &launch);
   void measureChain(const Object &object);
@@ -90,13 +110,7 @@ private:
   std::vector<std::uint8_t> records;
   std::vector<Object> objects; // ascending by reference
   std::vector<std::unique_ptr<std::uint32_t[]>> bufferMemory;
-  /// A member that uses a block of memory as its buffer: of which ray generation, 0 if of another
-  /// object, and whether it is an output buffer.
-  struct BlockUse {
-    RtslRef launched;
-    bool isOutput;
-  };
-  std::map<std::shared_ptr<Value::Words>, std::vector<BlockUse>> blocks;
+  Blocks blocks;
   std::unordered_map<RtslRef, std::uint32_t> chains; // measureChain
   std::uint32_t longestChain = 0;
 };

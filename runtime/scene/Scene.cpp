@@ -188,6 +188,23 @@ const std::string &Scene::instanceName(std::uint32_t instance) const {
 // Camera and lights
 //===----------------------------------------------------------------------===//
 
+void Scene::addAllOrNothing(const std::function<void()> &add) {
+  const Objects::Extent objects = self->objects.extent();
+  const Geometry::Extent geometry = self->geometry.extent();
+  const CameraAndLights cameraAndLights = self->cameraAndLights;
+  const std::size_t warnings = self->warnings.size();
+  try {
+    add();
+  } catch (...) {
+    self->emitters.reset();
+    self->cameraAndLights = cameraAndLights;
+    self->geometry.cutBack(geometry);
+    self->objects.cutBack(objects);
+    self->warnings.erase(self->warnings.begin() + std::ptrdiff_t(warnings), self->warnings.end());
+    throw;
+  }
+}
+
 void Scene::addLight(RtslRef light) {
   self->cameraAndLights.addLight(self->objects, light);
 }

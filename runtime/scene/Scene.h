@@ -10,6 +10,7 @@
 #include "runtime/program/Program.h"
 #include "runtime/scene/SceneData.h"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -95,6 +96,9 @@ public:
   std::uint64_t movesOfMesh(std::uint32_t mesh) const;
   /// Changes whenever trees must be built anew, because instances were added or got transforms.
   std::uint64_t structure() const;
+
+  /// Runs `add`, which adds something to the scene. If it throws, what it has added is removed.
+  void addAllOrNothing(const std::function<void()> &add);
 
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);

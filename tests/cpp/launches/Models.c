@@ -34,6 +34,7 @@ static void mistakes(RtslScene *scene, const RtslAnimation *good) {
   EXPECT_FAILURE(rtslSceneAddModel(scene, "room.gltf", &strange));
   EXPECT_FAILURE(rtslSceneAddModel(scene, "room.gltf", &backwards));
   EXPECT_FAILURE(rtslSceneAddModel(scene, "glass.obj", NULL));
+  EXPECT_FAILURE(rtslSceneAddModel(scene, "late.gltf", NULL)); /* of which a part is good */
   EXPECT_FAILURE(rtslSceneAddModelCamera(scene, "room.gltf", "Back", good));
   EXPECT_FAILURE(rtslSceneAddNodeLight(scene, "Emitter"));
   EXPECT_FAILURE(rtslMember(scene, "position", two, 2) &&

@@ -74,6 +74,7 @@ WORDS_OF_MODELS = (
     "Jump",
     "`fps`",
     "compile them with `std.materials.Dielectric`",
+    "is 1e+38",
     "Back",
     "a `Emitter` cannot be in a node",
     "`position` takes 3 numbers, not 2",
@@ -362,6 +363,10 @@ def write_built(folder):
     (folder / "glass.obj").write_text(
         "mtllib glass.mtl\nv -1 0 0\nv 1 0 0\nv 0 1.5 0\nusemtl red\nf 1 2 3\n"
     )
+    # A triangle that would be seen, and one that is too far away.
+    late = {key: model[key] for key in model if key not in ("animations", "cameras", "scenes")}
+    late["nodes"] = [{"mesh": 0}, {"mesh": 0, "translation": [1e38, 0, 0]}]
+    (folder / "late.gltf").write_text(json.dumps(late | {"scenes": [{"nodes": [0, 1]}]}))
     moved = {"model": "room.gltf", "animation": "Turn", "fps": 12}
     intensity = {"intensity": [9, 8, 6]}
     scene = {
