@@ -281,12 +281,27 @@ static void addScalarization(llvm::PassBuilder &builder) {
       });
 }
 
-/// Disables the pass that widens a load to 16 bytes if that many are known to be valid, to use one
-/// or two lanes of them: that load, too, waits for the narrow stores that wrote them, and may load
-/// denormals.
+/// Does LLVM's SLP pass combine scalars in the function? It also loads several fields of a ray's
+/// state at once, and such a load waits for the narrow stores that wrote them. That costs more than
+/// it gains where they have just been written: in the test of a primitive, and in all of a program
+/// whose rays carry payloads (docs/benchmarks.md, "Paths beside a program by hand").
+static bool combinesScalars(const llvm::Function &function) {
+  const llvm::Function *payloads = function.getParent()->getFunction("rtsl_trace_payload");
+  const bool hasPayloads = payloads && !payloads->isDeclaration();
+  const llvm::StringRef name = function.getName();
+  return !hasPayloads && name != "rtsl_traverse" && !name.contains("findHit") &&
+         !name.contains("testPrimitive") && !name.contains("intersect");
+}
+
+/// Restricts that pass, and disables the one that widens a load to 16 bytes if that many are known
+/// to be valid, to use one or two lanes of them: that load, too, waits for the narrow stores that
+/// wrote them, and may load denormals.
 static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
-  callbacks.registerShouldRunOptionalPassCallback(
-      [](llvm::StringRef pass, llvm::Any) { return pass != "VectorCombinePass"; });
+  callbacks.registerShouldRunOptionalPassCallback([](llvm::StringRef pass, llvm::Any unit) {
+    const auto *function = llvm::any_cast<const llvm::Function *>(&unit);
+    return pass != "VectorCombinePass" &&
+           (pass != "SLPVectorizerPass" || !function || combinesScalars(**function));
+  });
 }
 
 /// Inlines calls that take addresses, and promotes the variables whose addresses they took. Twice,

@@ -77,7 +77,7 @@ static LLVM::LLVMFunctionType signature(mlir::Operation *op) {
       .Case([&](ir::RandOp) { return function(f32, {pointer}); })
       .Case([&](ir::IlluminateOp light) {
         if (!light.getIndex())
-          return function(i32, {pointer, f32, f32, f32});
+          return function(i32, {pointer, f32, f32, f32, f32, f32, f32});
         return function(i32, {pointer, i32, f32, f32, f32, f32, f32, f32, f32});
       })
       .Case([&](ir::SpawnOp) { return function(nothing, {pointer, f32, f32, f32, f32, f32, f32}); })

@@ -101,14 +101,21 @@ Parts FunctionLowering::lowerVisitChild(const typed::BuiltinExpr &expr) {
 
 Parts FunctionLowering::lowerIlluminateBySurface(const typed::BuiltinExpr &expr) {
   Value point = value(*expr.args[0]);
+  Value side = expr.args.size() > 1 ? value(*expr.args[1]) : Value();
   emitter.setLoc(module.location(expr.range));
-  return {emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, Value(), Value())};
+  return {emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, side, Value())};
 }
 
-// The argument that turns shadows on or off is mostly a constant. RTSL_NO_SHADOWS, which is no
-// possible cosine, turns them off (Abi.h).
+// A side is all that is within a right angle of it. The argument that turns shadows on or off is
+// mostly a constant. RTSL_NO_SHADOWS, which is no possible cosine, turns them off (Abi.h).
 Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
   Value light = value(*expr.args[0]), point = value(*expr.args[1]);
+  if (expr.args.size() > 2 && !expr.args[2]->type->is(TypeKind::Bool)) {
+    Value side = value(*expr.args[2]);
+    emitter.setLoc(module.location(expr.range));
+    return {emitter.make<ir::IlluminateOp>(emitter.getI1Type(), light, point, side,
+                                           emitter.constant(emitter.getF32Type(), 0))};
+  }
   Value shadows = expr.args.size() > 2 ? value(*expr.args[2]) : emitter.boolConstant(true);
   emitter.setLoc(module.location(expr.range));
   Value lit = emitter.variable("lit", emitter.getI1Type());

@@ -91,16 +91,14 @@ struct ConvertIlluminate : ConvertOpToLLVMPattern<ir::IlluminateOp> {
     if (adaptor.getIndex())
       arguments.push_back(adaptor.getIndex());
     llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getPoint()));
-    if (!adaptor.getIndex()) {
-      // no cone
-    } else if (adaptor.getNormal()) {
+    if (adaptor.getNormal())
       llvm::append_range(arguments, componentsOf(rewriter, location, adaptor.getNormal()));
-      arguments.push_back(adaptor.getCosAngle());
-    } else {
-      // -2 is not a cosine: there is no cone (Abi.h).
+    else
       arguments.append(3, constantLike(rewriter, location, f32, 0));
+    if (adaptor.getCosAngle())
+      arguments.push_back(adaptor.getCosAngle());
+    else if (adaptor.getIndex()) // -2 is not a cosine: there is no cone (Abi.h)
       arguments.push_back(constantLike(rewriter, location, f32, -2));
-    }
     Value answer = callRuntime(rewriter, location, runtimeFunction(op), arguments);
     rewriter.replaceOpWithNewOp<LLVM::ICmpOp>(
         op, LLVM::ICmpPredicate::ne, answer, constantLike(rewriter, location, answer.getType(), 0));

@@ -338,10 +338,10 @@ LogicalResult BufferLengthOp::verify() {
 //===----------------------------------------------------------------------===//
 
 LogicalResult IlluminateOp::verify() {
-  if (!getNormal() != !getCosAngle())
+  if (getIndex() && !getNormal() != !getCosAngle())
     return emitOpError() << "takes `normal` and `cos` together";
-  if (getNormal() && !getIndex())
-    return emitOpError() << "takes `normal` only with a light";
+  if (getCosAngle() && !getIndex())
+    return emitOpError() << "takes `cos` only with a light";
   return mlir::success();
 }
 

@@ -175,14 +175,17 @@ def Rtsl_IlluminateOp : Rtsl_Op<"illuminate", [AttrSizedOperandSegments]> {
     Sets the state variables LightDirection, LightDistance and LightColor (shadows applied). With
     `normal` and `cos`, only for a light within that angle of the normal. Level 2 has it in place of
     `rtsl.illuminance`. Without an index the light is one of the surfaces that shine, and PDF the
-    density with which its direction was chosen.
+    density with which its direction was chosen; with `normal` alone, none is behind the plane of
+    this normal.
 
     Example: `%lit = rtsl.illuminate %point light %index normal %n cos %c`
   }];
   let arguments = (ins Optional<I32>:$index, Rtsl_Vec3:$point, Optional<Rtsl_Vec3>:$normal,
                        Optional<F32>:$cosAngle);
   let results = (outs I1:$lit);
-  let assemblyFormat = "$point (`light` $index^)? (`normal` $normal^ `cos` $cosAngle)? attr-dict";
+  let assemblyFormat = [{
+    $point (`light` $index^)? (`normal` $normal^)? (`cos` $cosAngle^)? attr-dict
+  }];
   let hasVerifier = 1;
 }
 

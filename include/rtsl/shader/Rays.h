@@ -158,22 +158,31 @@ inline float cosOfAngle(float angle) {
 /// Lights a point with one light: sets LightDirection, LightDistance and LightColor; false if
 /// nothing arrives. Only lights within the angle of the normal count; no cosine (-2): all do.
 template <int N>
-inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point,
-                       const glm::vec3 &normal = glm::vec3(0.0f), float cosAngle = -2.0f) {
+inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, const glm::vec3 &normal,
+                       float cosAngle) {
   return rtsl_illuminance(rawState(rt), static_cast<std::uint32_t>(index), point.x, point.y,
                           point.z, normal.x, normal.y, normal.z, cosAngle) != 0;
 }
 
 /// The same, with or without a test for shadows.
 template <int N>
-inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, bool shadows) {
+inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, bool shadows = true) {
   return illuminate(rt, index, point, point, shadows ? -2.0f : static_cast<float>(RTSL_NO_SHADOWS));
 }
 
-/// Lights a point by one of the surfaces that shine; sets PDF too.
+/// The same by a light on this side: within a right angle of it.
 template <int N>
-inline bool illuminate(State<N> &rt, const glm::vec3 &point) {
-  return rtsl_illuminate_by_surface(rawState(rt), point.x, point.y, point.z) != 0;
+inline bool illuminate(State<N> &rt, int index, const glm::vec3 &point, const glm::vec3 &side) {
+  return illuminate(rt, index, point, side, 0.0f);
+}
+
+/// Lights a point by one of the surfaces that shine; sets PDF too. No light comes from behind the
+/// plane of `side`, if that is not 0.
+template <int N>
+inline bool illuminate(State<N> &rt, const glm::vec3 &point,
+                       const glm::vec3 &side = glm::vec3(0.0f)) {
+  return rtsl_illuminate_by_surface(rawState(rt), point.x, point.y, point.z, side.x, side.y,
+                                    side.z) != 0;
 }
 
 /// The lights that reach a point, one after the other:

@@ -54,13 +54,18 @@ struct EmittedLight {
   float radiance[RTSL_MAX_COLOR];
 };
 
+/// Is the direction behind the plane of this normal? No direction is for a normal of 0.
+inline bool isBehind(Vec3 normal, Vec3 direction) {
+  return dot(direction, normal) < 0;
+}
+
 /// Chooses a direction and finds whether the background is seen there. On a GPU it is a separate
 /// function, and its result a value: a call that took an address would keep the ray in memory
 /// (codegen/emit/rewrites/JoinCalls.h).
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
-inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left) {
+inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left, Vec3 side) {
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
   EmittedLight light;
@@ -74,7 +79,7 @@ inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left) {
   rtsl_rt_Miss_sampleDirection(&state, launch.background);
   light.direction = load(state.RayDirection);
   const float density = backgroundChance(launch) * state.PDF;
-  if (!(density > 0 && density < infinity))
+  if (!(density > 0 && density < infinity) || isBehind(side, light.direction))
     return light;
   copyColor(light.radiance, state.SampleColor, components);
   const RayStart start = startOf(left, ray.origin, light.direction);

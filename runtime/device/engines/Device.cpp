@@ -33,8 +33,9 @@ uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, 
   return device::illuminate(*state, index, {px, py, pz}, {nx, ny, nz}, cosAngle);
 }
 
-uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz) {
-  return device::illuminateBySurface(*state, {px, py, pz});
+uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz, float nx,
+                                    float ny, float nz) {
+  return device::illuminateBySurface(*state, {px, py, pz}, {nx, ny, nz});
 }
 
 float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t part,

@@ -5,9 +5,10 @@
 // it chooses a point on it: on a mesh uniformly by area, on a primitive by its `generateSample`; of
 // an object with several primitives one of them, likewise. A ray towards the point finds what is
 // visible there; the light counts only if that is the point itself, so that each direction has the
-// density of one point. A ray that meets an emitter by chance finds the same density in rt_PDF: an
-// engine weighs the two against one another (Veach and Guibas, "Optimally Combining Sampling
-// Techniques for Monte Carlo Rendering", 1995).
+// density of one point. No ray is sent to a point on a side that the shader rules out. A ray that
+// meets an emitter by chance finds the same density in rt_PDF: an engine weighs the two against one
+// another (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+// 1995).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -244,7 +245,7 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
-inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice choice) {
+inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, EmitterChoice choice) {
   const RtslLaunch &launch = *ray.launch;
   EmittedLight light;
   light.density = 0;
@@ -258,6 +259,8 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice cho
   startShadowRay(state, ray);
   light.direction =
       pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v) - ray.origin;
+  if (isBehind(side, light.direction))
+    return light;
 
   setDefaults(state, rtsl_color_components(&launch));
   const RayStart start = startOf(left, ray.origin, light.direction);
@@ -276,8 +279,8 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, EmitterChoice cho
   return light;
 }
 
-/// `illuminate(P)`. Always four draws.
-inline bool illuminateBySurface(RtslState &state, Vec3 point) {
+/// `illuminate(P [, side])`. Always four draws.
+inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   const RtslLaunch &launch = *state.launch;
   const uint32_t components = rtsl_color_components(&launch);
   setVector(state.LightDirection, 0, 0, 0);
@@ -295,11 +298,11 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point) {
     return false;
   EmittedLight light;
   if (choice.emitter < ofBackground) {
-    light = lookAtBackground(shadowRayFrom(state, point), leftHit(state));
+    light = lookAtBackground(shadowRayFrom(state, point), leftHit(state), side);
   } else {
     if (ofBackground != 0) // the rest of the draw
       choice.emitter = (choice.emitter - ofBackground) / (1 - ofBackground);
-    light = lookAtEmitter(shadowRayFrom(state, point), leftHit(state), choice);
+    light = lookAtEmitter(shadowRayFrom(state, point), leftHit(state), side, choice);
   }
   const float length = squareRoot(dot(light.direction, light.direction));
   if (!(light.density > 0 && length > 0) || isBlack(light.radiance, components))

@@ -569,9 +569,11 @@ void rtsl_trace_payload(RtslState *parent, float ox, float oy, float oz, float d
 uint32_t rtsl_illuminance(RtslState *state, uint32_t index, float px, float py, float pz, float nx,
                           float ny, float nz, float cosAngle);
 
-/// `illuminate(P)`: lights a point by one of the surfaces that shine. Sets LightDirection,
-/// LightDistance, LightColor and PDF of the state, and returns whether light arrives.
-uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz);
+/// `illuminate(P [, N])`: lights a point by one of the surfaces that shine. Sets LightDirection,
+/// LightDistance, LightColor and PDF of the state, and returns whether light arrives: from no point
+/// behind the plane of the normal, which is 0 if all of them count.
+uint32_t rtsl_illuminate_by_surface(RtslState *state, float px, float py, float pz, float nx,
+                                    float ny, float nz);
 
 /// What an instance sends out, to choose emitters by: for a primitive the radiance at a point of
 /// its own choice times the area that the point stands for; for a mesh the radiance at a point of

@@ -188,7 +188,8 @@ bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instanc
     intersect(&state, instance.primitive);
   }
   const bool hasHit = state.HitDistance < end;
-  const bool hasWon = state.instance == item.instance && state.primitive == item.primitive;
+  const bool hasWon = state.instance == item.instance &&
+                      (!isCounted(*state.launch, instance) || state.primitive == item.primitive);
   state.dimension = dimension;
   state.HitDistance = end;
   if (hasHit && !hasWon && rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES)

@@ -31,11 +31,13 @@ class Own : rt_Material {
   void emission() { rt_EmissionColor = glow; }
   void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
 };
-// The same in two classes, of which the first has no evaluatePDF.
+// The same in two classes, of which the first has no evaluatePDF. No ray is sent to light that this
+// surface does not reflect, which must not show.
 class Half : rt_Material {
 // DIFFUSE
 };
 class Whole : Half {
+  bool isTransmissive() { return false; }
   void emission() { rt_EmissionColor = glow; }
   void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
 };

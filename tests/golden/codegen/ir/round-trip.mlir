@@ -106,6 +106,8 @@ func.func @rays(%p: vector<3xf32>, %t: f32, %i: i32) {
   %lit2 = rtsl.illuminate %p light %i normal %p cos %t
   // CHECK: rtsl.illuminate %{{[^ ]*}}{{$}}
   %lit3 = rtsl.illuminate %p
+  // CHECK: rtsl.illuminate %{{[^ ]*}} normal %{{[^ ]*}}{{$}}
+  %lit4 = rtsl.illuminate %p normal %p
   rtsl.return
 }
 
