@@ -270,7 +270,7 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   if (rtsl_traverse(&state, towardsPoint) != RTSL_HIT || isPointHidden(state) ||
       state.instance != emitter.instance)
     return light;
-  describeHit(state);
+  describeHitAtEnd(state);
   light.distance = state.HitDistance;
   light.density = emitterDensity(state);
   if (light.density > 0)

@@ -296,4 +296,11 @@ inline void describeHit(RtslState &state) {
   describeHit(state, needs, LinkedSlots());
 }
 
+/// The same for a surface that no ray leaves: without the error of the point.
+inline void describeHitAtEnd(RtslState &state) {
+  const RtslLaunch &launch = *state.launch;
+  uint32_t needs = instanceAt(launch, state.instance).needs & rtsl_needs(&launch);
+  describeHit(state, needs & ~RTSL_NEEDS_HIT_ERRORS, LinkedSlots());
+}
+
 } // namespace rtsl::device
