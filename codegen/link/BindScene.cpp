@@ -234,6 +234,7 @@ struct GraphPart {
   Item item;
   std::uint32_t need; // RTSL_HAS_*
   const char *subject, *present, *absent;
+  std::uint32_t beside = 0; // it matters only beside one of these; 0: in any case
 };
 constexpr GraphPart graphParts[] = {
     {Item::Transforms, RTSL_HAS_TRANSFORMS, "transforms", "some instance has one",
@@ -242,9 +243,13 @@ constexpr GraphPart graphParts[] = {
      "some transform turns, scales or shears", "every transform is a translation"},
     {Item::Transforms, RTSL_HAS_TURNS, "rotations and shears of transforms",
      "some transform turns or shears", "linear parts are scales along the axes, or nothing"},
-    {Item::Transforms, RTSL_HAS_STRETCH, "scales and shears of transforms",
-     "some transform scales, mirrors or shears",
-     "transforms are rigid: inverses are transposes, to within 2^-40"},
+    {Item::Transforms, RTSL_HAS_SCALE | RTSL_HAS_STRETCH, "scales of transforms",
+     "some transform scales", "transforms are rigid: inverses are transposes, to within 2^-40"},
+    {Item::Transforms, RTSL_HAS_STRETCH, "uneven scales and shears of transforms",
+     "some transform scales one direction more than another, mirrors or shears",
+     "scales are uniform: inverses are transposes divided by their squares, to within 2^-40; or "
+     "they are along the axes and at rest",
+     RTSL_HAS_TURNS | RTSL_HAS_MOTION},
     {Item::Roots, RTSL_HAS_ROOTS, "roots", "the scene has several",
      "all instances are below root 0"},
     {Item::Counts, RTSL_HAS_COUNTS, "counts", "some object holds several primitives",
@@ -272,7 +277,8 @@ std::uint32_t graphNeeds(const runtime::SceneFacts &scene, const LinkRequest &re
                          Findings *findings) {
   std::uint32_t needs = scene.needs;
   for (const GraphPart &part : graphParts) {
-    const bool isNeeded = scene.needs & part.need;
+    const bool isNeeded =
+        scene.needs & part.need && (part.beside == 0 || scene.needs & part.beside);
     if (findings)
       findings->push_back(
           {part.item, part.subject, isNeeded, isNeeded ? part.present : part.absent, {}});

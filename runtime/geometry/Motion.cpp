@@ -315,30 +315,41 @@ bool isScale(const MovingTransform &transform) {
   return areMaps(transform, [](const Transform &map) { return isScale(map); });
 }
 
-static bool isRotation(const Transform &map) {
-  const auto &m = map.columns;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double product = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
-      if (!(std::fabs(product - (i == j)) <= mostStretch))
-        return false;
-    }
-  return map.determinant() > 0;
+/// The number, or 1 if it is that but for rounding.
+static double roundedToOne(double x) {
+  return std::fabs(x - 1) <= mostStretch ? 1 : x;
 }
 
-bool isRigid(const MovingTransform &transform) {
+static double squaredScale(const Transform &map) {
+  const auto &m = map.columns;
+  const auto product = [&](std::size_t i, std::size_t j) {
+    return m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
+  };
+  const double square = (product(0, 0) + product(1, 1) + product(2, 2)) / 3;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      if (!(std::fabs(product(i, j) - (i == j ? square : 0)) <= mostStretch * square))
+        return 0;
+  return map.determinant() > 0 ? roundedToOne(square) : 0;
+}
+
+double squaredScale(const MovingTransform &transform) {
   if (!transform.moves())
-    return isRotation(transform.still());
+    return squaredScale(transform.still());
   // Between two different rotations, numbers that are interpolated are none.
   const auto turnsAlike = [](const Transform &a, const Transform &b) {
     return std::equal(a.columns.begin(), a.columns.begin() + 3, b.columns.begin());
   };
-  const std::vector<MotionFactor> &factors = transform.factors();
-  return std::all_of(factors.begin(), factors.end(), [&](const MotionFactor &factor) {
-    return std::all_of(factor.maps.begin(), factor.maps.end(), [&](const Transform &map) {
-      return isRotation(map) && turnsAlike(map, factor.maps.front());
-    });
-  });
+  double square = 1;
+  for (const MotionFactor &factor : transform.factors()) {
+    if (factor.isRotation())
+      continue;
+    for (const Transform &map : factor.maps)
+      if (!turnsAlike(map, factor.maps.front()))
+        return 0;
+    square *= squaredScale(factor.maps.front());
+  }
+  return roundedToOne(square);
 }
 
 bool operator==(const MovingTransform &a, const MovingTransform &b) {

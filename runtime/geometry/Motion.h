@@ -74,9 +74,10 @@ private:
 bool isTranslation(const MovingTransform &transform);
 /// Is it a scale along the axes, and a translation, at all times?
 bool isScale(const MovingTransform &transform);
-/// Is it a rotation and a translation at all times? The product of its linear part with its
-/// transpose is the identity to within `mostStretch` in each number.
-bool isRigid(const MovingTransform &transform);
+/// If it is a rotation with a uniform scale and a translation at all times, and the scale does not
+/// change: the square of that; 1 if it is rigid. Otherwise 0. The product of the linear part with
+/// its transpose is the identity times this number, to within a share of `mostStretch`.
+double squaredScale(const MovingTransform &transform);
 /// What products of rotations in double stay far below, and 2^-16 of a rounding unit of floats.
 constexpr double mostStretch = 0x1p-40;
 

@@ -91,8 +91,10 @@ void Geometry::setShutter(float open, float close) {
 static std::uint32_t linearNeeds(const MovingTransform &transform) {
   if (isTranslation(transform))
     return 0;
-  return RTSL_HAS_LINEAR | (isScale(transform) ? 0 : RTSL_HAS_TURNS) |
-         (isRigid(transform) ? 0 : RTSL_HAS_STRETCH);
+  const double square = squaredScale(transform);
+  const bool turns = !isScale(transform);
+  return (turns ? RTSL_HAS_TURNS : RTSL_HAS_SCALE) | (square == 1 ? 0 : RTSL_HAS_SCALE) |
+         (square > 0 ? 0 : RTSL_HAS_STRETCH);
 }
 
 /// Its index; 0 for the identity.

@@ -22,7 +22,7 @@ RtslTransform identityTransform() {
   RtslTransform identity{};
   for (int i = 0; i < 3; ++i)
     identity.linear[4 * i] = 1, identity.inverse[4 * i] = 1;
-  identity.isRigid = 1;
+  identity.squaredScale = 1;
   return identity;
 }
 
@@ -54,14 +54,25 @@ RtslTransform rounded(const Transform &transform, const std::string &what,
   return result;
 }
 
-/// The same of a rotation and a translation: the inverse is that of the rotation as it is given.
-RtslTransform rigid(const Transform &transform, const std::string &what,
-                    const std::optional<Place> &place) {
+/// The same of a transform with a squaredScale: the inverse is that of the numbers as given.
+RtslTransform similar(const Transform &transform, double squaredScale, const std::string &what,
+                      const std::optional<Place> &place) {
   RtslTransform result = rounded(transform, what, place);
   for (std::size_t column = 0; column < 3; ++column)
     for (std::size_t row = 0; row < 3; ++row)
-      result.inverse[3 * column + row] = transform.columns[row][column];
-  result.isRigid = 1;
+      result.inverse[3 * column + row] = transform.columns[row][column] / squaredScale;
+  result.squaredScale = squaredScale;
+  return result;
+}
+
+/// `still`: the transform, or at time 0.
+RtslTransform stored(const MovingTransform &transform, const Transform &still,
+                     const std::string &what, const std::optional<Place> &place) {
+  const double square = squaredScale(transform);
+  if (square == 1 || (square > 0 && !isScale(transform)))
+    return similar(still, square, what, place);
+  RtslTransform result = rounded(still, what, place);
+  result.squaredScale = -square; // programs of scales alone read the floats
   return result;
 }
 
@@ -71,12 +82,10 @@ RtslTransform roundedTransform(const MovingTransform &transform, const std::stri
                                const std::optional<Place> &place) {
   const std::string what = fmt::format("the transform of `{}`", name);
   if (!transform.moves())
-    return isRigid(transform) ? rigid(transform.still(), what, place)
-                              : rounded(transform.still(), what, place);
+    return stored(transform, transform.still(), what, place);
   for (const double time : timesToCheck(transform))
     rounded(transform.at(time), fmt::format("{} at time {:.3g}", what, time), place);
-  return isRigid(transform) ? rigid(transform.at(0), what, place)
-                            : rounded(transform.at(0), what, place);
+  return stored(transform, transform.at(0), what, place);
 }
 
 void setWorldBounds(RtslInstance &instance, const Bounds &bounds) {

@@ -67,9 +67,13 @@ typedef struct RtslSelection {
 /// it moves, these are its values at time 0.
 typedef struct RtslTransform {
   float linear[9], translation[3];
-  double inverse[9]; // of `linear`; of a rigid one, of the rotation that `linear` rounds
-  uint32_t motion;   // of RtslLaunch::motions; 0: it does not move
-  uint32_t isRigid;  // at all times: a rotation, whose transpose `inverse` is, and a translation
+  double inverse[9]; // of `linear`; with squaredScale > 0 of what `linear` rounds
+  /// Of a rotation with a uniform scale s, at all times: s squared; `inverse` is the transpose of
+  /// the linear part divided by it. 1: it is rigid. Negative: it scales alike along all axes, and
+  /// does not turn. 0: any other.
+  double squaredScale;
+  uint32_t motion; // of RtslLaunch::motions; 0: it does not move
+  uint32_t unused;
 } RtslTransform;
 
 /// A transform that depends on time: a product of factors, of which the first is applied first.
@@ -447,13 +451,15 @@ static inline uint32_t rtslRayTypeBit(uint32_t rayType) {
 #define RTSL_HAS_NO_BACKS 16777216u          // some mesh's back faces are left out
 #define RTSL_HAS_LIGHT_TREE 33554432u        // emitters are chosen by a light tree
 #define RTSL_HAS_MASKS 67108864u             // some instance is invisible to rays of some masks
-#define RTSL_HAS_LINEAR 134217728u           // some transform is more than a translation
+#define RTSL_HAS_SCALE 134217728u    // some transform is not rigid, or scales along the axes
 #define RTSL_HAS_TURNS 268435456u    // some transform is more than a scale and a translation
-#define RTSL_HAS_STRETCH 1073741824u // some transform is not rigid
+#define RTSL_HAS_STRETCH 1073741824u // some transform is no rotation with a uniform scale
+// Some transform is more than a translation.
+#define RTSL_HAS_LINEAR (RTSL_HAS_SCALE | RTSL_HAS_TURNS | RTSL_HAS_STRETCH)
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
    RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS |       \
-   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR | RTSL_HAS_TURNS | RTSL_HAS_STRETCH)
+   RTSL_HAS_LIGHT_TREE | RTSL_HAS_MASKS | RTSL_HAS_LINEAR)
 
 // Results of rtsl_traverse.
 #define RTSL_MISS 0u

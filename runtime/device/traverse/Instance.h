@@ -101,9 +101,9 @@ inline float rowToWorld(const RtslTransform &transform, int row, Vec3 v, double 
                                   __builtin_fma(double(m[6 + row]), double(v.z), offset))));
 }
 
-/// The transpose of the inverse times a vector, plus an offset, rounded once.
-inline Vec3 transposedProduct(const double m[9], Vec3 v, Vec3 offset) {
-  const double x = double(v.x), y = double(v.y), z = double(v.z);
+/// The transpose of the inverse times a scaled vector, plus an offset, rounded once.
+inline Vec3 transposedProduct(const double m[9], Vec3 v, Vec3 offset, double scale = 1) {
+  const double x = scale * double(v.x), y = scale * double(v.y), z = scale * double(v.z);
   const auto row = [&](int i, float added) {
     return float(
         __builtin_fma(m[3 * i + 2], z,
@@ -114,14 +114,14 @@ inline Vec3 transposedProduct(const double m[9], Vec3 v, Vec3 offset) {
 
 inline Vec3 pointToWorld(const RtslTransform &transform, Vec3 p) {
   const float *t = transform.translation;
-  if (transform.isRigid)
-    return transposedProduct(transform.inverse, p, load(t));
+  if (transform.squaredScale > 0)
+    return transposedProduct(transform.inverse, p, load(t), transform.squaredScale);
   return {rowToWorld(transform, 0, p, double(t[0])), rowToWorld(transform, 1, p, double(t[1])),
           rowToWorld(transform, 2, p, double(t[2]))};
 }
 inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
-  if (transform.isRigid)
-    return transposedProduct(transform.inverse, v, {0, 0, 0});
+  if (transform.squaredScale > 0)
+    return transposedProduct(transform.inverse, v, {0, 0, 0}, transform.squaredScale);
   return {rowToWorld(transform, 0, v, 0), rowToWorld(transform, 1, v, 0),
           rowToWorld(transform, 2, v, 0)};
 }
@@ -134,17 +134,27 @@ inline Vec3 scaledToWorld(const RtslTransform &transform, Vec3 v, Vec3 offset) {
           float(__builtin_fma(double(m[8]), double(v.z), double(offset.z)))};
 }
 
+/// Of one that is a rotation with a uniform scale, or a scale alone.
+inline Vec3 similarToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v,
+                           Vec3 offset) {
+  if (!hasScale(launch))
+    return transposedProduct(transform.inverse, v, offset);
+  return transform.squaredScale > 0
+             ? transposedProduct(transform.inverse, v, offset, transform.squaredScale)
+             : scaledToWorld(transform, v, offset);
+}
+
 inline Vec3 pointToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 p) {
   const Vec3 translation = load(transform.translation);
   if (hasTurns(launch))
     return hasStretch(launch) ? pointToWorld(transform, p)
-                              : transposedProduct(transform.inverse, p, translation);
+                              : similarToWorld(launch, transform, p, translation);
   return hasLinear(launch) ? scaledToWorld(transform, p, translation) : positive(p + translation);
 }
 inline Vec3 vectorToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v) {
   if (hasTurns(launch))
     return hasStretch(launch) ? vectorToWorld(transform, v)
-                              : transposedProduct(transform.inverse, v, {0, 0, 0});
+                              : similarToWorld(launch, transform, v, {0, 0, 0});
   return hasLinear(launch) ? scaledToWorld(transform, v, {0, 0, 0}) : positive(v);
 }
 

@@ -48,7 +48,7 @@ inline void describeAttributes(RtslState &state, const RtslMesh &mesh) {
 
 /// Does the linear part of a transform mirror?
 inline bool isMirror(const RtslLaunch &launch, const RtslTransform &transform) {
-  if (isRigid(launch, transform))
+  if (!hasStretch(launch) || transform.squaredScale != 0)
     return false;
   const double *m = transform.inverse;
   return m[0] * (m[4] * m[8] - m[5] * m[7]) + m[3] * (m[7] * m[2] - m[1] * m[8]) +

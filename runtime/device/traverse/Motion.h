@@ -38,13 +38,19 @@ inline bool hasLinear(const RtslLaunch &launch) {
 inline bool hasTurns(const RtslLaunch &launch) {
   return (rtsl_needs(&launch) & RTSL_HAS_TURNS) != 0;
 }
-/// Is some transform not rigid, a rotation and a translation? Otherwise inverses are transposes:
-/// none is computed for what moves, lengths stay, and nothing is mirrored.
+/// Does some transform scale? Otherwise all are rigid, rotations and translations.
+inline bool hasScale(const RtslLaunch &launch) {
+  return (rtsl_needs(&launch) & RTSL_HAS_SCALE) != 0;
+}
+/// Does some transform stretch one direction more than another, or mirror? Otherwise all are
+/// rotations with uniform scales: inverses are transposes, divided by the square of the scale, and
+/// none is computed for what moves.
 inline bool hasStretch(const RtslLaunch &launch) {
   return (rtsl_needs(&launch) & RTSL_HAS_STRETCH) != 0;
 }
-inline bool isRigid(const RtslLaunch &launch, const RtslTransform &transform) {
-  return !hasStretch(launch) || transform.isRigid != 0;
+/// Is the inverse the transpose of the linear part before that is rounded, divided by squaredScale?
+inline bool isTransposed(const RtslLaunch &launch, const RtslTransform &transform) {
+  return !hasScale(launch) || transform.squaredScale > 0;
 }
 
 /// Has the mesh several keys?
@@ -158,6 +164,23 @@ inline void invert(RtslTransform &transform) {
     transform.inverse[i] = determinant != 0 ? cofactors[i] / determinant : 0.0;
 }
 
+/// Sets the inverse of a transform whose other numbers are set; `map` is what it rounds.
+inline void setInverse(const RtslLaunch &launch, const AffineMap &map, RtslTransform &transform) {
+  if (!hasLinear(launch)) {
+    for (int i = 0; i < 9; ++i)
+      transform.inverse[i] = i % 4 == 0 ? 1.0 : 0.0;
+  } else if (isTransposed(launch, transform)) {
+    const double reciprocal = hasScale(launch) ? 1 / transform.squaredScale : 1.0;
+    for (int i = 0; i < 9; ++i)
+      transform.inverse[i] = map.numbers[3 * (i % 3) + i / 3] * reciprocal;
+  } else if (!hasStretch(launch) || transform.squaredScale < 0) {
+    for (int i = 0; i < 9; ++i)
+      transform.inverse[i] = i % 4 == 0 ? 1 / double(transform.linear[i]) : 0.0;
+  } else {
+    invert(transform);
+  }
+}
+
 /// A transform that moves, which is `rest` at time 0, at a time.
 inline RtslTransform transformAt(const RtslLaunch &launch, const RtslTransform &rest, float time) {
   const RtslMotion &motion = launch.motions[rest.motion];
@@ -171,15 +194,8 @@ inline RtslTransform transformAt(const RtslLaunch &launch, const RtslTransform &
     transform.linear[i] = float(map.numbers[i]);
   for (int i = 0; i < 3; ++i)
     transform.translation[i] = float(map.numbers[9 + i]) + 0.0f; // not -0
-  if (!hasLinear(launch))
-    for (int i = 0; i < 9; ++i)
-      transform.inverse[i] = i % 4 == 0 ? 1.0 : 0.0;
-  else if (isRigid(launch, rest))
-    for (int i = 0; i < 9; ++i) // the transpose of the rotation before it is rounded
-      transform.inverse[i] = map.numbers[3 * (i % 3) + i / 3];
-  else
-    invert(transform);
-  transform.isRigid = rest.isRigid;
+  transform.squaredScale = rest.squaredScale;
+  setInverse(launch, map, transform);
   transform.motion = 0;
   return transform;
 }

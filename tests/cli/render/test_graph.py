@@ -56,7 +56,8 @@ class EveryPath(GraphCase):
             "transforms",
             "linear parts of transforms",
             "rotations and shears of transforms",
-            "scales and shears of transforms",
+            "scales of transforms",
+            "uneven scales and shears of transforms",
             "counts",
             "selectors",
         }
@@ -88,7 +89,7 @@ class EveryPath(GraphCase):
 
     def test_scales_have_the_bits_of_all_matrices(self):
         self.assert_cheaper_form(
-            {"linear parts of transforms", "scales and shears of transforms"},
+            {"linear parts of transforms", "scales of transforms"},
             {"scale": 0.7, "translate": [-1, 0, 0]},
             {"scale": [0.3, -1.1, 0.6], "translate": [1, 0, 1]},
         )
@@ -101,10 +102,18 @@ class EveryPath(GraphCase):
         self.assert_cheaper_form(
             {*linear, "motion", "shutter"}, [turned, turning, {"translate": [1, 0, 1]}]
         )
+        # One scale for all directions, constant in time.
+        larger = [{"scale": 1.3}, turned]
+        scaled = {*linear, "scales of transforms"}
+        self.assert_cheaper_form(scaled, larger, turned, {"scale": 0.2, "translate": [2, 1, 0]})
+        self.assert_cheaper_form(
+            {*scaled, "motion", "shutter"}, [*larger, turning, {"scale": 0.7}], {"scale": 2}
+        )
+        uneven = {*scaled, "uneven scales and shears of transforms"}
         # Six digits are no rotation, and neither is what is mirrored.
         rounded = {"matrix": [0.866025, 0, -0.5, 0, 0, 1, 0, 0, 0.5, 0, 0.866025, 0, 0, 0, 0, 1]}
         for other in (rounded, [turned, {"scale": [-1, 1, 1]}]):
-            self.assert_cheaper_form({*linear, "scales and shears of transforms"}, turned, other)
+            self.assert_cheaper_form(uneven, turned, other)
 
     def test_each_thing_that_a_scene_does_not_have_can_be_kept(self):
         plain = scene({"one": {**balls([0, 0, 0, 1]), "count": 1}}, root="one", variables={})

@@ -132,9 +132,9 @@ TEST(Motion, IsTheSameOnDevicesButForRounding) {
           EXPECT_NEAR(transform.linear[3 * column + row], exact.columns[column][row],
                       size * 0x1p-23);
           double sum = 0;
-          for (int k = 0; k < 3; ++k) // a rigid one is inverted before it is rounded
-            sum += (transform.isRigid ? exact.columns[k][row]
-                                      : double(transform.linear[3 * k + row])) *
+          for (int k = 0; k < 3; ++k) // some are inverted before they are rounded
+            sum += (transform.squaredScale > 0 ? exact.columns[k][row]
+                                               : double(transform.linear[3 * k + row])) *
                    transform.inverse[3 * column + k];
           EXPECT_NEAR(sum, row == column, 1e-11);
         }
@@ -143,6 +143,51 @@ TEST(Motion, IsTheSameOnDevicesButForRounding) {
                     std::fabs(exact.columns[3][row]) * 0x1p-23 + 1e-12);
     }
   }
+}
+
+// There and back again: to object space within the rounding of the result, and to world space.
+TEST(Motion, UniformScalesAreInvertedByTheirTransposes) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 400; ++i) {
+    const double size = i % 4 == 0 ? 1 : std::pow(10, 6 * unit(random));
+    const Transform turn(
+        rotationOf(axisRotation({unit(random), unit(random), 1}, 360 * unit(random))));
+    const Transform sized = Transform::scale(size, size, size);
+    MovingTransform transform = MovingTransform(sized).then(turn);
+    if (i % 3 == 0)
+      transform = transform.then(turningBy({unit(random), 1, 0}, 300)).then(sized);
+    transform = transform.then(Transform::translate(1e3 * unit(random), unit(random), 0));
+    const double square = squaredScale(transform);
+    ASSERT_GT(square, 0);
+    EXPECT_EQ(square == 1, i % 4 == 0);
+    Scene scene = emptyScene();
+    Placement placement;
+    placement.transform = transform;
+    scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 0), 1.0}),
+                       scene.addObject("Normal", members({})), placement);
+    const RtslLaunch launch = scene.launch();
+    EXPECT_EQ(launch.needs & RTSL_HAS_STRETCH, 0u);
+    const float time = float(random()) * 0x1p-32f;
+    const device::TransformAt atTime(launch, launch.instances[0], time);
+    const RtslTransform &stored = atTime;
+    EXPECT_EQ(stored.squaredScale, square);
+    const Vec3 v{float(unit(random)), float(unit(random)), float(unit(random))};
+    const Vec3 world = device::vectorToWorld(launch, stored, v),
+               back = device::vectorToObject(launch, stored, world);
+    const Transform exact = transform.at(time);
+    for (std::size_t row = 0; row < 3; ++row) {
+      Real sum = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        sum += Real(exact.columns[k][row]) * Real(v[int(k)]);
+      EXPECT_NEAR(world[int(row)], double(sum), std::sqrt(3 * square) * 0x1p-24);
+      EXPECT_NEAR(back[int(row)], v[int(row)], 3 * 0x1p-24);
+    }
+  }
+  EXPECT_EQ(squaredScale(Transform::scale(-2, 2, 2)), 0);
+  const MotionFactor growing{{0, 1}, {Transform::scale(1, 1, 1), Transform::scale(2, 2, 2)}, {}};
+  EXPECT_EQ(squaredScale(MovingTransform(growing)), 0);
+  EXPECT_EQ(squaredScale(Transform::scale(2, 2, 2.00001)), 0);
 }
 
 // The bounds are proven, so a random point at a random time must never be outside.
