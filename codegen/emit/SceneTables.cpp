@@ -59,7 +59,7 @@ void defineSceneTables(mlir::ModuleOp module) {
                    [&] { return addressOf(builder, location, instancesName); });
   }
   if (const auto attributes = ir::attr::meshAttributes.of(module)) {
-    const auto count = static_cast<int32_t>(attributes.size() / 2);
+    const auto count = static_cast<int32_t>(attributes.size() * 4 / sizeof(RtslMeshAttribute));
     defineFunction(builder, location, "rtsl_mesh_attribute_count", builder.getI32Type(), [&] {
       return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
                                       builder.getI32IntegerAttr(count));

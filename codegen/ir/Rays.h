@@ -37,6 +37,8 @@ inline bool readsFootprints(mlir::ModuleOp program) {
         .Default(false);
   };
   return anyOperation(program, [&](mlir::Operation *op) {
+    if (auto attribute = llvm::dyn_cast<AttributeOp>(op))
+      return attribute.getAxis() && !attribute->use_empty();
     auto state = llvm::dyn_cast<StateOp>(op);
     return state && isOfFootprint(state.getName()) &&
            llvm::any_of(state->getUsers(), [](mlir::Operation *user) { // `generate` writes some

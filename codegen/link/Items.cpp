@@ -21,6 +21,10 @@ const char *titleOf(Item item) {
   return texts[static_cast<std::size_t>(item)].title;
 }
 
+std::string changeSubject(const std::string &attribute, std::uint32_t axis) {
+  return "change of " + attribute + (axis == 0 ? " along dPdx" : " along dPdy");
+}
+
 std::optional<Item> itemNamed(std::string_view name) {
   for (Item item : allItems)
     if (name == nameOf(item))

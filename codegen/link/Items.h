@@ -62,5 +62,7 @@ using Findings = std::vector<Finding>;
 
 /// Finding::subject of RTSL_NEEDS_FOOTPRINT.
 inline constexpr const char *footprintSubject = "footprints of rays";
+/// That of the change of an attribute along an axis of the footprint, 0 or 1.
+std::string changeSubject(const std::string &attribute, std::uint32_t axis);
 
 } // namespace rtsl

@@ -34,12 +34,14 @@ static llvm::StringSet<> membersRead(mlir::ModuleOp ir) {
   return names;
 }
 
-/// rtsl_mesh_attributes of the program: the offset and the number of words of each.
+/// rtsl_mesh_attributes of the program.
 static void defineMeshAttributes(linking::LinkContext &context) {
   std::vector<std::int32_t> words;
   for (const linking::MeshAttribute &attribute : context.meshAttributes) {
     words.push_back(static_cast<std::int32_t>(attribute.offset));
     words.push_back(static_cast<std::int32_t>(ir::sizeInBytes(attribute.irType) / 4));
+    for (const std::uint32_t change : attribute.changes)
+      words.push_back(static_cast<std::int32_t>(change));
   }
   ir::attr::meshAttributes.set(context.ir,
                                mlir::Builder(context.ir.getContext()).getDenseI32ArrayAttr(words));
@@ -84,6 +86,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     ir::attr::singlePrimitives.set(ir);
   const linking::ImageChannels imageChannels = linking::findImageChannels(context);
   linking::resolveSlots(context);
+  linking::findMeshMaterials(context);
+  linking::dropChangesOfPrimitives(context);
   linking::dropUnreached(context);
   linking::noteClasses(context);
   linking::dropUnreadOutputs(context);

@@ -27,7 +27,7 @@ std::map<const typed::Member *, std::uint32_t> attributeWordsOf(const LinkContex
     const typed::Class *info = owner ? findClass(classes, owner.str()) : nullptr;
     if (!info || !attribute.getOffset())
       return;
-    if (const typed::Member *member = findScratch(*info, attribute.getName().str()))
+    if (const typed::Member *member = scratchOf(*info, attribute))
       words[member] = *attribute.getOffset();
   });
   return words;
@@ -49,6 +49,7 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
   linking::dropUnusedClasses(context);
   linking::deriveHitErrors(context);
   linking::resolveSlots(context);
+  linking::findMeshMaterials(context);
   linking::placeAttributes(context);
   linking::resolveRayTypes(context);
   if (diagnostics.hasErrors())
@@ -58,7 +59,10 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
   facts.rayTypes = linking::rayTypesOf(context);
   facts.attributeWords = linking::attributeWordsOf(context);
   for (const linking::MeshAttribute &attribute : context.meshAttributes)
-    facts.meshAttributes.push_back({attribute.name, attribute.type, attribute.offset});
+    facts.meshAttributes.push_back({attribute.name,
+                                    attribute.type,
+                                    attribute.offset,
+                                    {attribute.changes[0], attribute.changes[1]}});
   facts.needs = linking::findNeeds(context);
   const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context, facts.needs);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {

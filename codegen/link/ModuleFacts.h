@@ -1,6 +1,7 @@
 //===- ModuleFacts.h - results of linking a module without a scene --------===//
 #pragma once
 
+#include "runtime/device/ray/Abi.h"
 #include "sema/typed/TypedAst.h"
 
 #include <cstdint>
@@ -20,7 +21,8 @@ struct RayTypeFacts {
 struct MeshAttributeFacts {
   std::string name;
   const Type *type = nullptr;
-  std::uint32_t offset = 0; // in words
+  /// As in runtime::AttributeInfo.
+  std::uint32_t offset = RTSL_NOT_READ, changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ};
 };
 
 struct ModuleFacts {

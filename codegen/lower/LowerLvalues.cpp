@@ -65,6 +65,9 @@ Lvalue FunctionLowering::lowerLvalue(const typed::Expr &expr) {
       result.address = emitter.make<ir::MemberOp>(module.pointer(member.type), self(), member.name);
     else if (auto variable = scratch.find(&member); variable != scratch.end())
       result.address = variable->second;
+    else if (member.changeOf)
+      result.address = emitter.make<ir::AttributeOp>(member.changeOf->name,
+                                                     module.type(member.type), member.axis);
     else
       result.address = emitter.make<ir::AttributeOp>(member.name, module.type(member.type));
     return result;

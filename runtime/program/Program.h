@@ -53,7 +53,9 @@ struct MemberInfo {
 struct AttributeInfo {
   std::string name;
   ValueType type;
-  std::uint32_t offset = 0; // in RtslState::attributes, in words
+  /// In RtslState::attributes, in words: of the value, and of its changes along dPdx and dPdy.
+  std::uint32_t offset = RTSL_NOT_READ;
+  std::uint32_t changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ};
 };
 
 struct ClassInfo {

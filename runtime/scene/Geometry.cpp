@@ -450,7 +450,8 @@ void Geometry::dropUnusedAttributes(const Program &program) {
   };
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     Mesh &mesh = meshes[i]->mesh;
-    look(i, "normals", RTSL_NEEDS_NORMALS, mesh.normals, meshTable[i].normals);
+    look(i, "normals", RTSL_NEEDS_NORMALS | RTSL_NEEDS_NORMAL_CHANGES, mesh.normals,
+         meshTable[i].normals);
     look(i, "texture coordinates",
          RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT, mesh.uvs,
          meshTable[i].uvs);

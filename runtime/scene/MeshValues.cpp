@@ -130,7 +130,9 @@ std::vector<std::uint32_t> convert(const NamedAttribute &attribute, const ValueT
 std::vector<RtslMeshAttribute> attributesOf(const Program &program) {
   std::vector<RtslMeshAttribute> table;
   for (const AttributeInfo &attribute : program.meshAttributes)
-    table.push_back({attribute.offset, wordsOf(attribute.type, program)});
+    table.push_back({attribute.offset,
+                     wordsOf(attribute.type, program),
+                     {attribute.changes[0], attribute.changes[1]}});
   return table;
 }
 

@@ -43,6 +43,8 @@ bool Changes::isVaried(const Expr &expr) const {
   switch (expr.kind) {
   case ExprKind::State:
     return changeOf(cast<StateExpr>(expr).variable, Axis::X) != nullptr;
+  case ExprKind::Member:
+    return changes(*cast<MemberExpr>(expr).member);
   case ExprKind::Variable:
     return varied.count(cast<VariableExpr>(expr).variable) != 0;
   case ExprKind::Field:

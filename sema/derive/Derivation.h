@@ -30,6 +30,10 @@ struct AxisSet {
 /// What a variant of a function returns.
 enum class Result : std::uint8_t { Value, AlongX, AlongY };
 
+/// Does the value of a member change across the footprint? A scratch member of a material that may
+/// be an attribute of a mesh does.
+bool changes(const typed::Member &member);
+
 /// The state variable that is the change of another one; nothing if that does not change.
 const typed::StateVariable *changeOf(typed::StateVariable variable, Axis axis);
 
@@ -56,6 +60,9 @@ public:
   const typed::Function &variant(const typed::Function &function, Result result);
   AxisSet axesOf(const typed::Function &function, Result result);
 
+  /// The scratch member that is the change of another one.
+  const typed::Member &changeOf(const typed::Member &member, Axis axis);
+
 private:
   using Definitions = std::vector<const typed::Function *>;
 
@@ -72,6 +79,9 @@ private:
   void makeVariant(const typed::Function &from, Result result);
   std::string variantName(const typed::Function &from, Result result) const;
   void addVariants(std::vector<std::unique_ptr<typed::Function>> &functions);
+  std::string memberName(const typed::Member &of, Axis axis) const;
+  /// Places the members of changeOf in their classes.
+  void addMembers();
 
   struct Variant {
     std::unique_ptr<typed::Function> function;
@@ -84,6 +94,7 @@ private:
   std::map<const typed::Function *, Facts> facts;
   std::deque<Variant> variants; // in the order in which they were required
   std::map<std::pair<const typed::Function *, Result>, const typed::Function *> made;
+  std::vector<std::unique_ptr<typed::Member>> members; // in the order in which they were required
 };
 
 } // namespace rtsl::derive

@@ -34,6 +34,12 @@ const StateVariable *changeOf(StateVariable variable, Axis axis) {
   }
 }
 
+bool changes(const Member &member) {
+  return member.access == ast::Access::Scratch && member.owner &&
+         member.owner->root == "rt_Material" &&
+         (member.type->isScalar() || member.type->isVector()) && isDifferentiable(member.type);
+}
+
 /// The user function that an expression calls; null if there is none.
 static const Function *callee(const Expr &expr) {
   if (auto *call = dynCast<CallExpr>(&expr))
@@ -49,6 +55,8 @@ static bool isDerivative(const Expr &expr) {
 }
 
 static bool isSeed(const Expr &expr) {
+  if (auto *member = dynCast<MemberExpr>(&expr))
+    return changes(*member->member);
   auto *state = dynCast<StateExpr>(&expr);
   return state && changeOf(state->variable, Axis::X);
 }
@@ -183,6 +191,40 @@ void Derivation::addVariants(std::vector<std::unique_ptr<Function>> &functions) 
   functions = std::move(all);
 }
 
+std::string Derivation::memberName(const Member &of, Axis axis) const {
+  std::string name = of.name + (axis == Axis::X ? "_dx" : "_dy");
+  while (std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &other) {
+    return std::any_of(other->members.begin(), other->members.end(),
+                       [&](const auto &member) { return member->name == name; });
+  }))
+    name += "_";
+  return name;
+}
+
+const Member &Derivation::changeOf(const Member &member, Axis axis) {
+  const auto index = static_cast<int>(axis);
+  for (const auto &known : members)
+    if (known->changeOf == &member && known->axis == index)
+      return *known;
+  auto change = std::make_unique<Member>();
+  change->access = ast::Access::Scratch;
+  change->name = memberName(member, axis);
+  change->type = member.type;
+  change->owner = member.owner;
+  change->changeOf = &member;
+  change->axis = index;
+  change->range = member.range;
+  members.push_back(std::move(change));
+  return *members.back();
+}
+
+void Derivation::addMembers() {
+  for (const auto &owner : module.classes)
+    for (auto &member : members)
+      if (member && member->owner == owner.get())
+        owner->members.push_back(std::move(member));
+}
+
 void Derivation::run() {
   struct Replaced {
     Function *function;
@@ -208,6 +250,7 @@ void Derivation::run() {
     one.function->body = std::move(one.derived.body);
     one.function->locals = std::move(one.derived.locals);
   }
+  addMembers();
   addVariants(module.functions);
   for (const auto &owner : module.classes)
     addVariants(owner->functions);

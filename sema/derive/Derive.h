@@ -13,12 +13,14 @@
 // to that. Functions are called in variants with parameters for the changes of their arguments:
 // `fWithFootprint` has the value of f, which contains dFdx or dFdy, `fDFdx` and `fDFdy` are the
 // changes of its value. Parameters that are written have `out` parameters for their changes in
-// `fWithFootprint`. Changes begin with rt_HitPoint, rt_TextureUV and rt_TextureUVW; elsewhere
-// than in materials and textures, and functions called from there, all changes are 0.
+// `fWithFootprint`. Changes begin with rt_HitPoint, rt_TextureUV, rt_TextureUVW, rt_ShadingNormal
+// and the scratch members of materials: for the changes of `uv1` the class gets scratch members
+// `uv1_dx` and `uv1_dy`, which are known where the surface is a mesh. Elsewhere than in materials
+// and textures, and functions called from there, all changes are 0.
 //
-// Changes of 0 as well have: what language/Derivatives.def says, members, results of functions that
-// have other effects (they draw random numbers, say, or trace rays), of those with `out`
-// parameters, and of dFdx and dFdy themselves.
+// Changes of 0 as well have: what language/Derivatives.def says, other members, results of
+// functions that have other effects (they draw random numbers, say, or trace rays), of those with
+// `out` parameters, and of dFdx and dFdy themselves.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -141,6 +141,11 @@ Term DerivedBody::change(const Expr &expr, Axis axis) {
     node->variable = *changeOf(cast<StateExpr>(expr).variable, axis);
     return {std::move(node), types};
   }
+  case ExprKind::Member: {
+    auto node = makeExpr<MemberExpr>(expr.type, expr.range);
+    node->member = &derivation.changeOf(*cast<MemberExpr>(expr).member, axis);
+    return {std::move(node), types};
+  }
   case ExprKind::Variable: {
     const Companions *found = companionsOf(expr);
     if (!found || !found->along[static_cast<int>(axis)])

@@ -323,6 +323,8 @@ void Generator::makeClasses() {
   for (unsigned n = below(4), words = 0; n-- > 0;) {
     const Type *type = smallType();
     words += type->is(TypeKind::Color) ? program.colorComponents : type->componentCount();
+    if (contains(type, TypeKind::Float)) // and its changes
+      words += 2 * type->componentCount();
     if (words <= 28)
       attributes.push_back({global("s"), type}); // programs that are compiled together share none
   }

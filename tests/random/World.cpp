@@ -5,6 +5,8 @@
 #include "runtime/device/traverse/AnyHit.h"
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/program/PrintLog.h"
+#include "runtime/scene/MeshValues.h"
+#include "runtime/scene/Samplers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -329,6 +331,7 @@ World::World(const runtime::Program &code, const Program &program)
   makeTree();
   launch.needs = code.needs | RTSL_HAS_ALL;
   launch.host = &host;
+  listAttributes();
 }
 
 World::World(const runtime::Program &bound, const World &made)
@@ -342,6 +345,13 @@ World::World(const runtime::Program &bound, const World &made)
   launch.instances = instances.data();
   launch.needs = bound.needs | RTSL_HAS_ALL;
   launch.host = &host;
+  listAttributes();
+}
+
+void World::listAttributes() {
+  attributes = runtime::attributesOf(code);
+  launch.meshAttributes = attributes.data();
+  launch.meshAttributeCount = static_cast<std::uint32_t>(attributes.size());
 }
 
 runtime::SceneFacts World::facts() const {

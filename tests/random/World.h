@@ -57,6 +57,7 @@ private:
   void addInstance(RtslInstance instance, std::uint32_t primitives);
   static std::vector<RtslTransform> someTransforms();
   static RtslMesh someMesh();
+  void listAttributes();
   void addMotion();
   void addSelections(RtslRef selector);
   void place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives);
@@ -100,6 +101,7 @@ private:
   std::vector<std::vector<runtime::BvhItem>> treeItems;
   runtime::Bvh tree; // of all of them
   RtslMesh mesh{};
+  std::vector<RtslMeshAttribute> attributes; // where primitives have changes of 0
   RtslLaunch launch{};
 };
 

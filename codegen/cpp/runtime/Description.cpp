@@ -194,6 +194,19 @@ static Statements describeFeatures(const Options &options) {
   return features ? Statements{onProgram("features", {features})} : Statements();
 }
 
+/// The arguments of Program::meshAttribute: the name and the places of an attribute, with those of
+/// its changes if any is read.
+static std::vector<Code> placesOf(const MeshAttributeFacts &attribute) {
+  const auto place = [](std::uint32_t word) {
+    return word == RTSL_NOT_READ ? cpp::name("RTSL_NOT_READ") : integer(word);
+  };
+  std::vector<Code> arguments = {string(attribute.name), place(attribute.offset)};
+  if (attribute.changes[0] != RTSL_NOT_READ || attribute.changes[1] != RTSL_NOT_READ)
+    for (const std::uint32_t change : attribute.changes)
+      arguments.push_back(place(change));
+  return arguments;
+}
+
 Declarations description(Context &context, const StateEntries &entries,
                          const std::vector<FilledSlot> &filled) {
   Declarations all = describeStructs(context);
@@ -210,7 +223,7 @@ Declarations description(Context &context, const StateEntries &entries,
   for (const MeshAttributeFacts &attribute : context.facts.meshAttributes)
     body.push_back(
         onProgram(withParameters("meshAttribute", {context.types.inMemory(attribute.type)}),
-                  {string(attribute.name), integer(attribute.offset)}));
+                  placesOf(attribute)));
   if (const Code needs = flagsOfNeeds(context.facts.needs))
     body.push_back(onProgram("needs", {needs}));
   for (const auto &[base, method] : filled)

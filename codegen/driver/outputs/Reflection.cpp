@@ -187,7 +187,8 @@ private:
       json["recordSize"] = ir::recordSize(record);
     json["members"] = Json::array();
     for (const typed::Member *member : allMembers(definition))
-      json["members"].push_back(describe(*member, record));
+      if (!member->changeOf)
+        json["members"].push_back(describe(*member, record));
     if (const typed::Function *constructor = findConstructor(definition))
       json["constructor"] = {{"parameters", parameters(*constructor)}};
     json["methods"] = Json::array();

@@ -290,8 +290,9 @@ LogicalResult StateOp::verify() {
 }
 
 void AttributeOp::build(mlir::OpBuilder &builder, mlir::OperationState &state, llvm::StringRef name,
-                        mlir::Type type) {
-  build(builder, state, PtrType::get(type), name, mlir::IntegerAttr());
+                        mlir::Type type, std::optional<int32_t> axis) {
+  build(builder, state, PtrType::get(type), name, mlir::IntegerAttr(),
+        axis ? builder.getI32IntegerAttr(*axis) : mlir::IntegerAttr());
 }
 
 void AttributeOp::getAsmResultNames(NameSetter setName) {
@@ -301,6 +302,8 @@ void AttributeOp::getAsmResultNames(NameSetter setName) {
 LogicalResult AttributeOp::verify() {
   if (getOffset() && static_cast<int32_t>(*getOffset()) < 0)
     return emitOpError() << "has a negative offset";
+  if (getAxis().value_or(0) > 1)
+    return emitOpError() << "has an axis that is neither 0 nor 1";
   return mlir::success();
 }
 

@@ -211,13 +211,17 @@ def Rtsl_AttributeOp : Rtsl_Op<"attribute", [Pure, Rtsl_Named]> {
     primitives and materials and sets `offset`, in 32-bit words from the start of
     `RtslState::attributes`; without it the op cannot be compiled.
 
+    With `axis` it is how an attribute of a mesh changes along an axis of the footprint of the ray,
+    0 for dPdx and 1 for dPdy. On primitives that is 0.
+
     Example: `%n = rtsl.attribute "n" {offset = 0 : i32} : !rtsl.ptr<vector<3xf32>>`
   }];
-  let arguments = (ins StrAttr:$name, OptionalAttr<I32Attr>:$offset);
+  let arguments = (ins StrAttr:$name, OptionalAttr<I32Attr>:$offset, OptionalAttr<I32Attr>:$axis);
   let results = (outs Rtsl_Ptr:$result);
   let assemblyFormat = "$name attr-dict `:` type($result)";
   let hasVerifier = 1;
-  let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type)>];
+  let builders = [OpBuilder<(ins "::llvm::StringRef":$name, "::mlir::Type":$type,
+                              CArg<"std::optional<int32_t>", "std::nullopt">:$axis)>];
 }
 
 def Rtsl_TableOp : Rtsl_Op<"table", [Pure, Rtsl_Named]> {

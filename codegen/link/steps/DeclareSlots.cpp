@@ -13,11 +13,12 @@
 namespace rtsl {
 
 void declareSlots(mlir::ModuleOp ir) {
-  llvm::DenseMap<std::pair<mlir::StringAttr, mlir::Type>, std::uint32_t> places;
+  llvm::DenseMap<std::tuple<mlir::StringAttr, mlir::Type, mlir::Attribute>, std::uint32_t> places;
   std::uint32_t words = 0;
   ir.walk([&](ir::AttributeOp op) {
     const mlir::Type type = mlir::cast<ir::PtrType>(op.getType()).getPointee();
-    const auto [place, isNew] = places.try_emplace({op.getNameAttr(), type}, words);
+    const auto [place, isNew] =
+        places.try_emplace({op.getNameAttr(), type, op.getAxisAttr()}, words);
     if (isNew)
       words += ir::sizeInBytes(type) / 4;
     op.setOffset(place->second);

@@ -116,7 +116,9 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
            (isCameraRay ? RTSL_NEEDS_CAMERA_RAY : 0);
   }
   if (auto attribute = llvm::dyn_cast<ir::AttributeOp>(op))
-    return isRead(attribute) ? RTSL_NEEDS_ATTRIBUTES : 0;
+    return !isRead(attribute)    ? 0
+           : attribute.getAxis() ? RTSL_NEEDS_ATTRIBUTES | RTSL_NEEDS_FOOTPRINT
+                                 : RTSL_NEEDS_ATTRIBUTES;
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
       trace && trace.getHow().value_or(0) & RTSL_INVOKE_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);

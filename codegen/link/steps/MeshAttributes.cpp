@@ -54,14 +54,15 @@ void addAllMaterials(LinkContext &context) {
 
 void checkTypes(LinkContext &context, const typed::Class &material) {
   for (const typed::Member *member : allMembers(material))
-    if (member->access == ast::Access::Scratch && !isOfMesh(member->type))
+    if (member->access == ast::Access::Scratch && !member->changeOf && !isOfMesh(member->type))
       context.diagnostics.report(Code::meshAttributeType, member->range, material.name,
                                  member->name, toString(member->type));
 }
 
 } // namespace
 
-void findMeshMaterials(LinkContext &context, const ClassesByName &classes) {
+void findMeshMaterials(LinkContext &context) {
+  const ClassesByName classes = classesOf(context);
   if (!context.hasScene)
     return addAllMaterials(context);
   std::set<const typed::Class *> seen;
@@ -75,6 +76,27 @@ void findMeshMaterials(LinkContext &context, const ClassesByName &classes) {
 
 bool mayBeOnMesh(const LinkContext &context, const std::string &className) {
   return context.meshMaterials.count(className) != 0;
+}
+
+void dropChangesOfPrimitives(LinkContext &context) {
+  std::vector<ir::AttributeOp> changes;
+  context.ir.walk([&](ir::AttributeOp op) {
+    if (!op.getAxis())
+      return;
+    const auto owner = ir::attr::className.of(op->getParentOfType<mlir::func::FuncOp>());
+    const std::string subject = changeSubject(op.getName().str(), *op.getAxis());
+    if (!owner || !mayBeOnMesh(context, owner.str()) ||
+        context.isWithout(Item::MeshAttributes, subject))
+      changes.push_back(op);
+  });
+  for (ir::AttributeOp op : changes)
+    for (mlir::Operation *user : llvm::make_early_inc_range(op->getUsers()))
+      if (auto load = mlir::dyn_cast<ir::LoadOp>(user)) {
+        mlir::OpBuilder builder(load);
+        load.replaceAllUsesWith(mlir::Value(mlir::arith::ConstantOp::create(
+            builder, load.getLoc(), builder.getZeroAttr(load.getType()))));
+        load.erase();
+      }
 }
 
 void listMeshAttributes(LinkContext &context, const ClassesByName &classes) {
@@ -93,12 +115,9 @@ void listMeshAttributes(LinkContext &context, const ClassesByName &classes) {
           context.meshAttributes.begin(), context.meshAttributes.end(),
           [&](const MeshAttribute &one) { return one.name == name && one.type == member->type; });
       if (found == context.meshAttributes.end())
-        found = context.meshAttributes.insert(found,
-                                              {name,
-                                               member->type,
-                                               mlir::cast<ir::PtrType>(op.getType()).getPointee(),
-                                               static_cast<std::uint32_t>(*op.getOffset()),
-                                               {}});
+        found = context.meshAttributes.insert(
+            found, {name, member->type, mlir::cast<ir::PtrType>(op.getType()).getPointee()});
+      (op.getAxis() ? found->changes[*op.getAxis()] : found->offset) = *op.getOffset();
       found->readers.insert(owner.str());
     });
   }
@@ -107,8 +126,10 @@ void listMeshAttributes(LinkContext &context, const ClassesByName &classes) {
 std::vector<runtime::AttributeInfo> describeMeshAttributes(const LinkContext &context) {
   std::vector<runtime::AttributeInfo> described;
   for (const MeshAttribute &attribute : context.meshAttributes)
-    described.push_back(
-        {attribute.name, reflect(attribute.type, attribute.irType), attribute.offset});
+    described.push_back({attribute.name,
+                         reflect(attribute.type, attribute.irType),
+                         attribute.offset,
+                         {attribute.changes[0], attribute.changes[1]}});
   return described;
 }
 

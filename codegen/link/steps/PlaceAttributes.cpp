@@ -2,7 +2,9 @@
 //
 // A primitive's scratch members are attributes of its hits; a material reads those that it declares
 // itself, matched by name and type. On a mesh they are its named attributes (MeshAttributes.cpp).
-// Two attributes may overlap if no primitive has both. An attribute that is never read has no
+// Two attributes may overlap if no primitive has both. The changes of an attribute across the
+// footprint are attributes, too; none overlaps another one, because they are 0 where a primitive is
+// hit, whatever scratch members that has. An attribute that is never read has no
 // offset, and is not stored.
 //
 // Without a scene, attributes that are never read also get offsets if there is space, and
@@ -39,7 +41,7 @@ namespace {
 void matchSurface(LinkContext &context, const typed::Class &primitive,
                   const typed::Class &material) {
   for (const typed::Member *read : allMembers(material)) {
-    if (read->access != ast::Access::Scratch)
+    if (read->access != ast::Access::Scratch || read->changeOf)
       continue;
     const typed::Member *written = findScratch(primitive, read->name);
     if (!written) {
@@ -59,6 +61,7 @@ void matchSurface(LinkContext &context, const typed::Class &primitive,
 struct Attribute {
   std::string name;
   mlir::Type type;
+  std::optional<std::uint32_t> axis;     // of the footprint: it is the change of an attribute
   const typed::Member *member = nullptr; // of the first class that uses it
   std::uint32_t words = 0;
   std::uint32_t offset = 0;
@@ -97,12 +100,13 @@ std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &
     function.walk([&](ir::AttributeOp op) {
       const mlir::Type type = mlir::cast<ir::PtrType>(op.getType()).getPointee();
       auto found = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute &known) {
-        return known.name == op.getName().str() && known.type == type;
+        return known.name == op.getName().str() && known.type == type && known.axis == op.getAxis();
       });
       if (found == attributes.end()) {
         Attribute added;
         added.name = op.getName().str();
         added.type = type;
+        added.axis = op.getAxis();
         added.words = ir::sizeInBytes(type) / 4;
         found = attributes.insert(attributes.end(), std::move(added));
       }
@@ -120,6 +124,11 @@ std::vector<Attribute> collect(const LinkContext &context, const ClassesByName &
   return attributes;
 }
 
+/// Finding::subject of it.
+std::string subjectOf(const Attribute &attribute) {
+  return attribute.axis ? changeSubject(attribute.name, *attribute.axis) : attribute.name;
+}
+
 /// The item of --keep that it belongs to.
 Item itemOf(const Attribute &attribute) {
   return attribute.primitives.count("mesh") ? Item::MeshAttributes : Item::Attributes;
@@ -131,15 +140,17 @@ void note(LinkContext &context, const Attribute &attribute) {
                     [&](ir::AttributeOp op) { return isRead(op) == attribute.isRead; });
   const std::string function = shownName(use->getParentOfType<mlir::func::FuncOp>());
   context.findings.push_back(
-      {itemOf(attribute), attribute.name, attribute.isRead,
+      {itemOf(attribute), subjectOf(attribute), attribute.isRead,
        attribute.isRead
            ? fmt::format("{} bytes of the hit, read by `{}`", 4 * attribute.words, function)
            : fmt::format("`{}` writes it and nothing reads it", function),
        ir::placeOf(use.getLoc())});
 }
 
+/// May both be needed at one hit?
 bool shareAPrimitive(const Attribute &a, const Attribute &b) {
-  return std::any_of(a.primitives.begin(), a.primitives.end(),
+  return a.axis || b.axis ||
+         std::any_of(a.primitives.begin(), a.primitives.end(),
                      [&](const std::string &name) { return b.primitives.count(name) != 0; });
 }
 
@@ -179,6 +190,16 @@ const typed::Member *findScratch(const typed::Class &info, const std::string &na
   return nullptr;
 }
 
+const typed::Member *scratchOf(const typed::Class &info, ir::AttributeOp place) {
+  const typed::Member *value = findScratch(info, place.getName().str());
+  if (!place.getAxis())
+    return value;
+  for (const typed::Member *member : allMembers(info))
+    if (member->changeOf == value && member->axis == static_cast<int>(*place.getAxis()))
+      return member;
+  return nullptr;
+}
+
 void placeAttributes(LinkContext &context) {
   const ClassesByName classes = classesOf(context);
   std::set<std::pair<std::string, std::string>> seen;
@@ -187,7 +208,6 @@ void placeAttributes(LinkContext &context) {
         *hit = findClass(classes, primitive);
         info && hit && seen.insert({primitive, material}).second)
       matchSurface(context, *hit, *info);
-  findMeshMaterials(context, classes);
 
   std::vector<Attribute> attributes = collect(context, classes);
   for (const Attribute &attribute : attributes)
@@ -199,7 +219,7 @@ void placeAttributes(LinkContext &context) {
   std::uint32_t words = 0;
   const typed::Member *last = nullptr;
   for (Attribute &attribute : attributes) {
-    if (attribute.isRead && context.isWithout(itemOf(attribute), attribute.name))
+    if (attribute.isRead && context.isWithout(itemOf(attribute), subjectOf(attribute)))
       eraseStores(attribute);
     attribute.offset = firstFit(attribute, placed);
     if (!attribute.isRead) {

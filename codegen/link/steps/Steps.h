@@ -44,8 +44,8 @@ struct MeshAttribute {
   std::string name;
   const Type *type = nullptr;
   mlir::Type irType;
-  std::uint32_t offset = 0;      // in words
-  std::set<std::string> readers; // classes of materials
+  std::uint32_t offset = RTSL_NOT_READ, changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ}; // in words
+  std::set<std::string> readers = {}; // classes of materials
 };
 
 struct LinkContext {
@@ -128,7 +128,10 @@ const typed::Class *findClass(const ClassesByName &classes, const std::string &n
 
 /// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports scratch members of
 /// theirs of types that meshes do not have.
-void findMeshMaterials(LinkContext &context, const ClassesByName &classes);
+void findMeshMaterials(LinkContext &context);
+/// Replaces changes of attributes by 0 that materials read which are on no mesh, and those that are
+/// in LinkRequest::without.
+void dropChangesOfPrimitives(LinkContext &context);
 /// Whether a class is one of them.
 bool mayBeOnMesh(const LinkContext &context, const std::string &className);
 /// Lists the attributes that they read, which have offsets: LinkContext::meshAttributes.
@@ -139,6 +142,8 @@ std::uint32_t meshAttributesOf(const LinkContext &context, const std::string &cl
 
 /// The scratch member of this name of a class; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);
+/// The one whose place this is: of a value, or of its change along an axis.
+const typed::Member *scratchOf(const typed::Class &info, ir::AttributeOp place);
 
 /// A method that is called through a reference.
 struct SlotCall {

@@ -380,10 +380,14 @@ public:
   }
   /// RTSL_NEEDS_*: the parts of a hit that the methods of the program read.
   void needs(std::uint32_t what) { result->needs = what; }
-  /// A scratch member that materials may read of meshes, `offset` words after the first.
+  /// A scratch member that materials may read of meshes, `offset` words after the first, and its
+  /// changes across the footprint of the ray.
   template <typename T>
-  void meshAttribute(const char *name, std::uint32_t offset) {
-    result->meshAttributes.push_back({name, detail::valueType<T>(), offset});
+  void meshAttribute(const char *name, std::uint32_t offset,
+                     std::uint32_t changeAlongX = RTSL_NOT_READ,
+                     std::uint32_t changeAlongY = RTSL_NOT_READ) {
+    result->meshAttributes.push_back(
+        {name, detail::valueType<T>(), offset, {changeAlongX, changeAlongY}});
   }
   /// RTSL_FEATURE_*: side effects of samples.
   void features(std::uint32_t what) { result->slots.features = what; }

@@ -114,10 +114,14 @@ typedef struct RtslMeshValues {
   uint32_t space;         // RTSL_ATTRIBUTE_*
 } RtslMeshValues;
 
-/// A scratch member that some material reads of meshes, in RtslState::attributes.
+/// A scratch member that some material reads of meshes: places in RtslState::attributes, or
+/// RTSL_NOT_READ. `changes` are those of its changes along dPdx and dPdy; on a primitive, which has
+/// no such changes, they are 0.
 typedef struct RtslMeshAttribute {
   uint32_t offset, words;
+  uint32_t changes[2];
 } RtslMeshAttribute;
+#define RTSL_NOT_READ 0xffffffffu
 
 /// An indexed triangle mesh in object space. `normals` and `uvs` may be null. If it has several
 /// keys, the positions of all vertices at the first one are followed by those at the next, and so

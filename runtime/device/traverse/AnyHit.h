@@ -121,7 +121,7 @@ public:
     const RtslInstance &instance = instanceAt(*state.launch, state.instance);
     const float end = state.HitDistance;
     state.HitDistance = state.foundDistance;
-    describeHit(state, instance.needs, slots);
+    describeHit(state, instance.needs & rtsl_needs(state.launch), slots);
     state.hitAnswer = RTSL_ACCEPT;
     slots.rt_Material_anyHit_payload(&state, instance.material);
     state.HitDistance = end;

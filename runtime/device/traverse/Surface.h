@@ -207,26 +207,20 @@ inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint
     attributesToWorld(state, mesh, transform);
 }
 
-/// The change of a normalised vector v / |v| if v changes by `change`; 0 for v = 0.
-inline Vec3 changeOfNormalized(Vec3 v, Vec3 change) {
-  const float square = dot(v, v);
-  if (!(square > 0 && square < infinity))
-    return {0, 0, 0};
-  const float reciprocal = 1 / squareRoot(square);
-  const Vec3 unit = v * reciprocal;
-  return (change - unit * dot(unit, change)) * reciprocal;
+/// How u and v of state's hit on a mesh change along dPdx and dPdy.
+inline BarycentricChanges barycentricChanges(const RtslState &state, const RtslMesh &mesh) {
+  const TriangleVertices p = triangleVertices(*state.launch, mesh, state.primitive, state.Time);
+  BarycentricChanges by;
+  solveForCoordinates(p.v1 - p.v0, p.v2 - p.v0, load(state.dUVWdx), load(state.dUVWdy), by.along[0],
+                      by.along[1]);
+  return by;
 }
 
-/// The changes of the shading normal across the footprint, of a mesh whose vertices have normals:
-/// those of the sum that triangleNormals normalises, which is linear in barycentric coordinates.
-inline void describeNormalChanges(RtslState &state, const RtslInstance &instance) {
+/// The changes of the shading normal of a mesh whose vertices have normals: those of the sum that
+/// triangleNormals normalises.
+inline void describeNormalChanges(RtslState &state, const RtslInstance &instance,
+                                  const RtslMesh &mesh, const BarycentricChanges &by) {
   const RtslLaunch &launch = *state.launch;
-  const RtslMesh &mesh = launch.meshes[instance.mesh];
-  if (!mesh.normals)
-    return;
-  const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
-  float ofX[2] = {0, 0}, ofY[2] = {0, 0}; // changes of u and v
-  solveForCoordinates(p.v1 - p.v0, p.v2 - p.v0, load(state.dUVWdx), load(state.dUVWdy), ofX, ofY);
   const uint32_t *index = mesh.indices + 3 * size_t(state.primitive);
   const auto normal = [&](int corner) {
     return vertexAt(launch, mesh, mesh.normals, index[corner], state.Time);
@@ -234,10 +228,10 @@ inline void describeNormalChanges(RtslState &state, const RtslInstance &instance
   const Vec3 n0 = normal(0), n1 = normal(1), n2 = normal(2);
   const float u = state.u, v = state.v, w = (1.0f - u) - v;
   const Vec3 sum = n0 * w + n1 * u + n2 * v;
-  const auto changed = [&](const float *by) {
-    return changeOfNormalized(sum, (n1 - n0) * by[0] + (n2 - n0) * by[1]);
+  const auto changed = [&](const float *along) {
+    return changeOfNormalized(sum, (n1 - n0) * along[0] + (n2 - n0) * along[1]);
   };
-  Vec3 x = changed(ofX), y = changed(ofY);
+  Vec3 x = changed(by.along[0]), y = changed(by.along[1]);
   if (isTransformed(launch, instance)) {
     const TransformAt transform(launch, instance, state.Time);
     const Vec3 world = covectorToWorld(launch, transform, normalized(sum));
@@ -246,6 +240,25 @@ inline void describeNormalChanges(RtslState &state, const RtslInstance &instance
   }
   store(state.dNdx, x);
   store(state.dNdy, y);
+}
+
+/// What changes across the footprint of state's hit on a mesh, beside what has derivatives of its
+/// own: shading normals and attributes, which are interpolated between vertices.
+inline void describeMeshChanges(RtslState &state, const RtslInstance &instance, uint32_t needs) {
+  const RtslLaunch &launch = *state.launch;
+  const RtslMesh &mesh = launch.meshes[instance.mesh];
+  const bool ofNormals = needs & RTSL_NEEDS_NORMAL_CHANGES && mesh.normals;
+  const bool ofAttributes = needs & RTSL_NEEDS_ATTRIBUTES && hasAttributeChanges(launch);
+  if (!ofNormals && !ofAttributes)
+    return;
+  const BarycentricChanges by = barycentricChanges(state, mesh);
+  if (ofNormals)
+    describeNormalChanges(state, instance, mesh, by);
+  if (!ofAttributes)
+    return;
+  describeAttributeChanges(state, mesh, by);
+  if (isTransformed(launch, instance))
+    attributeChangesToWorld(state, mesh, TransformAt(launch, instance, state.Time));
 }
 
 /// The same for an RTSL primitive.
@@ -284,10 +297,13 @@ void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
     describePrimitiveHit(state, instance, needs, slots);
   if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT) // rays that leave the hit have a cone in any case
     state.ConeWidth = coneWidthAtHit(state);
-  if (needs & RTSL_NEEDS_FOOTPRINT)
-    describeFootprint(state, instance, needs);
-  if (needs & RTSL_NEEDS_NORMAL_CHANGES && instance.primitive == 0)
-    describeNormalChanges(state, instance);
+  if (!(needs & RTSL_NEEDS_FOOTPRINT))
+    return;
+  describeFootprint(state, instance, needs);
+  if (instance.primitive == 0)
+    describeMeshChanges(state, instance, needs);
+  else if (needs & RTSL_NEEDS_ATTRIBUTES)
+    clearAttributeChanges(state);
 }
 
 inline void describeHit(RtslState &state) {

@@ -442,7 +442,7 @@ class Sends : rt_RayGeneration {
             far = 1 + i
             expected = [0, 0, 0.25 + 0.125 * far, 0.125, 0.25 + 0.25 * far, 0.25, 0.25]
             self.assertEqual(line, expected)
-        self.same_bits()
+        self.same_bits([*WAYS, ["--keep=outputs"]])
 
     def test_generate_may_write_cones_that_nobody_reads(self):
         self.scene(
@@ -455,6 +455,7 @@ class Sends : rt_RayGeneration {
         )
         said, _ = self.run_rtslc("explain", "scene.json", "--json", "--no-savings")
         self.assertIn(("footprints of rays", False), list(self.items(json.loads(said))))
+        self.same_bits([[], ["--keep=outputs"], ["--keep=outputs", "--target=host-megakernel"]])
 
     NORMALS = """
 class Bent : rt_Material {
@@ -507,6 +508,122 @@ class Bent : rt_Material {
                     self.assert_close(n, [x / (2 * step) for x in add(ahead, behind, -1)], 2e-3)
                 self.assert_close(weighted, add([x * point[0] for x in nx], normal, px[0]), 1e-4)
             self.same_bits()
+
+    ATTRIBUTES = """
+class Attributed : rt_Material {
+  scratch vec3 place;
+  scratch vec3 flow;
+  scratch vec3 side;
+  scratch vec4 tangent;
+  scratch vec2 uv1;
+  scratch float part;
+  void shade() {
+    print(rt_dPdx, rt_dPdy, rt_dNdx, dFdx(place), dFdy(place), dFdx(flow), dFdx(normalize(side)), dFdx(tangent.xyz));
+    print(rt_dUVdx, rt_dUVdy, dFdx(uv1), dFdy(uv1), rt_dUVWdx.x, dFdx(tangent.w), dFdy(part));
+    rt_SampleColor = color(dFdx(uv1.x), dFdy(side.y), dFdx(tangent).w);
+  }
+};
+class Disc : rt_Primitive {
+  scratch vec2 uv1;
+  void computeBounds() { rt_BoundMin = vec3(-9.0, -9.0, -1.5); rt_BoundMax = vec3(9.0, 9.0, -0.5); }
+  void intersect() {
+    if (hit((-1.0 - rt_RayOrigin.z) / rt_RayDirection.z))
+      uv1 = rt_RayOrigin.xy;
+  }
+  void computeNormal() { rt_GeometricNormal = vec3(0.0, 0.0, 1.0); }
+};
+class Second : rt_Material {
+  public sampler2D image;
+  scratch vec2 uv1;
+  vec2 scaled(vec2 uv) { return 9.0 * uv; }
+  void shade() {
+    vec4 a = image.sample(scaled(uv1));
+    vec4 b = image.sample(scaled(rt_TextureUV));
+    vec4 c = image.sample(scaled(uv1), 0.0);
+    vec2 change = dFdx(uv1);
+    print(a.rgb, b.rgb, c.rgb, change);
+    rt_SampleColor = color(a.r, a.g, a.b);
+  }
+};
+class Plain : Second {
+  void shade() {
+    vec4 a = image.sample(scaled(uv1));
+    rt_SampleColor = color(a.r, a.g, a.b);
+  }
+};
+"""
+
+    def bent_mesh(self, **attributes):
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in self.CORNERS)
+        text += "".join("vn %.9f %.9f %.9f\n" % tuple(unit(n)) for n in self.BENT)
+        text += "".join(f"vt {u} {v}\n" for u, v in self.PLACED)
+        self.write("bent.obj", text + "f 1/1/1 2/2/2 3/3/3\n")
+        return {"mesh": "bent.obj", "attributes": attributes}
+
+    PLACED = ([0.1, 0.2], [0.9, 0.1], [0.4, 0.8])
+
+    def test_changes_of_attributes_of_meshes(self):
+        """Positions, normals and texture coordinates as attributes change as those do."""
+        mesh = self.bent_mesh(
+            place={"values": self.CORNERS, "space": "point"},
+            flow={"values": self.CORNERS, "space": "vector"},
+            side={"values": [unit(n) for n in self.BENT], "space": "normal"},
+            tangent={"values": [[*c, c[0]] for c in self.CORNERS], "space": "tangent"},
+            uv1=self.PLACED,
+            part={"values": [2.5], "per": "face"},
+        )
+        turned = {"rotate": [10, 20, 30]}
+        moving = {"keys": [{"rotate": [0, 0, 0]}, {"rotate": [0, 0, 90]}]}
+        for mirror, transform in (
+            (1, None),
+            (1, [{"scale": [2, 0.5, 0.75]}, turned]),
+            (1, [{"scale": 1.5}, turned, moving]),
+            (-1, [{"scale": [-1, 1, 1.2]}, turned]),
+        ):
+            nodes = {"bent": {**mesh, "material": {"class": "Attributed"}}}
+            root = {"child": "bent", **({"transform": transform} if transform else {})}
+            self.scene(self.ATTRIBUTES, [], (4, 4), nodes=nodes, root=root)
+            lines = self.printed()
+            self.assertGreater(len(lines), 8)
+            for vectors, others in zip(lines[::2], lines[1::2]):
+                px, py, nx, *got = (vectors[i : i + 3] for i in range(0, 24, 3))
+                for change, expected in zip(got, (px, py, px, nx, px), strict=True):
+                    self.assert_close(change, expected, 2e-3, (transform, expected))
+                self.assert_close(others[4:8], others[:4], 2e-3)
+                self.assert_close(others[9], mirror * others[8], 2e-3)
+                self.assertEqual(others[10], 0)
+            self.same_bits()
+
+    def test_images_are_filtered_by_other_coordinates_of_meshes(self):
+        mesh = self.bent_mesh(uv1=self.PLACED)
+        disc = {"primitive": {"class": "Disc"}}
+
+        def show(material, *objects, filter="trilinear"):
+            material = {"class": material, "image": self.checkerboard(64, 3, filter=filter)}
+            self.scene(self.ATTRIBUTES, [{**one, "material": material} for one in objects], (4, 4))
+
+        def needed():
+            text, _ = self.run_rtslc("explain", "scene.json", "--json", "--no-savings")
+            found = dict(self.items(json.loads(text)))
+            return found["footprints of rays"], found.get("change of uv1 along dPdx")
+
+        show("Second", mesh, disc)
+        kinds = {True: 0, False: 0}
+        for line in self.printed():
+            a, b, c, change = line[:3], line[3:6], line[6:9], line[9:]
+            isMesh = change != [0, 0]
+            self.assert_close(a, b if isMesh else c, 1e-3)
+            kinds[isMesh] += max(abs(x - y) for x, y in zip(a, c)) > 0.05
+        self.assertGreater(kinds[True], 2)
+        self.assertEqual(kinds[False], 0)
+        self.same_bits()
+        for objects, filter, expected in (
+            ([mesh], "trilinear", (True, True)),
+            ([mesh], "bilinear", (False, False)),
+            ([disc], "trilinear", (False, False)),
+        ):
+            show("Plain", *objects, filter=filter)
+            self.assertEqual(needed(), expected)
 
     def test_strange_surfaces_have_no_footprint(self):
         self.write(

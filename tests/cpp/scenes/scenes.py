@@ -382,6 +382,14 @@ def footprints():
                 "material": {"class": "Mirror"},
             },
         ],
+        "nodes": {
+            "painted": {
+                "mesh": str(here / "painted.ply"),
+                "attributes": {"flow": {"space": "vector"}},
+                "material": {"class": "Painted", "image": picture},
+            }
+        },
+        "root": {"child": "painted", "transform": [{"scale": [2, 1, 1]}, {"rotate": [5, 20, 0]}]},
         "background": {"class": "Sky", "texture": "picture"},
         "render": {"engine": "classic", "size": [32, 24], "spp": 2, "depth": 3},
     }
