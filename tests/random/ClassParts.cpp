@@ -162,6 +162,13 @@ void Generator::addReferences(ClassPlan &plan, Node &members, const Targets &tar
   }
 }
 
+void Generator::addImage(ClassPlan &plan, Node &members) {
+  if (!hasImages(program.seed) || !plan.image.empty())
+    return;
+  plan.image = fresh("image");
+  members.children.push_back(makeNode(Role::Fixed, "public sampler2D " + plan.image + ";"));
+}
+
 void Generator::addConstructor(ClassPlan &plan, Node &members) {
   Function made;
   made.signature.result = types.voidType;
@@ -289,6 +296,10 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
     context.traces /= 2; // the base's rays are sent too
   }
   plan.methods.insert(method);
+  if (!plan.image.empty() && chance(60)) {
+    NodePtr looked = ofImage(types.vector(types.floatType, 4), 2);
+    add(*body, makeNode(Role::Statement, "h = hash_vec4(h, $);", std::move(looked)));
+  }
   statements(*body, some(statementCount), nesting());
   if (model.abilities.has(Ability::CallSampling))
     for (const char *own : {"sampleBSDF", "BSDF", "evaluatePDF", "emission"})

@@ -147,6 +147,7 @@ const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &ta
   ClassPlan *plan = startClass("Texture", "rt_Texture", base, members);
   addMembers(*plan, *members, some(1 + below(3)));
   addReferences(*plan, *members, targets);
+  addImage(*plan, *members);
   if (!base && chance(50))
     addConstructor(*plan, *members);
   if (!base && chance(30))
@@ -253,6 +254,7 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
   ClassPlan *plan = startClass("Material", "rt_Material", base, members);
   addMembers(*plan, *members, some(below(4)));
   addReferences(*plan, *members, targets);
+  addImage(*plan, *members);
   if (!base) {
     for (const Variable &attribute : attributes)
       if (chance(50)) {

@@ -280,6 +280,22 @@ NodePtr Generator::change(const Type *type, unsigned depth) {
   return make(type, chance(50) ? "dFdx($)" : "dFdy($)", expression(type, std::min(depth, 2u)));
 }
 
+/// A lookup in an image, filtered by the footprint of the ray or not.
+NodePtr Generator::ofImage(const Type *type, unsigned depth) {
+  const std::string image = context.self->image + ".";
+  const Type *vec2 = types.vector(types.floatType, 2);
+  const auto place = [&] { return converted(vec2, depth - 1); };
+  work += 20 * context.weight;
+  if (chance(50))
+    return make(type, image + "sample($)", place());
+  if (chance(30))
+    return make(type, image + "load($)", converted(types.vector(types.intType, 2), depth - 1));
+  if (chance(50))
+    return make(type, image + "sample($, $)", place(), converted(types.floatType, depth - 1));
+  NodePtr at = place(), x = place();
+  return make(type, image + "sampleGrad($, $, $)", std::move(at), std::move(x), place());
+}
+
 /// What the ray or an object has to say.
 NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   if (context.constantOnly)
@@ -287,6 +303,9 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   if ((type->isScalar() || type->isVector()) && chance(20))
     if (NodePtr changed = change(type, depth))
       return changed;
+  const bool hasImage = context.self && !context.self->image.empty();
+  if (hasImage && type == types.vector(types.floatType, 4) && depth > 0 && chance(70))
+    return ofImage(type, depth);
   if (type == types.floatType && context.rand && chance(30))
     return make(type, chance(70) ? "rand()" : "randOpen()");
   if (type == types.color && context.traces >= context.weight && chance(60)) {

@@ -1,6 +1,8 @@
 //===- Generator.cpp - makes one random program ---------------------------===//
 #include "Generator.h"
 
+#include <fstream>
+
 namespace rtsl::random {
 
 Generator::Generator(std::uint32_t seed)
@@ -38,6 +40,9 @@ bool hasTraces(std::uint32_t seed) {
 }
 bool generates(std::uint32_t seed) {
   return raises(seed) && seed % 4 > 1;
+}
+bool hasImages(std::uint32_t seed) {
+  return seed % 3 == 1;
 }
 unsigned colorComponents(std::uint32_t seed) {
   static const unsigned counts[] = {3, 1, 4, 16};
@@ -99,6 +104,16 @@ static std::vector<Shared> sharedFunctions() {
   return all;
 }
 
+/// A file of the library, without what it imports.
+static std::string imageClass(const char *name) {
+  std::ifstream file(std::string(RTSL_SOURCE_FOLDER "/library/std/images/") + name + ".rtsl");
+  std::string text, line;
+  while (std::getline(file, line))
+    if (line.rfind("import ", 0) != 0)
+      text += line + "\n";
+  return text;
+}
+
 std::string prelude(const std::string &text) {
   static const std::vector<Shared> all = sharedFunctions();
   std::string chosen;
@@ -106,6 +121,8 @@ std::string prelude(const std::string &text) {
     if (text.find(shared.name + "(") != std::string::npos ||
         chosen.find(shared.name + "(") != std::string::npos)
       chosen += shared.text + "\n";
+  if (text.find("sampler2D ") != std::string::npos)
+    chosen += imageClass("ImageTexels") + imageClass("sampler2D");
   return chosen;
 }
 

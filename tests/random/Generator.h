@@ -58,6 +58,7 @@ struct ClassPlan {
   std::vector<Variable> scratch;
   std::vector<Variable> outputs; // output buffers
   std::vector<Reference> references;
+  std::string image;               // a member of the type sampler2D; empty: none
   std::vector<Function> functions; // that methods of it may call
   // that it has, inherited ones too: the name, and the payload's type after it
   std::set<std::string> methods;
@@ -137,6 +138,7 @@ private:
   NodePtr effect(const Type *type, unsigned depth);
   NodePtr change(const Type *type, unsigned depth);
   NodePtr ofObject(const Type *type, unsigned depth);
+  NodePtr ofImage(const Type *type, unsigned depth);
   NodePtr condition(unsigned depth) { return expression(types.boolType, depth); }
 
   // Operators (Operators.cpp)
@@ -197,6 +199,7 @@ private:
                         Node *&members);
   void addMembers(ClassPlan &plan, Node &members, unsigned count);
   void addReferences(ClassPlan &plan, Node &members, const Targets &targets);
+  void addImage(ClassPlan &plan, Node &members);
   void addConstructor(ClassPlan &plan, Node &members);
   void addFunction(ClassPlan &plan, Node &members, bool remote, unsigned traces,
                    bool answers = false);

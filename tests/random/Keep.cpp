@@ -54,6 +54,8 @@ public:
     for (const auto *names : {&program.helpers, &program.textures, &program.lights,
                               &program.primitives, &program.materials, &program.meshMaterials})
       request.classes.insert(request.classes.end(), names->begin(), names->end());
+    if (module->findClass("sampler2D"))
+      request.classes.push_back("sampler2D");
     request.surfaces = World::surfaces(program);
     request.features = RTSL_FEATURE_PRINT;
   }

@@ -42,11 +42,13 @@ bool isInRange(std::uint32_t seed);
 bool hasTraces(std::uint32_t seed);
 /// It has a ray generation.
 bool generates(std::uint32_t seed);
+/// Its materials and textures have images.
+bool hasImages(std::uint32_t seed);
 /// 3, 1, 4 or 16: the same for fifty seeds, so that they fit into one compilation.
 unsigned colorComponents(std::uint32_t seed);
 
 /// The functions that programs share, as far as `text` uses them: they fold values into a hash and
-/// make numbers of it.
+/// make numbers of it. With images, also the classes of the library for them.
 std::string prelude(const std::string &text);
 
 } // namespace rtsl::random

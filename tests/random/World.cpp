@@ -235,6 +235,63 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
   }
 }
 
+static constexpr std::uint32_t imageCount = 3;
+
+void World::addImages() {
+  if (const ClassInfo *info = code.find("sampler2D"))
+    for (std::uint32_t i = 0; i != imageCount; ++i)
+      addImage(*info, i);
+}
+
+/// The members that a scene gives an image, as bytes of a record.
+void World::addImage(const ClassInfo &info, std::uint32_t number) {
+  const std::uint32_t key = mix(program.seed, number);
+  runtime::Texels texels;
+  texels.format = number == 0 ? runtime::TexelFormat::Float32 : runtime::TexelFormat::Srgb8;
+  texels.width = 1 + key % 9;
+  texels.height = number == 2 ? 1 : 1 + key / 9 % 7;
+  std::vector<std::uint32_t> bytes(std::size_t(4) * texels.width * texels.height);
+  for (std::uint32_t i = 0; i != bytes.size(); ++i)
+    bytes[i] = number == 0 ? bitsOf(static_cast<float>(mix(key, i) % 512) / 256) : mix(key, i);
+  texels = runtime::texelsOfBytes(bytes.data(), std::move(texels));
+  runtime::addLevels(texels);
+  runtime::Sampling sampling;
+  sampling.filter = static_cast<runtime::Filter>(3 - number);
+  sampling.wrap[0] = static_cast<runtime::Wrap>(key / 64 % 4);
+  sampling.wrap[1] = static_cast<runtime::Wrap>(key / 256 % 4);
+  sampling.anisotropy = 1 + key / 1024 % 5;
+
+  const auto reference = static_cast<RtslRef>(4 * used);
+  used += (info.recordSize + 15) / 16 * 4;
+  auto *record = reinterpret_cast<std::uint8_t *>(records.data()) + reference;
+  std::memcpy(record, &info.id, 4);
+  RtslState state{};
+  state.launch = &launch;
+  if (info.initialize)
+    info.initialize(&state, reference);
+  for (const auto &[name, value, place] :
+       runtime::samplerValues(std::move(texels), sampling, false, false).members)
+    for (const MemberInfo &member : info.members)
+      if (member.name == name && value.words)
+        putBuffer(record + member.offset, *value.words);
+      else if (member.name == name) {
+        const auto whole = static_cast<std::int32_t>(value.number);
+        std::memcpy(record + member.offset, &whole, 4);
+      }
+  objects.push_back({reference, &info});
+}
+
+/// A buffer of one dimension with these elements.
+void World::putBuffer(std::uint8_t *to, const runtime::Words &words) {
+  buffers.emplace_back(words.data(), words.data() + words.size());
+  RtslBuffer buffer{};
+  buffer.size[0] = static_cast<std::uint32_t>(words.size());
+  const auto address = reinterpret_cast<std::uint64_t>(buffers.back().data());
+  buffer.addressLow = static_cast<std::uint32_t>(address);
+  buffer.addressHigh = static_cast<std::uint32_t>(address >> 32);
+  std::memcpy(to, &buffer, sizeof buffer);
+}
+
 /// What of a hit the methods of a class read, and those of objects that it may refer to.
 std::uint32_t World::needsOf(const ClassInfo &info, std::set<const ClassInfo *> &seen) const {
   if (!seen.insert(&info).second)
@@ -266,10 +323,13 @@ World::World(const runtime::Program &code, const Program &program)
   for (const std::string &name : all)
     if (const ClassInfo *info = code.find(name))
       words += (info->recordSize + 15) / 16 * 4;
+  if (const ClassInfo *info = code.find("sampler2D"))
+    words += imageCount * ((info->recordSize + 15) / 16 * 4);
   records.resize(words);
   launch.records = reinterpret_cast<std::uint8_t *>(records.data());
 
   std::vector<RtslRef> cameras, misses, selectors, exceptions, rayGenerations;
+  addImages();
   addObjects(program.helpers, &others);
   addObjects(program.textures, &others);
   addObjects(program.lights, &lights);
@@ -334,6 +394,12 @@ World::World(const runtime::Program &code, const Program &program)
   listAttributes();
 }
 
+void World::listAttributes() {
+  attributes = runtime::attributesOf(code);
+  launch.meshAttributes = attributes.data();
+  launch.meshAttributeCount = static_cast<std::uint32_t>(attributes.size());
+}
+
 World::World(const runtime::Program &bound, const World &made)
     : code(bound), program(made.program), host{bound.slots}, instances(made.instances),
       mesh(made.mesh), launch(made.launch) {
@@ -346,12 +412,6 @@ World::World(const runtime::Program &bound, const World &made)
   launch.needs = bound.needs | RTSL_HAS_ALL;
   launch.host = &host;
   listAttributes();
-}
-
-void World::listAttributes() {
-  attributes = runtime::attributesOf(code);
-  launch.meshAttributes = attributes.data();
-  launch.meshAttributeCount = static_cast<std::uint32_t>(attributes.size());
 }
 
 runtime::SceneFacts World::facts() const {

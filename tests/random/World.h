@@ -5,6 +5,7 @@
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/program/ProgramHost.h"
+#include "runtime/scene/Words.h"
 
 #include <cstdint>
 #include <deque>
@@ -52,8 +53,12 @@ public:
 private:
   void makeTree();
   void addObjects(const std::vector<std::string> &classes, std::vector<RtslRef> *references);
+  /// Objects of sampler2D with small images.
+  void addImages();
+  void addImage(const runtime::ClassInfo &info, std::uint32_t number);
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
+  void putBuffer(std::uint8_t *to, const runtime::Words &words);
   void addInstance(RtslInstance instance, std::uint32_t primitives);
   static std::vector<RtslTransform> someTransforms();
   static RtslMesh someMesh();
