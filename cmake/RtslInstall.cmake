@@ -3,7 +3,7 @@
 # include/rtsl, which is an include path of rtsl::runtime.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS rtsl rtsl-images LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+install(TARGETS rtsl rtsl-images rtsl-meshes LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(DIRECTORY include/rtsl DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 foreach(part support language runtime)
   install(DIRECTORY ${part}/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/rtsl/${part}"

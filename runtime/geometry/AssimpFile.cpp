@@ -1,16 +1,16 @@
 #include "runtime/geometry/AssimpFile.h"
-#include "support/ErrorMessages.h"
 
-#include <assimp/Importer.hpp>
-#include <assimp/config.h>
+#include "runtime/geometry/assimp/Importer.h"
+#include "support/ErrorMessages.h"
+#include "support/OwnLibrary.h"
+
 #include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -140,11 +140,24 @@ Transform transformOf(const aiMatrix4x4 &m) {
   return transform;
 }
 
-const aiScene &readFile(Assimp::Importer &importer, const std::string &path) {
-  const aiScene *scene = importer.ReadFile(path, aiProcess_Triangulate | aiProcess_SortByPType);
+const ImporterLibrary &openLibrary() {
+  std::string why;
+  const void *const found = findInOwnLibrary("rtsl-meshes.so", importerLibrarySymbol, why);
+  if (!found)
+    throw Error(message::noMeshLibrary(why));
+  return *static_cast<const ImporterLibrary *>(found);
+}
+
+const ImporterLibrary &library() {
+  static const ImporterLibrary &opened = openLibrary();
+  return opened;
+}
+
+const aiScene &readFile(Importer &importer, const std::string &path) {
+  const aiScene *scene = importer.read(path.c_str());
   if (scene && scene->mRootNode)
     return *scene;
-  std::string reason = importer.GetErrorString();
+  std::string reason = importer.error();
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == ' '))
     reason.pop_back();
   if (reason.find("bad_alloc") != std::string::npos) // assimp catches the reader's exceptions
@@ -179,12 +192,12 @@ void appendAll(const aiScene &scene, const std::vector<Source> &sources, const s
 } // namespace
 
 bool isReadByAssimp(const std::string &extension) {
-  return Assimp::Importer().IsExtensionSupported(extension);
+  return library().reads(extension.c_str());
 }
 
 Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
-  Assimp::Importer importer;
-  const aiScene &scene = readFile(importer, path);
+  const std::unique_ptr<Importer> importer = library().open();
+  const aiScene &scene = readFile(*importer, path);
   Mesh whole;
   const std::vector<Source> sources = sourcesOf(scene, request, whole.otherAttributes);
   appendAll(scene, sources, path, [&](const aiMesh &) -> Mesh & { return whole; });
@@ -193,15 +206,15 @@ Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
 }
 
 std::vector<MeshGroup> readGroupsByAssimp(const std::string &path) {
-  Assimp::Importer importer;
-  const aiScene &scene = readFile(importer, path);
+  const std::unique_ptr<Importer> importer = library().open();
+  const aiScene &scene = readFile(*importer, path);
   std::map<std::string, Mesh> byName;
   appendAll(scene, {}, path, [&](const aiMesh &part) -> Mesh & {
-    aiString name;
+    std::string name;
     if (part.mMaterialIndex < scene.mNumMaterials)
-      scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
+      name = importer->materialName(part.mMaterialIndex);
     // What assimp calls the material of triangles without one.
-    return byName[name == aiString(AI_DEFAULT_MATERIAL_NAME) ? "" : name.C_Str()];
+    return byName[name == AI_DEFAULT_MATERIAL_NAME ? "" : name];
   });
   std::vector<MeshGroup> groups;
   for (auto &[name, mesh] : byName)

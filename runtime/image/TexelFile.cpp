@@ -5,9 +5,8 @@
 #include "runtime/image/openimageio/ImageReader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
-#include "support/ProgramFolder.h"
+#include "support/OwnLibrary.h"
 
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstring>
@@ -34,19 +33,11 @@ void requireReadable(const std::string &path) {
 }
 
 ReadImageFile openReader() {
-  // Beside the library that this function is in, or where the programs have theirs.
-  Dl_info own{};
-  dladdr(reinterpret_cast<void *>(&openReader), &own);
-  const auto name = "rtsl-images.so";
-  const fs::path beside = fs::path(own.dli_fname ? own.dli_fname : "").parent_path() / name;
-  std::error_code error;
-  const fs::path file =
-      fs::exists(beside, error) ? beside : programFolder() / RTSL_LIBRARIES_FROM_PROGRAMS / name;
-  // Never closed: its libraries start threads of their own.
-  void *library = dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  if (!library)
-    throw Error(message::noImageLibrary(dlerror()));
-  return reinterpret_cast<ReadImageFile>(dlsym(library, readImageFileSymbol));
+  std::string why;
+  void *const function = findInOwnLibrary("rtsl-images.so", readImageFileSymbol, why);
+  if (!function)
+    throw Error(message::noImageLibrary(why));
+  return reinterpret_cast<ReadImageFile>(function);
 }
 
 void *allocateBytes(void *context, std::uint64_t bytes) {

@@ -112,6 +112,13 @@ class Case(unittest.TestCase):
             path.write_text(content)
         return path
 
+    def with_level(self, arguments):
+        """The arguments of rtslc, with the level of optimisation."""
+        optimises = arguments[:1] and arguments[0] in self.OPTIMISING
+        if not self.level or not optimises or any(str(a).startswith("-O") for a in arguments):
+            return arguments
+        return (*arguments, self.level)
+
     def run_rtslc(
         self,
         *arguments,
@@ -123,13 +130,7 @@ class Case(unittest.TestCase):
     ):
         """Gives (standard output, standard error); fails unless the exit status is the expected one
         (None: any)."""
-        if (
-            self.level
-            and arguments[:1]
-            and arguments[0] in self.OPTIMISING
-            and not any(str(argument).startswith("-O") for argument in arguments)
-        ):
-            arguments += (self.level,)
+        arguments = self.with_level(arguments)
         done = subprocess.run(
             [RTSLC, *map(str, arguments)],
             cwd=self.folder,

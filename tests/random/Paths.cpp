@@ -70,7 +70,7 @@ Compile megakernel(unsigned optimization) {
   return compileWith(options);
 }
 
-Compile printed(bool checked, TraceMode trace) {
+Compile printedCpp(bool checked, TraceMode trace) {
   return [=](const typed::Module &module, const LinkRequest &request, unsigned colorComponents,
              const PathOptions &options, Diagnostics &diagnostics) {
     return compilePrinted(module, trace, checked, request.features, colorComponents, options.cpp,
@@ -93,11 +93,11 @@ const std::vector<Path> &allPaths() {
       {"jit-O2-split-unchecked", false, true, jit(2, false, split)},
       {"megakernel-O0", true, false, megakernel(0), /*isAsked=*/true, /*renders=*/true},
       {"megakernel-O2", true, false, megakernel(2), /*isAsked=*/true, /*renders=*/true},
-      {"cpp-recurse", true, false, printed(true, recurse), /*isAsked=*/true, /*renders=*/false,
+      {"cpp-recurse", true, false, printedCpp(true, recurse), /*isAsked=*/true, /*renders=*/false,
        /*isPrinted=*/true},
-      {"cpp-recurse-unchecked", false, false, printed(false, recurse), /*isAsked=*/true,
+      {"cpp-recurse-unchecked", false, false, printedCpp(false, recurse), /*isAsked=*/true,
        /*renders=*/false, /*isPrinted=*/true},
-      {"cpp-split", true, true, printed(true, split), /*isAsked=*/true, /*renders=*/false,
+      {"cpp-split", true, true, printedCpp(true, split), /*isAsked=*/true, /*renders=*/false,
        /*isPrinted=*/true},
   };
   return paths;

@@ -1,9 +1,9 @@
 //===- HandOver.h - commands that rtslc-render runs -----------------------===//
 //
-// Scenes need Embree, assimp, the image libraries and LLVM's code generators. Loading these takes
-// longer than `rtslc check` may take as a whole, so the commands that use them, what `check`,
-// `compile` and `explain` do with a scene, and the stages `llvm` and `ptx` are in `rtslc-render`,
-// beside `rtslc`, which becomes that program for them.
+// Scenes need Embree, the image libraries and LLVM's code generators. Loading these takes longer
+// than `rtslc check` may take as a whole, so the commands that use them, what `check`, `compile`
+// and `explain` do with a scene, and the stages `llvm` and `ptx` are in `rtslc-render`, beside
+// `rtslc`, which becomes that program for them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

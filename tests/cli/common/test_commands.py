@@ -24,14 +24,22 @@ class Commands(Case):
         out, _ = self.run_rtslc("--version")
         self.assertRegex(out, r"^rtslc \d+\.\d+\.\d+\n$")
 
-    def test_checking_sources_loads_no_library_of_scenes(self):
+    def assert_starts_without(self, program, *unwanted):
         done = subprocess.run(
-            [os.environ["READELF"], "-d", RTSLC], stdout=subprocess.PIPE, text=True, check=True
+            [os.environ["READELF"], "-d", program], stdout=subprocess.PIPE, text=True, check=True
         )
         libraries = [line for line in done.stdout.splitlines() if "NEEDED" in line]
         self.assertTrue(libraries)
-        for unwanted in ("embree", "assimp", "tbb", "OpenEXR", "png", "OpenImageIO", "z3"):
-            self.assertFalse([line for line in libraries if unwanted in line], libraries)
+        for name in unwanted:
+            self.assertFalse([line for line in libraries if name in line], libraries)
+
+    def test_checking_sources_loads_no_library_of_scenes(self):
+        scenes = ("embree", "assimp", "tbb", "OpenEXR", "png", "OpenImageIO", "z3")
+        self.assert_starts_without(RTSLC, *scenes)
+
+    def test_rendering_loads_readers_of_files_when_it_needs_them(self):
+        program = Path(RTSLC).with_name("rtslc-render")
+        self.assert_starts_without(program, "assimp", "OpenImageIO")
 
     def test_checking_sources_loads_no_code_generator(self):
         pass_of_llvm = b"NVPTX Assembly Printer"

@@ -38,7 +38,10 @@ class Gpu(Case):
         program=(RTSLC, "render", "scene.json"),
         devices=1,
     ):
-        command = [*program, "-o", "a.exr", "--target=gpu", *arguments]
+        arguments = (*program[1:], "-o", "a.exr", "--target=gpu", *arguments)
+        if program[0] == RTSLC:
+            arguments = self.with_level(arguments)
+        command = [program[0], *arguments]
         return self.run_with_fake_driver(command, status, fake, folder, devices)
 
     def test_the_gpu_gets_what_a_package_gives_it(self):
@@ -104,7 +107,7 @@ class Gpu(Case):
 
     def test_several_gpus_render_the_picture_of_one(self):
         """The second one is slower than the others, and gets less of it."""
-        arguments = ("--size=64x200", "--spp=2", "-O0", "-Wno-depth-limit")
+        arguments = ("--size=64x200", "--spp=2", "-Wno-depth-limit")
         self.render(*arguments)
         (self.folder / "a.exr").rename(self.folder / "one.exr")
         out, _ = self.render(*arguments, "--gpus=all", "--json", devices=3, fake="uneven")
@@ -115,14 +118,14 @@ class Gpu(Case):
         _, error = self.render(*arguments, "--gpus=2", devices=3)
         self.assert_same_bits("a.exr", "one.exr")
         self.assertEqual(len(re.findall(r"^Fake 1000: \d+ samples; 40 reg", error, re.M)), 2)
-        passes = ("--size=64x200", "-O0", "-Wno-depth-limit", "-q")
+        passes = ("--size=64x200", "-Wno-depth-limit", "-q")
         self.render(*passes, "--spp=9")
         (self.folder / "a.exr").rename(self.folder / "one.exr")
         for spp in (4, 9):
             self.render(*passes, f"--spp={spp}", "--checkpoint=c", "--gpus=2", devices=2)
         self.assert_same_bits("a.exr", "one.exr")
 
-        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q", "-O0")
+        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
         out, _ = self.render(
             *arguments[:2],
             *("--gpus=3", "--json"),
@@ -135,7 +138,7 @@ class Gpu(Case):
     def test_steps_are_counted(self):
         """Each ray is traversed once, and then one first state runs: that of the method of glass,
         that of other materials, or that of what misses."""
-        options = (*SMALL, "-O0", "--target=host-megakernel")
+        options = (*SMALL, "--target=host-megakernel")
         self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *options)
         out, _ = self.run_rtslc(
             "render", "scene.json", "-o", "b.exr", "--json", "--lane-use", *options
@@ -157,7 +160,7 @@ class Gpu(Case):
         self.assertIn("--lane-use: there are no lanes", error)
 
     def test_gpus_that_are_not_there(self):
-        _, error = self.render(*SMALL, "-O0", "--gpus=3", devices=2, status=DIAGNOSED)
+        _, error = self.render(*SMALL, "--gpus=3", devices=2, status=DIAGNOSED)
         self.assertIn(
             "error[E1002]: `--gpus 3` is more than the 2 that the CUDA driver finds", error
         )
@@ -183,15 +186,15 @@ class Gpu(Case):
         host = "`--target=host-megakernel` renders the same picture on the CPU"
         for fake, text in UNUSABLE_DEVICES.items():
             with self.subTest(fake=fake):
-                _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
+                _, error = self.render(*SMALL, fake=fake, status=DIAGNOSED)
                 self.assertIn("error[E1002]: " + text, error)
                 self.assertIn(host, error)
         fake, text = LITTLE_MEMORY
-        _, error = self.render(*SMALL, "-O0", fake=fake, status=DIAGNOSED)
+        _, error = self.render(*SMALL, fake=fake, status=DIAGNOSED)
         self.assertIn("error[E1001]: " + text, error)
         for fake, text in FAULTS_OF_DEVICES.items():
             with self.subTest(fake=fake):
-                _, error = self.render(*SMALL, "-O0", fake=fake, status=INTERNAL)
+                _, error = self.render(*SMALL, fake=fake, status=INTERNAL)
                 self.assertIn(text, error)
         self.assertNotIn("a.exr", self.files())
 

@@ -73,7 +73,7 @@ class Organisations(Case):
 
     def test_a_kernel_for_each_state(self):
         ptx, _ = self.run_rtslc(
-            "compile", EXAMPLES / "glass" / "scene.json", "--emit=ptx", WAVE, "-o", "-"
+            "compile", EXAMPLES / "glass" / "scene.json", "--emit=ptx", WAVE, "-O0", "-o", "-"
         )
         kernels = re.findall(r"\.entry (\w+)\(", ptx)
         states = [name for name in kernels if name.startswith("rtsl_wave_state_")]

@@ -9,7 +9,7 @@ using rtsl::scene::test::errorOf;
 
 namespace {
 
-std::string parseError(const std::string &text) {
+std::string errorOfText(const std::string &text) {
   return errorOf([&] { parseJson(text, "s.json"); });
 }
 
@@ -50,36 +50,36 @@ TEST(JsonValue, AByteOrderMarkIsNoColumn) {
 }
 
 TEST(JsonValue, SyntaxErrorsPointAtTheToken) {
-  EXPECT_EQ(parseError("{\n  \"a\": 1,\n}"),
+  EXPECT_EQ(errorOfText("{\n  \"a\": 1,\n}"),
             "s.json:3:1+1: jsonSyntax: this is not JSON: unexpected '}'; expected string literal "
             "(note JSON allows no comma after the last element)");
-  EXPECT_EQ(parseError("{\"a\" 1}"),
+  EXPECT_EQ(errorOfText("{\"a\" 1}"),
             "s.json:1:6+1: jsonSyntax: this is not JSON: unexpected number literal; expected ':'");
-  EXPECT_EQ(parseError("[1, 2"),
+  EXPECT_EQ(errorOfText("[1, 2"),
             "s.json:1:6+1: jsonSyntax: this is not JSON: unexpected end of input; expected ']'");
-  EXPECT_EQ(parseError("[1 \"two\"]"),
+  EXPECT_EQ(errorOfText("[1 \"two\"]"),
             "s.json:1:4+5: jsonSyntax: this is not JSON: unexpected string literal; expected ']'");
-  EXPECT_EQ(parseError(""), "s.json:1:1+1: jsonSyntax: this is not JSON: unexpected end of input; "
-                            "expected '[', '{', or a literal");
-  EXPECT_EQ(parseError("{} x"),
+  EXPECT_EQ(errorOfText(""), "s.json:1:1+1: jsonSyntax: this is not JSON: unexpected end of input; "
+                             "expected '[', '{', or a literal");
+  EXPECT_EQ(errorOfText("{} x"),
             "s.json:1:4+1: jsonSyntax: this is not JSON: invalid literal; expected end of input");
-  EXPECT_EQ(parseError("{ // hm\n}"),
+  EXPECT_EQ(errorOfText("{ // hm\n}"),
             "s.json:1:3+1: jsonSyntax: this is not JSON: invalid literal; expected string literal "
             "(note JSON has no comments)");
-  EXPECT_EQ(parseError("{\"a\": 1e999}"),
+  EXPECT_EQ(errorOfText("{\"a\": 1e999}"),
             "s.json:1:7+5: outOfRange: `1e999` is too large: numbers reach to 1.8e+308");
-  EXPECT_NE(parseError("[\"\xff\"]").find("jsonSyntax"), std::string::npos);
+  EXPECT_NE(errorOfText("[\"\xff\"]").find("jsonSyntax"), std::string::npos);
 }
 
 TEST(JsonValue, AKeyGivenTwiceIsAnErrorWithBothPlaces) {
-  EXPECT_EQ(parseError("{\"a\": 1,\n \"b\": {\"c\": 1,\n \"c\": 2}}"),
+  EXPECT_EQ(errorOfText("{\"a\": 1,\n \"b\": {\"c\": 1,\n \"c\": 2}}"),
             "s.json:3:3+1: duplicateKey: key `c` is given twice (2:9 it is given here first)");
 }
 
 TEST(JsonValue, DeepNestingIsRefusedWithoutRecursion) {
-  EXPECT_EQ(parseError(std::string(100000, '[')),
+  EXPECT_EQ(errorOfText(std::string(100000, '[')),
             "s.json:1:257+1: jsonSyntax: nested deeper than 256 levels");
-  EXPECT_EQ(parseError(std::string(256, '[') + std::string(256, ']')), "no error");
+  EXPECT_EQ(errorOfText(std::string(256, '[') + std::string(256, ']')), "no error");
 }
 
 TEST(Override, ReplacesAddsAndAppends) {

@@ -45,10 +45,10 @@ private:
   std::unique_ptr<Jit> jit;
 };
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float infinite = std::numeric_limits<float>::infinity();
 const float numbers[] = {0.0f,      -0.0f,    1.0f,      -1.0f,         3.0f,           0.1f,
                          -7.5e-3f,  1e38f,    -3e38f,    1e-38f,        -1e-40f,        1.4e-45f,
-                         -1.4e-45f, infinity, -infinity, std::nanf(""), 1.17549435e-38f};
+                         -1.4e-45f, infinite, -infinite, std::nanf(""), 1.17549435e-38f};
 
 bool isSame(float a, float b) {
   return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0;

@@ -50,7 +50,7 @@ Scene room() {
   return scene;
 }
 
-RenderOptions small() {
+RenderOptions smallPicture() {
   RenderOptions options;
   options.width = 96;
   options.height = 64;
@@ -88,7 +88,7 @@ TEST(Scene, AnInstanceNeedsWhatTheObjectsBehindItsMaterialNeed) {
 
 TEST(Renderer, EmbreeAndDeviceTraversalSeeTheSame) {
   Scene scene = room();
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   RenderStatistics statistics;
   Image embree = render(scene, options, &statistics);
   EXPECT_EQ(statistics.samples, 96u * 64 * 4);
@@ -106,7 +106,7 @@ TEST(Renderer, EmbreeAndDeviceTraversalSeeTheSame) {
 TEST(Renderer, PictureDoesNotDependOnThreads) {
   Scene scene = room();
   for (Traversal traversal : {Traversal::Embree, Traversal::Device}) {
-    RenderOptions options = small();
+    RenderOptions options = smallPicture();
     options.traversal = traversal;
     options.threads = 1;
     Image one = render(scene, options);
@@ -118,7 +118,7 @@ TEST(Renderer, PictureDoesNotDependOnThreads) {
 
 TEST(Renderer, SeedChangesTheNoiseAndNothingElse) {
   Scene scene = room();
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   Image a = render(scene, options), b = render(scene, options);
   EXPECT_EQ(report::measureError(a, b).pixelsThatDiffer, 0u);
   options.seed = 2;
@@ -132,7 +132,7 @@ TEST(Renderer, RowZeroIsTheTop) {
   scene.setCamera(addCamera(scene));
   scene.setBackground(
       scene.addObject("Sky", members({{"low", Value{0, 0, 0}}, {"high", Value{1, 1, 1}}})));
-  Image image = render(scene, small());
+  Image image = render(scene, smallPicture());
   EXPECT_GT(image.at(48, 0)[0], image.at(48, 63)[0] + 0.2f);
 }
 
@@ -141,7 +141,7 @@ TEST(Renderer, ANoiseMaterialAveragesToOneHalf) {
   scene.setCamera(addCamera(scene, 0));
   scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 0), 100.0}),
                      scene.addObject("Noise", members({})));
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   options.samplesPerPixel = 16;
   Image image = render(scene, options);
   double sum = 0;
@@ -158,7 +158,7 @@ TEST(Renderer, DepthZeroSeesCameraRaysOnly) {
   scene.addPrimitive(scene.addObject("Sphere", {vector(0, 1, 0), 2.0}),
                      scene.addObject("Mirror", members({})));
   scene.setBackgroundColor({0.25f});
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   options.maxDepth = 0;
   Image none = render(scene, options);
   EXPECT_EQ(none.at(48, 32)[0], 0.0f); // no background after the last bounce
@@ -170,7 +170,7 @@ TEST(Renderer, DepthZeroSeesCameraRaysOnly) {
 
 TEST(Renderer, ProgressReachesOneAndCancellingStops) {
   Scene scene = room();
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   double last = 0;
   bool ascending = true;
   options.progress = [&](double share) {
@@ -194,7 +194,7 @@ TEST(Renderer, ProgressReachesOneAndCancellingStops) {
 
 TEST(Renderer, WhatIsCancelledCanBeKept) {
   Scene scene = room();
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   const Image whole = render(scene, options);
   std::atomic<bool> cancel{false};
   options.cancel = &cancel;
@@ -226,7 +226,7 @@ TEST(Renderer, SamplesThatAreNotFiniteAreLeftOut) {
   program->sample = spoilt;
   Scene scene(program);
   scene.setCamera(addCamera(scene));
-  RenderOptions options = small();
+  RenderOptions options = smallPicture();
   options.samplesPerPixel = 8;
   options.withoutSample = 7;
   for (unsigned threads : {1u, 5u}) {
@@ -274,7 +274,7 @@ TEST(Renderer, LanesKeepTheFirstSamplesThatAreNotFinite) {
 TEST(Renderer, RefusesOptionsOutOfRange) {
   Scene scene = room();
   auto codeOf = [&](auto change) {
-    RenderOptions options = small();
+    RenderOptions options = smallPicture();
     change(options);
     try {
       render(scene, options);
@@ -302,7 +302,7 @@ TEST(Renderer, BadRaysAreCountedAndBlack) {
       members({{"eye", vector(NAN, 0, 0)}, {"gaze", vector(0, 0, -1)}, {"up", vector(0, 1, 0)}})));
   scene.setBackgroundColor({1, 1, 1});
   for (Traversal traversal : {Traversal::Embree, Traversal::Device}) {
-    RenderOptions options = small();
+    RenderOptions options = smallPicture();
     options.traversal = traversal;
     RenderStatistics statistics;
     Image image = render(scene, options, &statistics);
@@ -314,7 +314,7 @@ TEST(Renderer, BadRaysAreCountedAndBlack) {
 TEST(Renderer, ASceneWithoutACameraIsRefused) {
   Scene scene(fakeProgram());
   try {
-    render(scene, small());
+    render(scene, smallPicture());
     FAIL();
   } catch (const Error &error) {
     EXPECT_EQ(error.code, ErrorCode::IncompleteScene);

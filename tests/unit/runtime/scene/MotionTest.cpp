@@ -20,7 +20,7 @@ struct Point {
   Real x, y, z;
 };
 
-Scene emptyScene() {
+Scene unlitScene() {
   Scene scene(fakeProgram());
   scene.setCamera(scene.addObject(
       "Camera",
@@ -44,7 +44,7 @@ Transform randomAffine(std::mt19937 &random) {
 }
 
 /// Several factors of all kinds.
-MovingTransform randomMotion(std::mt19937 &random) {
+MovingTransform randomFactors(std::mt19937 &random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   MovingTransform result;
   const int count = 1 + int(random() % 4);
@@ -108,10 +108,10 @@ TEST(Motion, ConstantsAreMergedIntoNeighbours) {
 TEST(Motion, IsTheSameOnDevicesButForRounding) {
   std::mt19937 random(1);
   for (int i = 0; i < 300; ++i) {
-    Scene scene = emptyScene();
+    Scene scene = unlitScene();
     const RtslRef material = scene.addObject("Normal", members({}));
     Placement placement;
-    placement.transform = randomMotion(random);
+    placement.transform = randomFactors(random);
     try {
       scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 0), 1.0}), material, placement);
     } catch (const Error &) {
@@ -161,7 +161,7 @@ TEST(Motion, UniformScalesAreInvertedByTheirTransposes) {
     const double square = squaredScale(transform);
     ASSERT_GT(square, 0);
     EXPECT_EQ(square == 1, i % 4 == 0);
-    Scene scene = emptyScene();
+    Scene scene = unlitScene();
     Placement placement;
     placement.transform = transform;
     scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 0), 1.0}),
@@ -195,7 +195,7 @@ TEST(Motion, StaysInItsBounds) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 300; ++i) {
-    const MovingTransform motion = randomMotion(random);
+    const MovingTransform motion = randomFactors(random);
     const float lower[3] = {-1, float(unit(random)) - 1, 0.25f},
                 upper[3] = {1, 1, 1 + float(std::exp(3 * unit(random)))};
     const SweptBox box = sweptBox(motion, lower, upper);
@@ -254,7 +254,7 @@ ExactHit exactHit(const Vec3 vertices[3], Real angle, Vec3 o, Vec3 d) {
 TEST(Motion, OfATriangleAgreesWithExactArithmetic) {
   const Vec3 vertices[3] = {{1.5f, -0.5f, -0.3f}, {1.5f, 0.75f, 0.1f}, {2.5f, 0.25f, 0.6f}};
   constexpr double degrees = 170;
-  Scene scene = emptyScene();
+  Scene scene = unlitScene();
   Mesh mesh;
   for (const Vec3 &p : vertices)
     mesh.positions.insert(mesh.positions.end(), {p.x, p.y, p.z});
