@@ -35,7 +35,9 @@ class Ptx(Case):
                     self.assemble(arch, *shaders, relocatable=True)
 
     def assemble(self, arch, *inputs, relocatable=False):
-        self.run_rtslc("compile", *inputs, "--emit=ptx", f"--gpu-arch={arch}", "-o", "out.ptx")
+        self.run_rtslc(
+            *("compile", *inputs, "--emit=ptx", "-O1", f"--gpu-arch={arch}", "-o", "out.ptx")
+        )
         done = subprocess.run(
             [
                 PTXAS,

@@ -61,6 +61,7 @@ class LightTreeCase(PathCase):
 
 
 class Light(LightTreeCase):
+    @deep
     def test_lamps_on_a_ceiling(self):
         """Far from most lamps a tree finds the near ones."""
         self.scene([(FLOOR, CLAY), *lamps(300)], camera="Under", depth=1, spp=64)
@@ -213,6 +214,7 @@ class Many : rt_Primitive {
                 if name != "moves":
                     self.assertLess(by_tree, by_power)
 
+    @deep
     def test_far_from_the_origin(self):
         """At 1e7, where a step of a float is 1."""
         far = 1e7

@@ -55,7 +55,7 @@ class Objects(Case):
 
     def test_recursion_is_copied_for_each_level(self):
         self.scene(layers=6)
-        self.run_rtslc("compile", "scene.json", "--emit=ptx", "-o", "x.ptx")
+        self.run_rtslc("compile", "scene.json", "--emit=ptx", "-O1", "-o", "x.ptx")
         if shutil.which("ptxas"):
             said = subprocess.run(
                 ["ptxas", "-v", "-arch=sm_75", "x.ptx", "-o", os.devnull],
