@@ -119,8 +119,8 @@ TEST(Package, RejectionsHaveReasons) {
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
   newer[8] = 12;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 11, and this program reads format "
-                            "10: use a newer rtsl-run");
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 12, and this program reads format "
+                            "11: use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
