@@ -9,7 +9,7 @@ import subprocess
 import time
 import unittest
 
-from harness import RTSLC, USAGE, Case
+from harness import RTSLC, USAGE, Case, deep
 
 SMALL = ("--size", "50x37")  # not whole tiles
 
@@ -82,6 +82,7 @@ class Adaptive(Case):
         _, text = self.run_rtslc(*self.arguments("a.exr", "--adaptive", "--noise=0.03"))
         self.assertRegex(text, r"a\.exr: 50x37, \d+ spp at most, \d+\.\d on average; ")
 
+    @deep
     def test_an_interrupted_rendering_goes_on(self):
         """Killed while checkpoints are written, or anywhere, and with a limit of samples first."""
         options = ["--adaptive", "--noise=0.004", "--checkpoint=a.ckpt"]

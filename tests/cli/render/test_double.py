@@ -4,7 +4,7 @@ picture."""
 import json
 import unittest
 
-from harness import EXAMPLES, Case
+from harness import EXAMPLES, Case, deep
 
 SHADERS = """
 const float thickness = 1.0e-6;
@@ -94,6 +94,7 @@ class Double(Case):
         for number in numbers:  # what the scene sets, the same in a function, and a constant
             self.assertAlmostEqual(number, 0.9999995, delta=6e-8)
 
+    @deep
     def test_keeping_changes_no_picture(self):
         self.level = "-O0"  # what is kept is decided before machine code is optimised
         scenes = ("scene.json", EXAMPLES / "glass" / "scene.json")

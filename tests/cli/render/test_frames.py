@@ -8,7 +8,7 @@ import time
 import unittest
 
 from exr_files import attributes, channels
-from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
+from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case, deep
 
 SMALL = ("--size", "50x37")  # not whole tiles
 
@@ -280,6 +280,7 @@ class Frames(Parts):
         self.assertEqual(error.count("is a color, not a string"), 1)
         self.assertEqual([file for file in self.files() if file.endswith(".png")], ["f0.png"])
 
+    @deep
     def test_ctrl_c_ends_a_sequence(self):
         running = subprocess.Popen(
             [RTSLC, "render", "scene.json", "-o", "f%d.exr", "--frames=0..9", "--time=5m", *SMALL],

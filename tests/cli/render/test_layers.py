@@ -8,7 +8,7 @@ import time
 import unittest
 
 from exr_files import attributes, channels
-from harness import RTSLC, SECONDS, USAGE, Case
+from harness import RTSLC, SECONDS, USAGE, Case, deep
 
 SMALL = ("--size", "50x37")  # not whole tiles
 VIEWS = ("albedo", "normals", "depth", "id", "occlusion")
@@ -81,6 +81,7 @@ class Layers(Case):
             out, _ = self.run_rtslc("compare", "whole.exr", "layers.exr", "--json")
             self.assertEqual(json.loads(out)["rmse"], 0)
 
+    @deep
     def test_ctrl_c_leaves_layers_out(self):
         running = subprocess.Popen(
             [

@@ -348,6 +348,7 @@ class Programs(LightTreeCase):
                         return entry["needed"]
         self.fail("no entry")
 
+    @deep
     def test_only_where_there_are_many_lamps(self):
         for count, sampler, needed in (
             (3, None, False),

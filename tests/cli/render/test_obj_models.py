@@ -8,7 +8,7 @@ import subprocess
 import unittest
 import zlib
 
-from harness import DIAGNOSED, RTSLC, SECONDS, Case
+from harness import DIAGNOSED, RTSLC, SECONDS, Case, deep
 from path_case import WAYS
 
 # Two squares side by side that face the camera, and a material for each.
@@ -180,6 +180,7 @@ class Materials(ObjCase):
         self.assertTrue(0.45 < right[0] < 0.6, right)
         self.assertEqual(warnings, "")
 
+    @deep
     def test_bumps(self):
         """A slope changes what a light gives; a flat image does not."""
         ramp = [[(16 * x, 16 * x, 16 * x) for x in range(16)]] * 16

@@ -4,7 +4,7 @@ without."""
 import json
 import unittest
 
-from harness import EXAMPLES, USAGE, Case
+from harness import EXAMPLES, USAGE, Case, deep
 
 SIZE = ("--size", "40x30")
 CONSTANT = 0x65766E73  # of the hash of evenly spread numbers
@@ -16,6 +16,7 @@ class Samplers(Case):
     def render(self, name, *options, scene=scene):
         self.run_rtslc("render", scene, "-o", name, "-q", "-Wno-depth-limit", *SIZE, *options)
 
+    @deep
     def test_the_bits_are_the_same_everywhere(self):
         for sampler in ("r2", "sobol"):
             pictures = []
