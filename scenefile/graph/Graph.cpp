@@ -379,18 +379,19 @@ private:
   }
 
   /// What two roots lead to in the same place is one instance, unless it differs in something else.
+  /// What one root leads to several times in the same place remains several.
   void place(GeometryDescription &geometry, InstanceDescription way) {
     way.mask = geometry.mask;
     way.hasBackFaces = geometry.hasBackFaces;
     if (geometry.id)
       way.id = *geometry.id;
-    if (way.roots != 1) {
-      auto &known = placed[&geometry];
-      if (known.size() != geometry.placements.size())
-        for (std::size_t i = known.size(); i < geometry.placements.size(); ++i)
-          known.emplace(keyOf(geometry.placements[i]), i);
-      if (const auto same = known.find(keyOf(way)); same != known.end() && way.selector == 0) {
-        geometry.placements[same->second].roots |= way.roots;
+    if (way.roots != 1 && way.selector == 0) {
+      Alike &alike = placementsLike(way, geometry);
+      if (std::exchange(alike.root, way.roots) != way.roots)
+        alike.taken = 0;
+      const std::size_t number = alike.taken++;
+      if (number < alike.placements.size()) {
+        geometry.placements[alike.placements[number]].roots |= way.roots;
         return;
       }
     }
@@ -400,6 +401,24 @@ private:
   using Key = std::tuple<MovingTransform, std::int32_t, std::size_t, const VariableScope *>;
   static Key keyOf(const InstanceDescription &instance) {
     return {instance.transform, instance.id, instance.selector, instance.scope};
+  }
+
+  /// Placements of a geometry that differ in nothing but their roots.
+  struct Alike {
+    std::vector<std::size_t> placements; // indices
+    std::uint32_t root = 0;              // the bit of the last root that leads to one of them
+    std::size_t taken = 0;               // so many of them, from the first on, are below that root
+  };
+  struct Placed {
+    std::map<Key, Alike> alike;
+    std::size_t listed = 0; // placements that are in `alike`
+  };
+
+  Alike &placementsLike(const InstanceDescription &way, const GeometryDescription &geometry) {
+    Placed &known = placed[&geometry];
+    for (; known.listed < geometry.placements.size(); ++known.listed)
+      known.alike[keyOf(geometry.placements[known.listed])].placements.push_back(known.listed);
+    return known.alike[keyOf(way)];
   }
 
   /// Those that a root leads to.
@@ -465,10 +484,9 @@ private:
   std::vector<Node> nodes;
   std::unordered_map<std::string, std::size_t> numbers; // of named nodes
   std::vector<Edge> roots;
-  std::vector<LocatedName> rootNames; // as many
-  std::vector<std::size_t> order;     // of nodes, children first
-  // indices of placements, of geometries below several roots
-  std::map<const GeometryDescription *, std::map<Key, std::size_t>> placed;
+  std::vector<LocatedName> rootNames;                   // as many
+  std::vector<std::size_t> order;                       // of nodes, children first
+  std::map<const GeometryDescription *, Placed> placed; // of geometries below several roots
   bool hasMistakes = false;
 };
 

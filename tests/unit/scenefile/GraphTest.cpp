@@ -62,6 +62,17 @@ TEST(SceneGraph, RootsShareInstances) {
   EXPECT_EQ(scene.objects[0].placements[1].roots, 1u);
 }
 
+TEST(SceneGraph, OneRootMayLeadToTheSamePlaceSeveralTimes) {
+  const SceneDescription scene = parse("\"nodes\": {" + leaf + R"(,
+  "two": {"children": ["a", "a"]}, "three": {"children": ["two", "a"]}},
+"roots": {"two": "two", "three": "three", "again": "two", "one": "a"})");
+  ASSERT_EQ(scene.objects.size(), 1u);
+  std::vector<std::uint32_t> roots;
+  for (const Placement &placement : scene.objects[0].placements)
+    roots.push_back(placement.roots);
+  EXPECT_EQ(roots, (std::vector<std::uint32_t>{15, 7, 2}));
+}
+
 TEST(SceneGraph, MayBeVeryDeep) {
   std::string nodes = leaf;
   constexpr int depth = 10000;
