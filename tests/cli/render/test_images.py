@@ -391,6 +391,37 @@ class Images(ImageCase):
                 for value in line:
                     self.assertAlmostEqual(value, 0, delta=1e-6, msg=(options, line))
 
+    def test_numbers_of_texels_and_levels_are_clamped(self):
+        """Whether indices are checked, not checked, or exceptions where they are out of range."""
+        self.write(
+            "far.rtsl",
+            """
+            class Far : rt_RayGeneration {
+              public sampler2D image;
+              public sampler3D volume;
+              public int high = 2147483647;
+              void generate() {
+                int low = -high;
+                print(image.load(ivec2(high, low), low) - image.load(ivec2(3, 0), 0));
+                print(image.load(ivec2(high, low), high) - image.load(ivec2(0), 2));
+                print(volume.load(ivec3(high, low, high), low) - volume.load(ivec3(3, 0, 1), 0));
+                print(volume.load(ivec3(high, low, high), high) - volume.load(ivec3(0), 2));
+              }
+            };""",
+        )
+        self.write("image.png", png(4, 4, self.integers(4, 4, 3, 255)))
+        image = {"filter": "trilinear"}
+        self.scene(
+            {
+                "class": "Far",
+                "image": {**image, "file": "image.png"},
+                "volume": {**image, "slices": ["image.png", "image.png"]},
+            },
+            shaders="far.rtsl",
+        )
+        for options in ([], ["--unchecked"], ["--exceptions"]):
+            self.assertEqual(self.printed(*options), [[0, 0, 0, 0]] * 4, options)
+
     def test_long_and_tiny_images_and_great_texels(self):
         for width, height in ((1, 1), (1, 16384), (16384, 1)):
             texels = [1e30 if i == 7 % (width * height) else 0.0 for i in range(width * height)]
