@@ -214,7 +214,8 @@ bool visitInItsSpace(const RtslState &state, const TriangleRay &ray, const RtslL
 /// are not those of the winning hit, its `intersect` runs again.
 template <typename Intersect>
 void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
-  if (!state.areAttributesLost || state.instance == RTSL_NO_HIT)
+  if (!(rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES) || !state.areAttributesLost ||
+      state.instance == RTSL_NO_HIT)
     return;
   const RtslInstance &instance = instanceAt(*state.launch, state.instance);
   if (instance.primitive == 0)
