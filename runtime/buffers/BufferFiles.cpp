@@ -1,6 +1,7 @@
 #include "runtime/buffers/BufferFiles.h"
 
 #include "runtime/buffers/NumberFiles.h"
+#include "runtime/buffers/NumpyTypes.h"
 #include "runtime/buffers/PlyColumns.h"
 #include "runtime/scene/ValueStore.h"
 #include "support/AtomicFile.h"
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -24,6 +26,8 @@ namespace {
 
 /// How many numbers an element has in a file: those of a color may be red, green and blue.
 std::size_t numbersOf(const ValueType &type, std::uint32_t colorComponents) {
+  if (type.kind == ValueType::Kind::Struct)
+    return type.elementSize / 4;
   std::size_t count =
       type.kind == ValueType::Kind::Color ? colorComponents : std::size_t(type.rows) * type.columns;
   for (const std::uint32_t size : type.arraySizes)
@@ -88,8 +92,40 @@ std::vector<std::uint32_t> sizesOf(const std::vector<std::size_t> &shape, std::s
   return sizes;
 }
 
-/// The number of numbers that a file of this shape has for an element. The dimensions of the buffer
-/// come first, those of an element follow. Throws WrongType.
+bool hasReferences(const ValueType &type) {
+  return type.kind == ValueType::Kind::Reference ||
+         std::any_of(type.fields.begin(), type.fields.end(),
+                     [](const MemberInfo &field) { return hasReferences(field.type); });
+}
+
+/// Makes the words of bools 0 or 1, of a struct or number of the type at `words`.
+void makeBools(std::uint32_t *words, const ValueType &type, std::size_t bytes) {
+  if (type.kind == ValueType::Kind::Bool)
+    for (std::size_t i = 0; i < bytes / 4; ++i)
+      words[i] = words[i] != 0;
+  if (type.kind != ValueType::Kind::Struct)
+    return;
+  std::size_t count = 1;
+  for (const std::uint32_t size : type.arraySizes)
+    count *= size;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const MemberInfo &field : type.fields)
+      makeBools(words + (i * (bytes / count) + field.offset) / 4, field.type, field.type.size);
+}
+
+/// Elements that lie in a file as they do in memory.
+std::shared_ptr<Value::Words> wordsAt(const char *elements, std::size_t bytes,
+                                      const ValueType &type) {
+  auto words = std::make_shared<Value::Words>(bytes / 4);
+  std::memcpy(words->data(), elements, bytes);
+  if (type.kind == ValueType::Kind::Bool || type.kind == ValueType::Kind::Struct)
+    for (std::size_t i = 0; i < bytes; i += type.elementSize)
+      makeBools(words->data() + i / 4, type, type.elementSize);
+  return words;
+}
+
+/// The number of numbers, or structs, that a file of this shape has for an element. The dimensions
+/// of the buffer come first, those of an element follow. Throws WrongType.
 std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &shape,
                        const ValueType &type, std::size_t numbers, const std::string &what) {
   std::size_t given = 1;
@@ -101,7 +137,10 @@ std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &
     throw Error(message::bufferShape(
         what, type.name,
         type.bufferRank == 1 ? "1 dimension" : fmt::format("{} dimensions", type.bufferRank),
-        numbers, numbers == 1 ? "number" : "numbers", file, fmt::join(shape, ", ")));
+        numbers,
+        fmt::format("{}{}", type.kind == ValueType::Kind::Struct ? "struct" : "number",
+                    numbers == 1 ? "" : "s"),
+        file, fmt::join(shape, ", ")));
   return given;
 }
 
@@ -135,9 +174,20 @@ Value readElements(const BufferDescription &buffer, const ValueType &type, std::
   if (count * double(stride) != double(bytes.size()))
     throw Error(message::bufferFileSize(buffer.file, bytes.size(), fmt::join(shape, " x "), stride,
                                         count * double(stride)));
-  auto words = std::make_shared<Value::Words>(bytes.size() / 4);
-  std::memcpy(words->data(), bytes.data(), 4 * words->size());
-  return Value::block(std::move(words), sizesOf(shape, shape.size(), what));
+  return Value::block(wordsAt(bytes.data(), bytes.size(), type),
+                      sizesOf(shape, shape.size(), what));
+}
+
+/// Structs of a .npy file.
+Value readStructs(const std::string &path, const ValueType &type, const std::string &what) {
+  std::size_t count = 1; // of a fixed-length array of structs
+  for (const std::uint32_t size : type.arraySizes)
+    count *= size;
+  const NpyFile::StructType structType{numpyType(type), type.elementSize / count};
+  const NpyFile file(path, NpyFile::Part::Whole, &structType);
+  checkShape(path, file.shape(), type, count, what);
+  return Value::block(wordsAt(file.elements(), file.count() * structType.bytes, type),
+                      sizesOf(file.shape(), type.bufferRank, what));
 }
 
 } // namespace
@@ -171,19 +221,22 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
     throw Error(message::notBuffer(what, type.name));
   if (buffer.file.empty())
     return zeros(buffer.shape, type, what);
-  if (type.kind == ValueType::Kind::Reference || type.kind == ValueType::Kind::Struct)
+  if (hasReferences(type))
     throw Error(message::typeNotInFile(what, type.name));
   const std::size_t numbers = numbersOf(type, colorComponents);
   const std::string extension = extensionOf(buffer);
+  if (type.kind == ValueType::Kind::Struct && extension == ".npy")
+    return readStructs(buffer.file, type, what);
+  if (type.kind == ValueType::Kind::Struct && (extension == ".csv" || extension == ".ply"))
+    throw Error(message::structsNotInFile(buffer.file, what, type.name)).note(".npy holds them");
   if (extension != ".npy" && extension != ".csv" && extension != ".ply")
     return readElements(buffer, type, numbers, what);
   if (extension == ".npy") {
     const NpyFile file(buffer.file);
     const std::size_t given = checkShape(buffer.file, file.shape(), type, numbers, what);
     if (given == numbers && liesAs(type, file.elementType())) {
-      auto words = std::make_shared<Value::Words>(file.count());
-      std::memcpy(words->data(), file.elements(), 4 * words->size());
-      return Value::block(std::move(words), sizesOf(file.shape(), type.bufferRank, what));
+      return Value::block(wordsAt(file.elements(), 4 * file.count(), type),
+                          sizesOf(file.shape(), type.bufferRank, what));
     }
     return Value::block(wordsOf(file.numbers(), given, type, colorComponents, what),
                         sizesOf(file.shape(), type.bufferRank, what));

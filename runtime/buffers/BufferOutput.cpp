@@ -1,11 +1,11 @@
 #include "runtime/buffers/BufferOutput.h"
 
+#include "runtime/buffers/NumpyTypes.h"
 #include "support/AtomicFile.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cstring>
 #include <filesystem>
@@ -15,50 +15,6 @@
 namespace rtsl::runtime {
 
 namespace {
-
-/// The dimensions of an element of `bytes`: of its arrays, then of a matrix its columns and rows.
-std::vector<std::uint32_t> elementShape(const ValueType &type, std::uint32_t bytes) {
-  std::vector<std::uint32_t> shape = type.arraySizes;
-  if (type.kind == ValueType::Kind::Color) {
-    std::uint32_t numbers = bytes / 4;
-    for (const std::uint32_t size : type.arraySizes)
-      numbers /= size;
-    shape.push_back(numbers);
-    return shape;
-  }
-  if (type.columns > 1)
-    shape.push_back(type.columns);
-  if (type.rows > 1)
-    shape.push_back(type.rows);
-  return shape;
-}
-
-std::string tupleOf(const std::vector<std::uint32_t> &sizes) {
-  return fmt::format("({}{})", fmt::join(sizes, ", "), sizes.size() == 1 ? "," : "");
-}
-
-/// The type of a number, or of a struct, as NumPy writes it. A bool of a struct is a number.
-std::string numpyType(const ValueType &type, bool isInStruct = false) {
-  switch (type.kind) {
-  case ValueType::Kind::Bool:
-    return isInStruct ? "'<u4'" : "'|b1'";
-  case ValueType::Kind::Int:
-    return "'<i4'";
-  case ValueType::Kind::UInt:
-    return "'<u4'";
-  case ValueType::Kind::Struct: {
-    std::vector<std::string> fields;
-    for (const MemberInfo &field : type.fields) {
-      const std::vector<std::uint32_t> shape = elementShape(field.type, field.type.size);
-      fields.push_back(fmt::format("('{}', {}{})", field.name, numpyType(field.type, true),
-                                   shape.empty() ? "" : ", " + tupleOf(shape)));
-    }
-    return fmt::format("[{}]", fmt::join(fields, ", "));
-  }
-  default:
-    return "'<f4'";
-  }
-}
 
 /// What comes before the elements in a .npy file.
 std::string npyHeader(const OutputBuffer &buffer) {
@@ -114,7 +70,7 @@ std::string csvOf(const OutputBuffer &buffer) {
 void checkBufferFile(const std::string &path, const std::string &buffer, bool holdsStructs,
                      const std::string &type) {
   if (holdsStructs && std::filesystem::path(path).extension() == ".csv")
-    throw Error(message::structsNotInFile(path, buffer, type)).note(".npy holds them");
+    throw Error(message::structsNotInFile(path, "`" + buffer + "`", type)).note(".npy holds them");
 }
 
 void writeBuffer(const std::string &path, const OutputBuffer &buffer) {

@@ -35,6 +35,17 @@ std::string_view valueOf(std::string_view header, std::string_view key) {
   return begin == rest.npos ? std::string_view() : rest.substr(begin);
 }
 
+/// A struct's type at the beginning of the text: a list with lists in it.
+std::string_view structTypeOf(std::string_view text) {
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    depth += text[i] == '[' ? 1 : text[i] == ']' ? -1 : 0;
+    if (depth == 0)
+      return text.substr(0, i + 1);
+  }
+  return text;
+}
+
 std::vector<std::size_t> shapeOf(const std::string &path, std::string_view text) {
   std::vector<std::size_t> shape;
   if (text.empty() || text.front() != '(')
@@ -127,7 +138,7 @@ static std::string readStart(const std::string &path) {
   return start;
 }
 
-NpyFile::NpyFile(const std::string &path, Part part)
+NpyFile::NpyFile(const std::string &path, Part part, const StructType *structType)
     : file(part == Part::Whole ? readFile(path) : readStart(path)) {
   if (file.size() < 10 || file.compare(0, 6, "\x93NUMPY") != 0)
     throw Error(message::notNpy(path));
@@ -139,31 +150,52 @@ NpyFile::NpyFile(const std::string &path, Part part)
     length |= byte(10) << 16 | byte(11) << 24;
   if (byte(6) < 1 || byte(6) > 3 || file.size() < start || file.size() - start < length)
     throw Error(message::npyBadHeader(path));
-  const std::string_view header = std::string_view(file).substr(start, length);
+  std::string_view header = std::string_view(file).substr(start, length);
   start += length;
 
   const std::string_view name = valueOf(header, "'descr'");
-  const auto *const found =
-      std::find_if(std::begin(elementTypes), std::end(elementTypes), [&](const ElementType &known) {
-        return name.size() > 4 && name.front() == '\'' && name.substr(1, 3) == known.name;
-      });
-  if (found == std::end(elementTypes))
-    throw Error(message::npyBadElements(path));
-  type = static_cast<std::size_t>(found - elementTypes);
+  const bool hasStructs = !name.empty() && name.front() == '[';
+  std::size_t elementBytes = 0;
+  if (hasStructs) {
+    const std::string_view given = structTypeOf(name);
+    if (part == Part::Whole && !structType)
+      throw Error(message::npyBadElements(path));
+    if (structType && given != structType->name)
+      throw Error(message::npyOtherStructs(path, given, structType->name));
+    elementBytes = structType ? structType->bytes : 0;
+    header = name.substr(given.size()); // a field may have the name of a key
+  } else {
+    const auto *const found =
+        std::find_if(std::begin(elementTypes), std::end(elementTypes), [&](const ElementType &one) {
+          return name.size() > 4 && name.front() == '\'' && name.substr(1, 3) == one.name;
+        });
+    if (structType)
+      throw Error(message::npyOtherStructs(path, name.substr(0, name.find(',')), structType->name));
+    if (found == std::end(elementTypes))
+      throw Error(message::npyBadElements(path));
+    type = static_cast<std::size_t>(found - elementTypes);
+    elementBytes = found->bytes;
+  }
   sizes = shapeOf(path, valueOf(header, "'shape'"));
   if (sizes.size() > 1 && valueOf(header, "'fortran_order'").substr(0, 4) == "True")
     throw Error(message::npyFortranOrder(path));
   std::error_code error;
-  const std::size_t bytes =
-      (part == Part::Whole ? file.size() : std::filesystem::file_size(path, error)) - start;
+  if (elementBytes != 0)
+    checkLength(
+        path, (part == Part::Whole ? file.size() : std::filesystem::file_size(path, error)) - start,
+        elementBytes);
+}
+
+/// Counts the elements, which take all of these bytes.
+void NpyFile::checkLength(const std::string &path, std::size_t bytes, std::size_t elementBytes) {
   for (const std::size_t size : sizes) {
     if (size != 0 && elementCount > bytes / size)
       throw Error(message::numbersTruncated(path));
     elementCount *= size;
   }
-  if (bytes / found->bytes < elementCount)
+  if (bytes / elementBytes < elementCount)
     throw Error(message::numbersTruncated(path));
-  if (bytes != elementCount * found->bytes)
+  if (bytes != elementCount * elementBytes)
     throw Error(message::numbersTooLong(path));
 }
 

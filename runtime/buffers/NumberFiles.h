@@ -13,23 +13,32 @@ struct NumberArray {
   std::vector<double> numbers;
 };
 
-/// A .npy file (format 1 to 3 of NumPy): little-endian integers, floats and bools, in C order.
+/// A .npy file (format 1 to 3 of NumPy): little-endian integers, floats and bools, or structs, in C
+/// order.
 class NpyFile {
 public:
   enum class Part { Whole, Header };
-  /// Reads it. Throws BadBuffer, and the errors of reading a file.
-  explicit NpyFile(const std::string &path, Part part = Part::Whole);
+  struct StructType {
+    std::string name; // as NumPy writes it
+    std::size_t bytes;
+  };
+  /// Reads it. With a `structType` its elements must be such structs, and numbers without; either
+  /// is good for a header. Throws BadBuffer, and the errors of reading a file.
+  explicit NpyFile(const std::string &path, Part part = Part::Whole,
+                   const StructType *structType = nullptr);
 
   const std::vector<std::size_t> &shape() const { return sizes; }
   /// The number of all elements.
   std::size_t count() const { return elementCount; }
-  /// Its type of elements as NumPy writes it: "<f4".
+  /// The type of numbers as NumPy writes it: "<f4".
   const char *elementType() const;
   /// The elements as they lie in the file. Not of a header alone.
   const char *elements() const { return file.data() + start; }
   std::vector<double> numbers() const;
 
 private:
+  void checkLength(const std::string &path, std::size_t bytes, std::size_t elementBytes);
+
   std::string file;
   std::size_t start = 0, elementCount = 1, type = 0;
   std::vector<std::size_t> sizes;

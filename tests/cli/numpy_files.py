@@ -4,7 +4,7 @@ import struct
 
 
 def npy(form, shape, numbers, order="False", version=1, descr=None):
-    """A file of NumPy."""
+    """A file of NumPy. `descr`: another type of elements, or that of structs, a list."""
     kinds = {
         "f": "<f4",
         "d": "<f8",
@@ -19,8 +19,9 @@ def npy(form, shape, numbers, order="False", version=1, descr=None):
         "B": "|u1",
         "?": "|b1",
     }
-    text = "{'descr': '%s', 'fortran_order': %s, 'shape': (%s), }" % (
-        descr or kinds[form],
+    name = descr or kinds[form]
+    text = "{'descr': %s, 'fortran_order': %s, 'shape': (%s), }" % (
+        name if name.startswith("[") else f"'{name}'",
         order,
         ", ".join(map(str, shape)) + ("," if len(shape) == 1 else ""),
     )

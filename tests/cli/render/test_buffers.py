@@ -38,7 +38,23 @@ class Show : rt_RayGeneration {
   }
 };
 class Objects : rt_RayGeneration { public rt_Texture textures[]; void generate() { } };
+struct Corner { ivec2 at; bool used; };
+struct Cell { float shape; Corner corners[2]; };
+class Structs : rt_RayGeneration {
+  public Cell cells[][][];
+  public Corner pairs[][2];
+  void generate() {
+    for (int i = 0; i < cells.length(); ++i) for (int j = 0; j < cells[i].length(); ++j)
+      for (int k = 0; k < cells[i][j].length(); ++k) {
+        Cell c = cells[i][j][k];
+        print(i, j, k, c.shape, c.corners[0].at.x, c.corners[0].at.y, c.corners[1].at.y, c.corners[1].used ? 1 : 0);
+      }
+    for (int i = 0; i < pairs.length(); ++i) print(pairs[i][0].at.x, pairs[i][1].at.y);
+  }
+};
 """
+CORNER = "[('at', '<i4', (2,)), ('used', '<u4')]"
+CELL = f"[('shape', '<f4'), ('corners', {CORNER}, (2,))]"
 
 
 class Buffers(Case):
@@ -382,6 +398,51 @@ class Buffers(Case):
             {"buffer": "a.raw", "shape": [3, 3]},
             "E0906",
             "3 x 3 elements of 4 bytes take 36",
+        )
+
+    def structs(self, **members):
+        self.scene(**members)
+        path = self.folder / "scene.json"
+        path.write_text(path.read_text().replace('"class": "Show"', '"class": "Structs"'))
+
+    def test_structs(self):
+        cells = [struct.pack("<f2iI2iI", i / 2, i, 2, 7, 8, 9 - i, 3 * (i % 2)) for i in range(6)]
+        self.write("cells.npy", npy("f", (1, 3, 2), [], descr=CELL) + b"".join(cells))
+        self.write("cells.raw", b"".join(cells))
+        corners = [struct.pack("<2iI", i, -i, 1) for i in range(6)]
+        self.write("pairs.raw", b"".join(corners))
+        expected = [[0, i // 2, i % 2, i / 2, i, 2, 9 - i, i % 2] for i in range(6)]
+        for file in ({"buffer": "cells.npy"}, {"buffer": "cells.raw", "shape": [1, 3, 2]}):
+            self.structs(cells=file, pairs={"buffer": "pairs.raw"})
+            for options in ([], ["--target=host-megakernel"]):
+                self.assertEqual(
+                    self.printed(*options), expected + [[0, -1], [2, -3], [4, -5]], file
+                )
+
+    def test_wrong_structs(self):
+        self.write("a.npy", npy("f", (2, 2, 2), range(8)))
+        self.write("a.csv", "x\n1\n")
+        for member, value, code, containing in (
+            (
+                "cells",
+                {"buffer": "a.npy"},
+                "E0906",
+                f"its elements are '<f4', not the structs {CELL}",
+            ),
+            ("cells", {"buffer": "a.csv"}, "E0808", "its elements are structs"),
+        ):
+            self.structs(**{member: value})
+            self.assert_message(
+                self.diagnose("render", "scene.json", "-o", "x.exr"), code, containing, line=1
+            )
+        self.write("a.npy", npy("f", (2,), [], descr=CORNER) + bytes(24))
+        self.scene(numbers={"buffer": "a.npy"})
+        messages = self.diagnose("render", "scene.json", "-o", "x.exr", "-Wno-all")
+        self.assert_message(messages, "E0906", "not little-endian integers or floats")
+        self.structs(pairs={"buffer": "a.npy"})
+        messages = self.diagnose("render", "scene.json", "-o", "x.exr", "-Wno-all")
+        self.assert_message(
+            messages, "E0804", "2 structs each are needed, and `a.npy` has the shape (2)"
         )
 
     def test_what_takes_no_file(self):
