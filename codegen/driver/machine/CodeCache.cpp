@@ -11,6 +11,13 @@
 
 namespace rtsl {
 
+namespace {
+
+/// At most: five views, the picture, and a check of its materials.
+constexpr std::uint64_t programsOfPicture = 7;
+
+} // namespace
+
 struct CodeCache::Implementation {
   struct Entry {
     codegen::ObjectCode code;
@@ -33,7 +40,8 @@ CodeCache::~CodeCache() = default;
 void CodeCache::beginProgram() {
   const std::lock_guard<std::mutex> lock(self->mutex);
   for (auto entry = self->entries.begin(); entry != self->entries.end();)
-    entry = entry->second.program < self->program ? self->entries.erase(entry) : std::next(entry);
+    entry = entry->second.program + programsOfPicture <= self->program ? self->entries.erase(entry)
+                                                                       : std::next(entry);
   ++self->program;
   self->reused = self->read = 0;
 }

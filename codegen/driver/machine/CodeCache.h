@@ -27,7 +27,7 @@ public:
   explicit CodeCache(std::unique_ptr<const CodeFiles> files);
   ~CodeCache();
 
-  /// A new program begins: what the one before did not use is forgotten.
+  /// A new program begins: what those of the picture before did not use is forgotten.
   void beginProgram();
 
   /// The code of a module, which `identity` names with all that decides what code it gets. Calls

@@ -116,8 +116,11 @@ inline void trace(RtslState &parent, Vec3 origin, Vec3 direction, float *color) 
   copyColor(color, state.SampleColor, components);
 }
 
-/// isInCone for vectors whose squares would leave the range of a float.
+/// isInCone for vectors whose squares would leave the range of a float. A direction that no ray can
+/// have is in every cone, so that the shadow ray raises the exception.
 __attribute__((cold)) inline bool isInConeOfExtremes(Vec3 direction, Vec3 axis, float cosAngle) {
+  if (!isFinite(direction) || largest(direction) == 0)
+    return true;
   return dot(normalized(direction), normalized(axis)) >= cosAngle;
 }
 

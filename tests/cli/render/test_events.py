@@ -1,8 +1,10 @@
 """What samples do beside colors: `print` and exceptions."""
 
 import json
+import struct
 import unittest
 
+from exr_files import channels
 from harness import EXAMPLES, Case, has_gpu
 
 SHADERS = """
@@ -136,6 +138,44 @@ class Events(Case):
                 self.assert_same("a.exr", "first.exr")
                 self.assert_same("b.exr", "second.exr")
         self.run_rtslc("compare", "first.exr", "second.exr", "--threshold", "0", status=1)
+
+    def test_a_light_without_a_direction(self):
+        """One way to light a point says the same as another of a direction that no ray can have."""
+        lit = """
+struct P { float light; };
+class Eye : rt_RayGeneration {
+  void generate() {
+    P p = P(0.0);
+    trace(vec3(0.0, 0.0, 4.0), vec3(0.0, 0.0, -1.0), 0.0, 1e30, p);
+    rt_SampleColor = color(p.light);
+  }
+};
+class Nowhere : rt_Light {
+  public vec3 towards;
+  void illumination() { rt_LightDirection = 1e38 * towards; rt_LightColor = color(1.0); }
+};
+class Lit : rt_Material {
+  void closestHit(inout P p) {
+    vec3 n = rt_GeometricNormal;
+    if (rt_LaunchIndex.x == 0u && illuminate(0, rt_HitPoint)) p.light = 1.0;
+    if (rt_LaunchIndex.x == 1u && illuminate(0, rt_HitPoint, n)) p.light = 1.0;
+    if (rt_LaunchIndex.x == 2u)
+      illuminance (rt_HitPoint, n, 1.0) p.light = 1.0;
+  }
+};
+"""
+        self.write("shaders.rtsl", lit)
+        for z, raised, light in ((1e38, 3, 0), (0, 3, 0), (1e-38, 0, 1), (-1e-38, 0, 0)):
+            scene = json.loads(json.dumps(SCENE))
+            scene["objects"][0]["material"]["class"] = "Lit"
+            scene["lights"] = [{"class": "Nowhere", "towards": [0, 0, z]}]
+            scene["render"].update(size=[3, 1], spp=1)
+            self.write("scene.json", json.dumps(scene))
+            found = self.render("scene.json", "a.exr", "--exceptions")
+            self.assertEqual(found.get("exceptions", {}).get("badRay", 0), raised, z)
+            self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q")
+            words = channels((self.folder / "b.exr").read_bytes())["R"]
+            self.assertEqual(struct.pack("3I", *words), struct.pack("3f", *[light] * 3))
 
     def test_what_is_no_exception_has_its_value(self):
         self.assertNotIn("exceptions", self.render("scene.json", "a.exr"))

@@ -241,7 +241,8 @@ class Frames(Parts):
             "translate": {"frames": {"0": [0.1, 0, 0], "4": [1, 0.5, 0]}}
         }
         self.write("scene.json", json.dumps(scene))
-        for way in ([], ["--target=host-megakernel"], ["--trace=split", "--traversal=device"]):
+        ways = ([], ["--target=host-megakernel"], ["--trace=split", "--traversal=device"])
+        for way in (*ways, ["--aov=albedo,depth"]):  # views are programs, too
             options = ("--frames=0..2", "-Wno-depth-limit", "--spp=3", *SMALL, *way)
             _, said = self.run_rtslc("render", "scene.json", "-o", "frame.%04d.exr", *options)
             self.assertEqual(said.count("machine code of the picture before: "), 2, said)

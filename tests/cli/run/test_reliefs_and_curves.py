@@ -317,6 +317,60 @@ def oracle_of_curve(curves, ray):
     return nearest, first
 
 
+def oracle_of_exit(curves, ray):
+    """Where a ray that begins in the curve first is in no ball of it, as a distance."""
+    speed = math.sqrt(dot(ray[3:], ray[3:]))
+    way = [d / speed for d in ray[3:]]
+    parts = []
+    for c in curves:
+        for i in range(401):
+            *center, r = curve_at(c, i / 400)
+            f = [a - b for a, b in zip(center, ray)]
+            z = dot(f, way)
+            square = r * r - (dot(f, f) - z * z)
+            if square > 0:
+                parts.append((z - math.sqrt(square), z + math.sqrt(square)))
+    reached = 0
+    for begin, end in sorted(parts):
+        if begin <= reached:
+            reached = max(reached, end)
+    return reached
+
+
+# How many surfaces each ray meets, and how often it enters more than it leaves.
+THROUGH = """
+struct Seen { float t; int side; };
+class Through : rt_RayGeneration {
+  public float rays[][6];
+  public out int sides[][2];
+  void generate() {
+    int i = int(rt_LaunchIndex.x);
+    vec3 o = vec3(rays[i][0], rays[i][1], rays[i][2]);
+    vec3 d = vec3(rays[i][3], rays[i][4], rays[i][5]);
+    float t = 0.0;
+    int met = 0;
+    int depth = 0;
+    for (int n = 0; n < 20; ++n) {
+      Seen seen = Seen(-1.0, 0);
+      trace(o, d, t, 3.4e38, seen);
+      if (seen.t < 0.0) break;
+      ++met;
+      depth += seen.side;
+      if (depth < 0 || depth > 1) break;
+      t = seen.t + 1e-5 / length(d);
+    }
+    sides[i] = int[](met, depth);
+  }
+};
+class Side : rt_Material {
+  void closestHit(inout Seen seen) {
+    seen.t = rt_HitDistance;
+    seen.side = dot(rt_RayDirection, rt_GeometricNormal) < 0.0 ? 1 : -1;
+  }
+};
+"""
+
+
 class Curves(ShapeCase):
     def rays(self, dice, distance, count):
         rays = []
@@ -390,11 +444,55 @@ class Curves(ShapeCase):
             hits += together[0] > 0
         self.assertGreater(hits, 60)
 
-    def test_rays_from_inside_leave(self):
-        straight = [[-1, 0, 0, 0.2], [0, 0, 0, 0.2], [1, 0, 0, 0.2], [2, 0, 0, 0.2]]
-        rays = [[0.01 * i, 0.05, 0.02, 0.3, 1, 0.2] for i in range(10)]
-        for seen in self.hits({"class": "Curve", "points": straight}, rays):
-            self.assertLess(seen[0], 0)
+    def test_rays_from_inside_meet_where_they_leave(self):
+        """The first point that is in no ball of the curve, also beyond the joints of segments."""
+        dice = random.Random(12)
+        for basis in (0, 1, 2):
+            curves = segments_of(basis)
+            rays = []
+            for i in range(40):
+                # In the middle, near a joint, and along the curve.
+                s = dice.choice([dice.random(), 0.01, 0.99])
+                c = dice.choice(curves)
+                *origin, radius = curve_at(c, s)
+                origin = [x + dice.uniform(-0.5, 0.5) * radius for x in origin]
+                way = [dice.gauss(0, 1) for _ in range(3)]
+                if i % 2:
+                    way = [b - a for a, b in zip(curve_at(c, s - 0.01), curve_at(c, s + 0.01))][:3]
+                rays.append([single(x) for x in (*origin, *way)])
+            primitive = {"class": "Curve", "points": POINTS, "basis": basis}
+            for ray, seen in zip(rays, self.hits(primitive, rays, count=len(curves))):
+                speed = math.sqrt(dot(ray[3:], ray[3:]))
+                expected = oracle_of_exit(curves, ray)
+                cosine = dot(seen[1:4], ray[3:]) / speed
+                self.assertGreater(cosine, -0.1, ray)
+                if cosine > 0.2:
+                    self.assertAlmostEqual(seen[0] * speed * cosine, expected * cosine, delta=0.004)
+
+    def test_a_ray_through_a_curve_enters_and_leaves_it(self):
+        """As often as each other, in turn, whatever segments and pieces it passes."""
+        self.write("Through.rtsl", THROUGH)
+        rays = self.rays(random.Random(13), 4, 300)
+        self.write("rays.npy", npy("f", [len(rays), 6], [x for ray in rays for x in ray]))
+        scene = {
+            "rtsl": 1,
+            "import": ["std.primitives", "Through.rtsl"],
+            "rayGeneration": {"class": "Through", "rays": {"buffer": "rays.npy"}},
+            "objects": [
+                {
+                    "primitive": {"class": "Curve", "points": POINTS},
+                    "count": 2,
+                    "material": {"class": "Side"},
+                }
+            ],
+            "render": {"engine": "programs", "size": [len(rays), 1], "depth": 3},
+        }
+        self.write("scene.json", json.dumps(scene))
+        self.run_rtslc("run", "scene.json", "-q", "--out=sides=sides.npy")
+        _, sides = read_npy(self.folder / "sides.npy")
+        balanced = [(sides[2 * i], sides[2 * i + 1]) for i in range(len(rays))]
+        self.assertGreater(sum(n > 0 for n, _ in balanced), 100)
+        self.assertLess(sum(d != 0 for _, d in balanced), 4, balanced)  # those that graze it
 
     def test_bad_points_are_no_hits(self):
         """None, and four times the same of radius 0."""
