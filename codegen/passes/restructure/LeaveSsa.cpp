@@ -20,6 +20,7 @@
 #include "codegen/passes/continuation/common/Names.h"
 #include "codegen/passes/restructure/Steps.h"
 
+#include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
 #include "mlir/Interfaces/ControlFlowInterfaces.h"
 #include "llvm/ADT/MapVector.h"
@@ -60,11 +61,12 @@ bool isRepeatable(mlir::Operation *op) {
     return false;
   return op->getNumResults() == 1 &&
          (llvm::isa<ir::PtrType>(op->getResult(0).getType()) ||
-          op->hasTrait<mlir::OpTrait::ConstantLike>() || llvm::isa<ir::NullRefOp, ir::NextOp>(op));
+          op->hasTrait<mlir::OpTrait::ConstantLike>() ||
+          llvm::isa<ir::NullRefOp, ir::NextOp, mlir::arith::IndexCastUIOp>(op));
 }
 
-/// Repeats constants and addresses where their definitions are not visible. Addresses are not
-/// values.
+/// Repeats constants, addresses and indices where their definitions are not visible. Addresses are
+/// not values, and no variable holds a value of type `index`.
 void repeatWhereUsed(FuncOp function, IsVisible isVisible) {
   llvm::SmallVector<mlir::Operation *> work;
   function.walk([&](mlir::Operation *op) {

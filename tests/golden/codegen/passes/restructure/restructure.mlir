@@ -267,3 +267,25 @@ func.func @far() {
 ^done:
   return
 }
+
+// -----
+
+// An index of a component is computed again where it is used: no variable holds it.
+// CHECK-LABEL: @index(
+// CHECK: rtsl.loop cond {
+// CHECK:   arith.index_castui %{{.*}} : i32 to index
+// CHECK:   rtsl.condition
+// CHECK: arith.index_castui %{{.*}} : i32 to index
+// CHECK: rtsl.return
+func.func private @goesOn(f32) -> i1
+func.func @index(%v: vector<3xf32>, %i: i32) -> f32 {
+  cf.br ^body
+^body:
+  %at = arith.index_castui %i : i32 to index
+  %x = vector.extract %v[%at] : f32 from vector<3xf32>
+  %again = call @goesOn(%x) : (f32) -> i1
+  cf.cond_br %again, ^body, ^after
+^after:
+  %y = vector.extract %v[%at] : f32 from vector<3xf32>
+  return %y : f32
+}
