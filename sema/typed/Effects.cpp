@@ -4,6 +4,7 @@
 #include "sema/typed/Casting.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace rtsl::typed {
 
@@ -220,6 +221,17 @@ void EffectsOf::collectCall(const Function &callee, const std::vector<ExprPtr> &
   effects.add(function(callee));
 }
 
+/// Conversions between object space and world space read the matrices between them.
+static bool convertsSpace(Builtin builtin) {
+  switch (builtin) {
+#define RTSL_BUILTIN(id, name, effects, cost, where, ...)                                          \
+  case Builtin::id:                                                                                \
+    return std::string_view(#where) == "Spaces";
+#include "language/Builtins.def"
+  }
+  return false;
+}
+
 void EffectsOf::collectBuiltin(const BuiltinExpr &builtin, Effects &effects) {
   const auto hasEffect = [&](effect::Effect effect) { return has(builtin.builtin, effect); };
   for (std::size_t i = 0; i < builtin.args.size(); ++i)
@@ -238,6 +250,9 @@ void EffectsOf::collectBuiltin(const BuiltinExpr &builtin, Effects &effects) {
     collectLights(effects);
   if (hasEffect(effect::Samples))
     effects.writes.insert(place(StateVariable::PDF));
+  if (convertsSpace(builtin.builtin))
+    effects.reads.insert(
+        {place(StateVariable::ObjectToWorld), place(StateVariable::WorldToObject)});
 }
 
 void EffectsOf::collect(const Expr &expr, Effects &effects) {
