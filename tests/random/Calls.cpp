@@ -64,7 +64,8 @@ bool Generator::mayCall(const Function &function) const {
          work + function.work * context.weight <= workLimit &&
          isIn(function.reads, context.reads) && (context.rand || !function.draws) &&
          (context.lookup || !function.looksUp) && (context.answers || !function.answers) &&
-         (context.raises || !function.raises);
+         (context.raises || !function.raises) && (context.changes || !function.changes) &&
+         (context.converts || !function.converts) && (context.illuminance || !function.lights);
 }
 
 void Generator::account(const Function &function) {

@@ -76,6 +76,9 @@ Context Generator::contextOf(const Function &function, const ClassPlan &plan) co
   rules.lookup = function.looksUp;
   rules.answers = function.answers;
   rules.raises = function.raises;
+  rules.changes = function.changes || plan.root.empty();
+  rules.converts = function.converts;
+  rules.illuminance = function.lights;
   return rules;
 }
 
@@ -166,7 +169,9 @@ void Generator::addImage(ClassPlan &plan, Node &members) {
   if (!hasImages(program.seed) || !plan.image.empty())
     return;
   plan.image = fresh("image");
-  members.children.push_back(makeNode(Role::Fixed, "public sampler2D " + plan.image + ";"));
+  plan.images = chance(30) ? 2 + below(2) : 0;
+  const std::string size = plan.images != 0 ? "[" + std::to_string(plan.images) + "]" : "";
+  members.children.push_back(makeNode(Role::Fixed, "public sampler2D " + plan.image + size + ";"));
 }
 
 void Generator::addConstructor(ClassPlan &plan, Node &members) {
@@ -175,7 +180,7 @@ void Generator::addConstructor(ClassPlan &plan, Node &members) {
   for (unsigned n = below(4); n-- > 0;)
     made.signature.parameters.push_back({anyType(), ast::Direction::In});
   context = Context();
-  context.returns = context.changes = false;
+  context.returns = false;
   references.clear();
   std::vector<Variable> visible = around(plan);
   for (Variable &variable : visible)
@@ -194,6 +199,9 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
   made.draws = plan.root != "rt_Primitive" || chance(50);
   made.looksUp = plan.root != "rt_Primitive" && plan.root != "rt_Camera";
   made.raises = program.raises && plan.root != "rt_Primitive" && chance(60);
+  const bool ofHits = plan.root == "rt_Material" || plan.root == "rt_Texture";
+  made.changes = made.converts = ofHits && chance(60);
+  made.lights = plan.root == "rt_Material" && !answers && chance(30);
   made.signature.result = chance(12) ? types.voidType : anyType();
   if (traces != 0 && chance(70))
     made.signature.result = types.color;
@@ -212,7 +220,7 @@ void Generator::addFunction(ClassPlan &plan, Node &members, bool remote, unsigne
 }
 
 /// A function that calls itself on what a member refers to: an object made before, so that it ends.
-void Generator::addRecursion(ClassPlan &plan, Node &members) {
+void Generator::addRecursion(ClassPlan &plan, Node &members, const Type *result, unsigned traces) {
   const std::string next = fresh("o");
   members.children.push_back(
       makeNode(Role::Fixed, "public optional " + plan.name + " " + next + ";"));
@@ -220,21 +228,24 @@ void Generator::addRecursion(ClassPlan &plan, Node &members) {
   made.name = fresh("g");
   made.remote = true;
   made.work = 40;
-  made.signature.result = types.floatType;
+  made.traces = traces;
+  made.signature.result = result;
   made.signature.parameters.push_back({types.floatType, ast::Direction::In});
   context = contextOf(made, plan);
+  context.traces = traces != 0 ? 1 : 0;
   references = plan.references;
   NodePtr value;
   do { // the function has no room for declarations that an expression needs before it
     pending.clear();
     scope = around(plan, made);
     scope.push_back({"x", types.floatType, true});
-    value = expression(types.floatType, 2);
+    value = expression(result, 2);
   } while (!pending.empty());
+  const std::string type = toString(result);
   members.children.push_back(makeNode(Role::Fixed,
-                                      "float " + made.name + "(float x) { float own = $; return " +
-                                          next + " ? own + 0.5 * " + next + "." + made.name +
-                                          "(0.75 * x) : own - x; }",
+                                      type + " " + made.name + "(float x) { " + type +
+                                          " own = $; return " + next + " ? own + 0.5 * " + next +
+                                          "." + made.name + "(0.75 * x) : own - " + type + "(x); }",
                                       std::move(value)));
   plan.references.push_back({next, &plan, 0, false});
   plan.functions.push_back(std::move(made));
@@ -268,6 +279,8 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   context.lookup = model.abilities.has(Ability::Lookup);
   context.rand = model.abilities.has(Ability::Random);
   context.answers = model.abilities.has(Ability::AnyHit);
+  context.changes = model.abilities.has(Ability::Derivatives);
+  context.converts = model.abilities.has(Ability::Spaces);
   // Which primitives and selectors a ray tests is not defined, nor how often.
   context.raises = program.raises && plan.root != "rt_Primitive" && plan.root != "rt_Selector" &&
                    (plan.root != "rt_Camera" || chance(30));
@@ -304,6 +317,10 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   if (model.abilities.has(Ability::CallSampling))
     for (const char *own : {"sampleBSDF", "BSDF", "evaluatePDF", "emission"})
       if (plan.methods.count(own) && chance(40))
+        body->children.push_back(makeNode(Role::Statement, own + std::string("();")));
+  if (model.abilities.has(Ability::CallColor))
+    for (const char *own : {"shade", "miss"})
+      if (plan.methods.count(own) && chance(25))
         body->children.push_back(makeNode(Role::Statement, own + std::string("();")));
   hashAll(*body, first);
   for (const Variable &variable : state)

@@ -134,7 +134,7 @@ const ClassPlan *Generator::makeHelper(const ClassPlan *base) {
   if (!base && chance(50))
     addConstructor(*plan, *members);
   if (!base && chance(60))
-    addRecursion(*plan, *members);
+    addRecursion(*plan, *members, types.floatType);
   if (base)
     overrideFunction(*plan, *members);
   addFunction(*plan, *members, true, 0);
@@ -151,7 +151,7 @@ const ClassPlan *Generator::makeTexture(const ClassPlan *base, const Targets &ta
   if (!base && chance(50))
     addConstructor(*plan, *members);
   if (!base && chance(30))
-    addRecursion(*plan, *members);
+    addRecursion(*plan, *members, types.floatType);
   if (base)
     overrideFunction(*plan, *members);
   if (!base || chance(40))
@@ -222,7 +222,9 @@ void Generator::makeRayGeneration(const Targets &targets) {
   for (unsigned n = 1 + below(3); n-- > 0;) {
     const std::string name = fresh("b");
     const unsigned rank = 1 + below(3);
-    const Type *element = plan->outputs.empty() || chance(30) ? types.color : smallType();
+    const Type *element = plan->outputs.empty() || chance(30) ? types.color
+                          : chance(40)                        ? vocabulary.scalars[1 + below(2)]
+                                                              : smallType();
     std::string text = "public inout " + toString(element) + " " + name;
     for (unsigned i = 0; i != rank; ++i)
       text += "[]";
@@ -266,6 +268,8 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
       addConstructor(*plan, *members);
   }
   const unsigned traces = program.traces ? 4 : 0;
+  if (!base && likely(30)) // at most so many rays, for a chain of objects
+    addRecursion(*plan, *members, types.color, traces);
   if (base)
     overrideFunction(*plan, *members);
   for (unsigned n = some(below(3)); n-- > 0;)

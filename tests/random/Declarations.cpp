@@ -86,6 +86,7 @@ void Generator::makeFreeFunction() {
   context.reads = made.reads = someReads("");
   context.rand = made.draws = chance(30);
   context.raises = made.raises = program.raises && chance(60);
+  context.changes = true; // 0 unless a material or a texture calls it
   references.clear();
   std::vector<Variable> around = constants;
   for (const Variable &variable : stateOf(made.reads, {}))

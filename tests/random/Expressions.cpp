@@ -270,30 +270,81 @@ NodePtr Generator::effect(const Type *type, unsigned depth) {
   return make(type, "($ = $)", std::move(place), converted(type, depth - 1));
 }
 
-/// `dFdx(e)` or `dFdy(e)` in a method of a material: other functions may be called where these must
-/// not stand, such as in `illumination`. It may copy parts of e, so e is not deep.
+/// `{...}`: a value whose parts are values of the parts' types.
+NodePtr Generator::braced(const Type *type, unsigned depth) {
+  NodePtr node = make(type, "{");
+  const auto add = [&](const Type *part) {
+    node->text += node->children.empty() ? "$" : ", $";
+    node->children.push_back(expression(part, depth - 1));
+  };
+  if (type->is(TypeKind::Struct))
+    for (const typed::Field &field : type->structure->fields)
+      add(field.type);
+  else
+    for (std::uint32_t i = 0; i != type->count; ++i)
+      add(type->element);
+  node->text += "}";
+  return node;
+}
+
+/// `dFdx(e)` or `dFdy(e)`. It may copy parts of e, so e is not deep.
 NodePtr Generator::change(const Type *type, unsigned depth) {
   if (context.constantOnly || !context.changes || type->scalar() != types.floatType ||
-      type->isMatrix() || !context.self || context.self->root != "rt_Material")
+      type->isMatrix())
     return nullptr;
   work += 20 * context.weight;
   return make(type, chance(50) ? "dFdx($)" : "dFdy($)", expression(type, std::min(depth, 2u)));
 }
 
-/// A lookup in an image, filtered by the footprint of the ray or not.
+/// An integer operation on an element of an output buffer, in one step: its value before.
+NodePtr Generator::atomic(const Type *type, unsigned depth) {
+  static const char *const names[] = {"atomicAdd", "atomicMin", "atomicMax",     "atomicAnd",
+                                      "atomicOr",  "atomicXor", "atomicExchange"};
+  std::vector<const Variable *> buffers;
+  for (const Variable &output : context.self->outputs)
+    if (output.type->element == type)
+      buffers.push_back(&output);
+  if (buffers.empty())
+    return nullptr;
+  const Variable &buffer = *pick(buffers);
+  NodePtr place = descend(makeNode(Role::Fixed, buffer.name), buffer.type, type, true);
+  NodePtr value = expression(type, depth - 1);
+  if (chance(12))
+    return make(type, "atomicCompSwap($, $, $)", std::move(place), std::move(value),
+                expression(type, depth - 1));
+  return make(type, std::string(names[below(7)]) + "($, $)", std::move(place), std::move(value));
+}
+
+/// What an image has to say: a lookup, filtered by the footprint of the ray or not, or its size.
 NodePtr Generator::ofImage(const Type *type, unsigned depth) {
-  const std::string image = context.self->image + ".";
-  const Type *vec2 = types.vector(types.floatType, 2);
-  const auto place = [&] { return converted(vec2, depth - 1); };
+  const Type *vec2 = types.vector(types.floatType, 2), *ivec2 = types.vector(types.intType, 2);
+  NodePtr call = make(type, context.self->image);
+  if (context.self->images != 0) {
+    call->text += "[$]";
+    call->children.push_back(index(std::to_string(context.self->images)));
+  }
+  const auto say = [&](const char *function, const std::vector<const Type *> &parameters) {
+    call->text += std::string(".") + function + "(";
+    for (std::size_t i = 0; i != parameters.size(); ++i) {
+      call->text += i ? ", $" : "$";
+      call->children.push_back(converted(parameters[i], depth - 1));
+    }
+    call->text += ")";
+  };
   work += 20 * context.weight;
-  if (chance(50))
-    return make(type, image + "sample($)", place());
-  if (chance(30))
-    return make(type, image + "load($)", converted(types.vector(types.intType, 2), depth - 1));
-  if (chance(50))
-    return make(type, image + "sample($, $)", place(), converted(types.floatType, depth - 1));
-  NodePtr at = place(), x = place();
-  return make(type, image + "sampleGrad($, $, $)", std::move(at), std::move(x), place());
+  if (type == types.intType)
+    say("levels", {});
+  else if (type == ivec2)
+    chance(50) ? say("size", {}) : say("size", {types.intType});
+  else if (chance(50))
+    say("sample", {vec2});
+  else if (chance(30))
+    chance(50) ? say("load", {ivec2}) : say("load", {ivec2, types.intType});
+  else if (chance(40))
+    say("sample", {vec2, types.floatType});
+  else
+    chance(40) ? say("finest", {vec2}) : say("sampleGrad", {vec2, vec2, vec2});
+  return call;
 }
 
 /// What the ray or an object has to say.
@@ -304,8 +355,21 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
     if (NodePtr changed = change(type, depth))
       return changed;
   const bool hasImage = context.self && !context.self->image.empty();
-  if (hasImage && type == types.vector(types.floatType, 4) && depth > 0 && chance(70))
+  if (hasImage && depth > 0 &&
+      ((type == types.vector(types.floatType, 4) && chance(70)) ||
+       (type == types.vector(types.intType, 2) && chance(30)) ||
+       (type == types.intType && chance(10))))
     return ofImage(type, depth);
+  if (type == types.vector(types.floatType, 3) && context.converts && chance(20)) {
+    static const char *const forms[] = {"pointToWorld($)",   "vectorToWorld($)",
+                                        "normalToWorld($)",  "pointToObject($)",
+                                        "vectorToObject($)", "normalToObject($)"};
+    const char *form = forms[below(6)];
+    return make(type, form, converted(type, depth - 1));
+  }
+  if ((type == types.intType || type == types.uintType) && context.self && chance(60))
+    if (NodePtr made = atomic(type, depth))
+      return made;
   if (type == types.floatType && context.rand && chance(30))
     return make(type, chance(70) ? "rand()" : "randOpen()");
   if (type == types.color && context.traces >= context.weight && chance(60)) {
@@ -325,13 +389,8 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
       return nullptr;
     if (chance(40))
       return make(type, chance(50) ? "bool($)" : "(!$)", std::move(a));
-    const ClassPlan *wanted = plan;
-    for (unsigned attempt = 0; attempt != 4; ++attempt) {
-      NodePtr b = referenceTo(&plan, false);
-      if (plan == wanted)
-        return make(type, chance(50) ? "($ == $)" : "($ != $)", std::move(a), std::move(b));
-    }
-    return nullptr;
+    const char *form = chance(50) ? "($ == $)" : "($ != $)";
+    return make(type, form, std::move(a), objectOf(plan));
   }
   return methodCall(type, depth);
 }

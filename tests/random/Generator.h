@@ -34,13 +34,15 @@ bool isIn(StateSet part, StateSet all);
 struct Function {
   std::string name;
   Signature signature;
-  unsigned work = 0;                   // about how many operations a call runs
-  unsigned traces = 0;                 // at most so many rays
-  bool remote = false;                 // may be called on another object
-  StateSet reads;                      // at most this state
-  bool draws = false, looksUp = false; // perhaps: random numbers, textures
-  bool answers = false;                // may end `anyHit`
-  bool raises = false;                 // may have an index out of range, which is an exception
+  unsigned work = 0;                      // about how many operations a call runs
+  unsigned traces = 0;                    // at most so many rays
+  bool remote = false;                    // may be called on another object
+  StateSet reads;                         // at most this state
+  bool draws = false, looksUp = false;    // perhaps: random numbers, textures
+  bool answers = false;                   // may end `anyHit`
+  bool raises = false;                    // may have an index out of range, which is an exception
+  bool changes = false, converts = false; // perhaps: dFdx of a class of hits, pointToWorld
+  bool lights = false;                    // perhaps: illuminance
 };
 
 /// A value of class type: `refs[$]` where an index belongs.
@@ -49,6 +51,7 @@ struct Reference {
   const ClassPlan *target = nullptr;
   unsigned count = 0; // of an array: its length; of a buffer: 0
   bool isBuffer = false;
+  bool writable = false; // a local variable
 };
 
 struct ClassPlan {
@@ -59,6 +62,7 @@ struct ClassPlan {
   std::vector<Variable> outputs; // output buffers
   std::vector<Reference> references;
   std::string image;               // a member of the type sampler2D; empty: none
+  unsigned images = 0;             // of an array: its length
   std::vector<Function> functions; // that methods of it may call
   // that it has, inherited ones too: the name, and the payload's type after it
   std::set<std::string> methods;
@@ -76,7 +80,8 @@ struct Context {
   const Type *result = nullptr;     // of `return`; null: void
   std::string onReturn;             // what a method does before it returns
   bool returns = true;              // may return early
-  bool changes = true;              // dFdx and dFdy may stand here, if they may in such a class
+  bool changes = false;             // dFdx and dFdy may stand here
+  bool converts = false;            // pointToWorld and the like may stand here
   unsigned loops = 0, switches = 0; // around
   bool canContinue = false;         // breaks and continues have a target
   unsigned weight = 1;              // how often the place runs, at most
@@ -136,7 +141,9 @@ private:
   NodePtr constructor(const Type *type, unsigned depth);
   NodePtr partOfExpression(const Type *type, unsigned depth);
   NodePtr effect(const Type *type, unsigned depth);
+  NodePtr braced(const Type *type, unsigned depth);
   NodePtr change(const Type *type, unsigned depth);
+  NodePtr atomic(const Type *type, unsigned depth);
   NodePtr ofObject(const Type *type, unsigned depth);
   NodePtr ofImage(const Type *type, unsigned depth);
   NodePtr condition(unsigned depth) { return expression(types.boolType, depth); }
@@ -156,6 +163,9 @@ private:
   NodePtr index(const std::string &count);
   NodePtr target(const Type *type); // of exactly this type; declares a variable if there is none
   NodePtr referenceTo(const ClassPlan **plan, bool texture);
+  bool isOwn(const ClassPlan *plan) const;
+  NodePtr objectOf(const ClassPlan *plan, bool choosing = true);
+  NodePtr element(const Reference &reference);
 
   // Calls (Calls.cpp)
   NodePtr builtinCall(const Type *result, unsigned depth);
@@ -173,6 +183,8 @@ private:
   NodePtr block(unsigned count, unsigned depth);
   NodePtr statement(unsigned depth);
   NodePtr declaration(unsigned depth);
+  NodePtr referenceDeclaration();
+  NodePtr referenceAssignment();
   NodePtr assignment(unsigned depth);
   NodePtr ifStatement(unsigned depth);
   NodePtr loop(unsigned depth);
@@ -223,7 +235,7 @@ private:
   const ClassPlan *makeMaterial(const ClassPlan *base, const Targets &targets);
   void addBsdf(ClassPlan &plan, Node &members);
   const ClassPlan *makeHelper(const ClassPlan *base);
-  void addRecursion(ClassPlan &plan, Node &members);
+  void addRecursion(ClassPlan &plan, Node &members, const Type *result, unsigned traces = 0);
   std::vector<Variable> around(const ClassPlan &plan);
   std::vector<Variable> around(const ClassPlan &plan, const Function &function);
   Context contextOf(const Function &function, const ClassPlan &plan) const;

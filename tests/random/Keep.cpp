@@ -50,14 +50,17 @@ public:
         check({unit.get()}, [](const ast::ImportDecl &, FileId) { return nullptr; }, diagnostics);
     if (diagnostics.hasErrors())
       return;
-    request.classes = {program.camera, program.miss, program.selector};
+    request.classes = {program.camera, program.miss, program.selector, program.exception,
+                       program.rayGeneration};
     for (const auto *names : {&program.helpers, &program.textures, &program.lights,
                               &program.primitives, &program.materials, &program.meshMaterials})
       request.classes.insert(request.classes.end(), names->begin(), names->end());
+    if (module->findClass(program.rayGeneration))
+      request.engine = runtime::Engine::Programs;
     if (module->findClass("sampler2D"))
       request.classes.push_back("sampler2D");
     request.surfaces = World::surfaces(program);
-    request.features = RTSL_FEATURE_PRINT;
+    request.features = RTSL_FEATURE_PRINT | (program.raises ? RTSL_FEATURE_EXCEPTIONS : 0);
   }
 
   bool isValid() const { return !diagnostics.hasErrors(); }

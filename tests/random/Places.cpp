@@ -149,8 +149,34 @@ NodePtr Generator::referenceTo(const ClassPlan **plan, bool texture) {
       candidates.push_back(&reference);
   if (candidates.empty())
     return nullptr;
-  const Reference reference = *pick(candidates);
-  *plan = reference.target;
+  *plan = pick(candidates)->target;
+  return objectOf(*plan);
+}
+
+/// Is it the class in the making, or a base of it? Then only calls through members end.
+bool Generator::isOwn(const ClassPlan *plan) const {
+  for (const ClassPlan *at = context.self; at; at = at->base)
+    if (at == plan)
+      return true;
+  return false;
+}
+
+/// An object of this class, to which there is a reference; with `choosing`, perhaps one of two.
+NodePtr Generator::objectOf(const ClassPlan *plan, bool choosing) {
+  if (choosing && indexDepth == 0 && !isOwn(plan) && chance(12)) {
+    NodePtr test = condition(1), first = objectOf(plan, false);
+    return makeNode(Role::Fixed, "($ ? $ : $)", std::move(test), std::move(first),
+                    objectOf(plan, false));
+  }
+  std::vector<Reference> candidates;
+  for (const Reference &reference : references)
+    if (reference.target == plan)
+      candidates.push_back(reference);
+  return element(pick(candidates));
+}
+
+/// What it refers to; of an array or buffer, an element of it.
+NodePtr Generator::element(const Reference &reference) {
   if (reference.count == 0 && !reference.isBuffer)
     return makeNode(Role::Fixed, reference.text);
   return makeNode(

@@ -33,6 +33,8 @@ TEST(Random, ProgramsAreValidAndTheSameEveryTime) {
 TEST(Random, ShrinkingLeavesWhatFails) {
   unsigned shrunk = 0;
   for (std::uint32_t seed = 0; seed != 60 && shrunk != 5; ++seed) {
+    if (hasImages(seed)) // most of the text is the library's
+      continue;
     for (const char *construct : {" % ", "trace(", "switch"}) {
       auto fails = [&](const Program &program) {
         return program.text().find(construct) != std::string::npos && isValid(program);

@@ -99,13 +99,9 @@ NodePtr Generator::statement(unsigned depth) {
 }
 
 NodePtr Generator::declaration(unsigned depth) {
-  if (!references.empty() && chance(10)) { // another name for an object
-    const ClassPlan *plan = nullptr;
-    NodePtr object = referenceTo(&plan, false);
-    const std::string name = fresh("r");
-    references.push_back({name, plan, 0, false});
-    return makeNode(Role::Statement, plan->name + " " + name + " = $;", std::move(object));
-  }
+  if (!references.empty() && chance(10))
+    if (NodePtr made = referenceDeclaration())
+      return made;
   const Type *type = anyType();
   const std::string name = fresh("v");
   if (chance(10)) {
@@ -122,12 +118,55 @@ NodePtr Generator::declaration(unsigned depth) {
     pending.push_back(makeNode(Role::Statement, toString(type) + " " + name + ";"));
     return makeNode(Role::Statement, "if ($) " + name + " = $;", std::move(test), std::move(value));
   }
-  NodePtr value = converted(type, 1 + below(3));
+  const bool hasParts = type->is(TypeKind::Struct) || type->is(TypeKind::Array) ||
+                        type->isVector() || type->isMatrix();
+  NodePtr value = hasParts && chance(10) ? braced(type, 2) : converted(type, 1 + below(3));
   scope.push_back({name, type});
   return declare(name, type, std::move(value));
 }
 
+/// Another name for an object, or an array of some of its class; null if it might be the object's
+/// own class.
+NodePtr Generator::referenceDeclaration() {
+  const ClassPlan *plan = nullptr;
+  NodePtr object = referenceTo(&plan, false);
+  if (isOwn(plan))
+    return nullptr;
+  const std::string name = fresh("r");
+  if (chance(60)) {
+    references.push_back({name, plan, 0, false, true});
+    return makeNode(Role::Statement, plan->name + " " + name + " = $;", std::move(object));
+  }
+  const unsigned count = 2 + below(2);
+  const std::string type = plan->name + "[" + std::to_string(count) + "]";
+  NodePtr made =
+      makeNode(Role::Statement, type + " " + name + " = " + type + "($", std::move(object));
+  for (unsigned i = 1; i != count; ++i) {
+    made->text += ", $";
+    made->children.push_back(objectOf(plan));
+  }
+  made->text += ");";
+  references.push_back({name, plan, count, false, true});
+  return made;
+}
+
+/// A local variable refers to another object from now on; null if there is none.
+NodePtr Generator::referenceAssignment() {
+  std::vector<Reference> candidates;
+  for (const Reference &reference : references)
+    if (reference.writable)
+      candidates.push_back(reference);
+  if (candidates.empty())
+    return nullptr;
+  const Reference reference = pick(candidates);
+  NodePtr place = element(reference);
+  return makeNode(Role::Statement, "$ = $;", std::move(place), objectOf(reference.target));
+}
+
 NodePtr Generator::assignment(unsigned depth) {
+  if (chance(12))
+    if (NodePtr made = referenceAssignment())
+      return made;
   for (unsigned attempt = 0; attempt != 3; ++attempt) {
     const Type *type = anyType();
     NodePtr place = part(type, true);
