@@ -2,12 +2,13 @@
 //
 // assimp reads all formats, but is slow: for each OBJ or PLY file it clears 32 MiB first. So files
 // of these formats without unusual features are read here, and assimp reads the rest: other
-// formats, rare features, and damaged files, for which it gives the message, unless they are PLY
-// files, some of which crash it.
+// formats and rare features. What is wrong with a damaged file is said here, where it is found:
+// assimp reads other numbers from some damaged OBJ files, and some PLY files crash it.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/geometry/AssimpFile.h"
 #include "runtime/geometry/Mesh.h"
+#include "runtime/geometry/ObjDamage.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
 #include "support/ErrorMessages.h"
@@ -73,9 +74,9 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
   std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
-  if (isPly)
-    if (const std::optional<Message> damage = findPlyDamage(bytes, path))
-      throw Error(*damage, Place{path});
+  if (const std::optional<Message> damage =
+          isPly ? findPlyDamage(bytes, path) : findObjDamage(bytes, path))
+    throw Error(*damage, Place{path});
   if (isRead)
     throw Error(message::meshUnreadableFromPipe(path), Place{path});
   return std::nullopt;
@@ -105,12 +106,14 @@ std::vector<MeshGroup> loadMeshGroups(const std::string &path) {
   try {
     if (isPipe(path))
       throw Error(message::meshUnreadableFromPipe(path), Place{path});
-    if (std::optional<std::vector<MeshGroup>> groups =
-            readPlainObjGroups(LargeFile(path).bytes())) {
+    const LargeFile file(path);
+    if (std::optional<std::vector<MeshGroup>> groups = readPlainObjGroups(file.bytes())) {
       for (const MeshGroup &group : *groups)
         validateMesh(group.mesh, path);
       return std::move(*groups);
     }
+    if (const std::optional<Message> damage = findObjDamage(file.bytes(), path))
+      throw Error(*damage, Place{path});
     std::vector<MeshGroup> groups = readGroupsByAssimp(path);
     if (groups.empty())
       validateMesh({}, path); // throws: there is no triangle

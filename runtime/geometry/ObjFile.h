@@ -17,8 +17,8 @@ constexpr std::size_t bytesOfObjPart = 1 << 20;
 /// three or four corners that refer to preceding lines. Groups and materials are ignored. Corners
 /// that are equal in all indices share a vertex. The numbers after a position are the attribute
 /// `color`. Nothing if the file contains anything else or is
-/// damaged: such files are left to the general reader (MeshFile.cpp), which also reports errors,
-/// but is ten times slower for small files. Uses all cores; the result does not depend on how many
+/// damaged: such files are left to the general reader (MeshFile.cpp), which is ten times slower for
+/// small files. Uses all cores; the result does not depend on how many
 /// there are, nor on the size of parts.
 std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request = {},
                                  std::size_t bytesOfPart = bytesOfObjPart);

@@ -242,9 +242,7 @@ std::unique_ptr<File> readModel(const std::string &path) {
     named.push_back(std::move(json));
     for (const std::string &attribute : group.mesh.otherAttributes)
       if (attribute == "color" && known.size() == 1)
-        prepared.warnings.push_back(
-            {message::modelFeatureIgnored(fmt::format("the colors of vertices of `{}`", path)),
-             Place{path}});
+        prepared.warnings.push_back({message::modelColorsIgnored(path), Place{path}});
   }
   prepared.material = [known = std::move(known),
                        size = writer.size()](std::size_t index, const Mention &mention,

@@ -153,6 +153,20 @@ class BadScenes(Case):
         self.glass_scene()
         self.assert_message(self.render("--set", "objects.3.mesh=range.obj"), "E0904", "range.obj")
 
+    def test_lines_of_meshes_that_are_no_numbers(self):
+        """Each is named; a vertex that is left out would give faces other corners."""
+        self.glass_scene()
+        for line, said in (
+            ("v 0 1 x", "in line 2: `x` is no number"),
+            ("v 0 1", "in line 2: `v` needs 3 numbers or more"),
+            ("f 1 2 3/a", "in line 2: `3/a` is no number"),
+            ("f 1 2 0", "in line 2: it has the corner 0, and there are 3 vertices"),
+            ("f 1 2 -1", "in line 2: it has the corner -1, and there are 3 vertices"),
+        ):
+            self.write("line.obj", "# a comment\n" + line + "\n" + TRIANGLE)
+            message = self.render("--set", "objects.3.mesh=line.obj")
+            self.assert_message(message, "E0904", said)
+
     def test_empty_mesh(self):
         self.write("empty.obj", "")
         self.glass_scene()
