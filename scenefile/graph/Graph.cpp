@@ -50,7 +50,7 @@ struct Node {
   std::optional<std::int32_t> id;
   VariableDefinitions variables;
   std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
-  bool isReported = false;     // its transform
+  bool isReported = false;     // its transform, or a cycle through it
 };
 
 /// The largest condition number of a transform, at its keys and some times between them.
@@ -76,7 +76,7 @@ public:
     errors.attempt([&] { readRoots(); });
     if (named && roots.empty() && !root.find("root") && !root.find("roots"))
       errors.add(Error(message::rootMissing(), named->place()));
-    if (hasMistakes || !findOrder())
+    if (!findOrder() || hasMistakes) // cycles of what could be read are said, too
       return;
     errors.attempt([&] { countInstances(); });
     if (hasMistakes)
@@ -229,12 +229,20 @@ private:
     roots.push_back(edge);
   }
 
-  /// Orders the nodes so that children come first. False if there is a cycle, which is reported.
+  /// Orders the nodes so that children come first. False if there are cycles, which are reported.
   bool findOrder() {
+    bool isOrdered = true;
     enum class Mark : std::uint8_t { New, Open, Done };
     std::vector<Mark> marks(nodes.size(), Mark::New);
     struct Step {
       std::size_t node, next; // the child to be looked at
+    };
+    const auto namesOn = [&](const std::vector<Step> &path) {
+      std::vector<std::string> names;
+      for (const Step &step : path)
+        if (!nodes[step.node].name.empty())
+          names.push_back(nodes[step.node].name);
+      return names;
     };
     for (std::size_t first = 0; first < nodes.size(); ++first) {
       if (marks[first] != Mark::New)
@@ -252,12 +260,10 @@ private:
         }
         const Edge &edge = children[step.next++];
         if (marks[edge.node] == Mark::Open) {
-          std::vector<std::string> names;
-          for (const Step &above : path)
-            if (!nodes[above.node].name.empty())
-              names.push_back(nodes[above.node].name);
-          reportCycle(nodes[edge.node].name, std::move(names), edge.place);
-          return false;
+          isOrdered = false;
+          if (!std::exchange(nodes[edge.node].isReported, true))
+            reportCycle(nodes[edge.node].name, namesOn(path), edge.place);
+          continue;
         }
         if (marks[edge.node] == Mark::New) {
           marks[edge.node] = Mark::Open;
@@ -265,7 +271,7 @@ private:
         }
       }
     }
-    return true;
+    return isOrdered;
   }
 
   void reportCycle(const std::string &name, std::vector<std::string> path, const Place &place) {

@@ -110,6 +110,14 @@ TEST(SceneGraph, RefusesCyclesAndTooManyInstances) {
 "c": {"children": ["a", {"child": "d"}]},
 "d": {"child": "b"}}, "root": "a")"),
             "s.json:5:17+1: referenceCycle: the node `b` is below itself: b > c > d > b");
+  EXPECT_EQ(parseError("\"nodes\": {" + leaf + R"(,
+"b": {"children": ["nowhere", "c", "d"]},
+"c": {"children": ["b", "b"]},
+"d": {"child": "e"},
+"e": {"child": "d"}}, "root": "a")"),
+            "s.json:3:21+7: unknownName: no node is named `nowhere`\n"
+            "s.json:4:21+1: referenceCycle: the node `b` is below itself: b > c > b\n"
+            "s.json:6:17+1: referenceCycle: the node `d` is below itself: d > e > d");
   std::string doubled = leaf;
   std::string below = "a";
   for (int i = 0; i < 40; ++i) {
