@@ -43,7 +43,7 @@ enum class ErrorCode : std::uint8_t {
   UnknownClass,
   WrongClass,
   UnknownMember,
-  NotSettable, // a member that is not public
+  NotSettable, // a member that is not public, or that cannot be changed now
   BadArguments,
   MissingMember,
   DegenerateGeometry,

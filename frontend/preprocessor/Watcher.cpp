@@ -73,7 +73,7 @@ void Watcher::LexedFileChanged(clang::FileID id, LexedFileChangeReason reason,
       constexpr std::size_t shown = 4;
       if (notes.size() > 2 * shown)
         notes.erase(notes.begin() + shown, notes.end() - 2);
-      diagnostic.note("`#pragma once` in a file that is included keeps it from being read again");
+      diagnostic.note("`#pragma once` in an included file keeps it from being included again");
       session.stop();
     } else if (++includeCount > maxIncludes || (includedBytes += size) > maxIncludedBytes) {
       session.report(Code::includesTooMuch, session.origins.of(from),

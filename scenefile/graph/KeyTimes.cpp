@@ -26,7 +26,7 @@ std::vector<float> readKeyTimes(const JsonValue &value, const std::string &what)
   for (const JsonValue &element : given->elements) {
     const double time = readNumber(element, "a time");
     if (!(time >= 0 && time <= 1))
-      throw Error(message::keyTimeOutsideShutter(time), element.place());
+      throw Error(message::keyTimeOutOfRange(time), element.place());
     if (!times.empty() && !(float(time) > times.back()))
       throw Error(message::timesNotAscending(time, times.back()), element.place());
     times.push_back(float(time));

@@ -143,7 +143,7 @@ class Arguments(Case):
             )
             self.assertEqual(message["code"], "E0809")
             self.assertEqual(
-                message["message"], f"`{place}` is too large: numbers reach to 1.8e+308"
+                message["message"], f"`{place}` is too large: the largest number is 1.8e+308"
             )
         scene.write_text(scene.read_text().replace('"depth": 8', '"depth": 8e999'))
         self.assert_message(
@@ -183,7 +183,7 @@ class Arguments(Case):
         self.assertEqual(message["code"], "E0865")
         self.assertEqual(
             message["message"],
-            "`grey.rtsl` holds shaders, and `rtslc pack` takes a scene, which imports them",
+            "`grey.rtsl` contains shaders, but `rtslc pack` takes a scene, which imports them",
         )
         self.assertIn('"import": ["grey.rtsl"]', message["notes"][0])
         _, error = self.run_rtslc("report", "grey.rtsl", "--out", "out", status=DIAGNOSED)

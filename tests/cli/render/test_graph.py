@@ -571,7 +571,7 @@ class Roots(GraphCase):
             "right": {"children": ["both", "ball", "other"]},
             "other": balls([3, 0, 0, 1]),
         }
-        shared = "below several roots, which share what they have in common: `seen`, `shadowing`"
+        shared = "shared by several roots: `seen`, `shadowing`"
         self.assertEqual(
             self.notes(nodes, seen="left", shadowing="right"),
             [
@@ -598,7 +598,7 @@ class Roots(GraphCase):
             "scene.json", json.dumps(self.with_roots(nodes, {"a": "ball", "b": "ball"}))
         )
         _, told = self.run_rtslc("check", path, "-Werror")
-        self.assertIn("note[N2802]: `ball` is below several roots", told)
+        self.assertIn("note[N2802]: `ball` is shared by several roots", told)
         _, told = self.run_rtslc("render", path, "-o", "picture.png", "-O0", "-q")
         self.assertEqual(told, "")
 

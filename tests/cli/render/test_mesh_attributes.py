@@ -339,7 +339,7 @@ class Attributes(Case):
                     "attributes": {"wear": {"space": "vector", "per": "face"}},
                 }
             ],
-            "`per` is for `values`",
+            "`per` is only for `values`",
         )
         self.refused(
             [

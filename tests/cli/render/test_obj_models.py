@@ -338,7 +338,12 @@ class Mistakes(ObjCase):
             ("Kd 1 1 1\n", 1, 1, "`Kd` belongs to no material"),
             ("newmtl\n", 1, 1, "`newmtl` needs a name"),
             ("newmtl left\nKd 1 1\n", 2, 1, "needs three numbers, or one; it has 2"),
-            ("newmtl left\n\nKd 1 x 1\n", 3, 1, "`x` in `Kd` of the material `left` is no number"),
+            (
+                "newmtl left\n\nKd 1 x 1\n",
+                3,
+                1,
+                "`x` in `Kd` of the material `left` is not a number",
+            ),
             ("newmtl left\nKd nan 1 1\n", 2, 1, "`nan` in `Kd`"),
             ("newmtl left\nNs\nKs 1 1 1\n", 2, 1, "`Ns` of the material `left` needs a number"),
             ("newmtl left\nmap_Kd\n", 2, 1, "needs the path of an image"),

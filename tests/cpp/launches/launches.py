@@ -18,10 +18,10 @@ from programs import run
 rtslc, source, launches, turntable, models = sys.argv[1:]
 
 WORDS = (
-    "no node is entered",
+    "no node was entered",
     "no buffer number 9",
     "no buffer number 0",
-    "no memory for a buffer of",
+    "not enough memory for a buffer of",
     "1 to 3 dimensions, not 4",
     "`steps` of `Measure`",
     "no node number 7",
@@ -42,9 +42,9 @@ WORDS = (
     "a `sampler2D` has one file",
     "of 1, 2 or 4 channels",
     "nowhere.json",
-    "there is no pass 0: the file of the scene has 0 launches",
+    "there is no pass 0: the scene file has 0 launches",
     "nowhere",
-    "the scene is of no file",
+    "the scene cannot be reloaded",
     "no object of the scene is named `nothing`",
     "no output buffer `nothing`",
     "a mesh that moves needs at least two keys",
@@ -62,8 +62,8 @@ WORDS = (
     "2 x 2 texels of 3 channels",
     "no format of texels has the number 7",
     "images.1",
-    "frames of keys ascend: 2 follows 2",
-    "at least one key",
+    "frames of keys must ascend: 2 follows 2",
+    "at least one is needed",
     "no interpolation has the number 2",
 )
 
@@ -78,8 +78,8 @@ WORDS_OF_MODELS = (
     "Back",
     "a `Emitter` cannot be in a node",
     "`position` takes 3 numbers, not 2",
-    "a light in a node does not move",
-    "a camera does not move",
+    "a light in a node cannot move",
+    "a camera cannot move",
 )
 
 

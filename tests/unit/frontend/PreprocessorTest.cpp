@@ -356,7 +356,7 @@ TEST(Preprocessor, ShowsTheWayIntoACircle) {
             "  = note: included from b.rtsl:2\n"
             "  = note: included from a.rtsl:1\n"
             "  = note: included from main.rtsl:1\n"
-            "  = note: `#pragma once` in a file that is included keeps it from being read again\n"
+            "  = note: `#pragma once` in an included file keeps it from being included again\n"
             "\n");
 }
 

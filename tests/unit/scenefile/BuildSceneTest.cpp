@@ -119,9 +119,9 @@ TEST(BuildScene, WrongValuesAreShownWhereTheyStand) {
       "s.json:3:6+4: outOfRange: member `f` of `e` cannot be 1e+40: the largest float is 3.4e38");
   EXPECT_EQ(buildError(everything("\"i\": 1.5")),
             "s.json:3:6+3: wrongType: member `i` of `e` takes whole numbers, not 1.5");
-  EXPECT_EQ(
-      buildError(everything("\"u\": -1")),
-      "s.json:3:6+2: outOfRange: member `u` of `e` cannot be -1: it lies between 0 and 4294967295");
+  EXPECT_EQ(buildError(everything("\"u\": -1")),
+            "s.json:3:6+2: outOfRange: member `u` of `e` cannot be -1: it must be between 0 and "
+            "4294967295");
   EXPECT_EQ(buildError(everything("\"b\": 1")),
             "s.json:3:6+1: wrongType: member `b` of `e` is a `bool`, not a number");
   EXPECT_EQ(buildError(everything("\"v\": [1, 2]")),

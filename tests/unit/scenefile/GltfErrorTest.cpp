@@ -209,7 +209,7 @@ TEST_F(GltfError, Buffers) {
   EXPECT_EQ(meshError(withUri("none.bin")),
             "m.gltf:7:40+8: fileNotFound: cannot read `none.bin`: No such file or directory");
   EXPECT_EQ(meshError(withUri("https://example.org/square.bin")),
-            "m.gltf:7:40+30: notSupported: files are read from the disk, not by `https`");
+            "m.gltf:7:40+30: notSupported: files are read only from disk, not by `https`");
   EXPECT_EQ(meshError(withUri("data:,abc")),
             "m.gltf:7:40+9: badBuffer: `buffers.0` has a `data:` URI that is not in base64");
   EXPECT_EQ(meshError(withUri("data:;base64,AA!A")),
@@ -243,8 +243,8 @@ TEST_F(GltfError, Materials) {
             "m.gltf:8:87+1: outOfRange: `metallicFactor` of `materials.0` must be between 0 and 1, "
             "not 2");
   EXPECT_EQ(material(R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 2, 1]}})"),
-            "m.gltf:8:88+1: outOfRange: the numbers of `baseColorFactor` of `materials.0` are from "
-            "0 to 1");
+            "m.gltf:8:88+1: outOfRange: the numbers of `baseColorFactor` of `materials.0` must be "
+            "from 0 to 1");
   EXPECT_EQ(material(R"({"pbrMetallicRoughness": 1})"),
             "m.gltf:8:68+1: wrongType: `pbrMetallicRoughness` of `materials.0` is an object, not a "
             "number");
@@ -254,7 +254,8 @@ TEST_F(GltfError, Materials) {
   EXPECT_EQ(
       material(
           R"({"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": -1}}})"),
-      "m.gltf:8:144+2: outOfRange: `emissiveStrength` of `materials.0` is -1, below 0");
+      "m.gltf:8:144+2: outOfRange: `emissiveStrength` of `materials.0` must not be negative, but "
+      "is -1");
   EXPECT_EQ(material(R"({"normalTexture": {"index": 0}})"),
             "m.gltf:8:71+1: outOfRange: `index` of a texture of `materials.0` is 0, and `textures` "
             "has 0 elements");
@@ -268,7 +269,7 @@ TEST_F(GltfError, Materials) {
       material(
           texture,
           R"(, "textures": [{"source": 0, "sampler": 0}], "images": [{"uri": "http://a.b/c"}])"),
-      "m.gltf:8:140+12: notSupported: files are read from the disk, not by `http`");
+      "m.gltf:8:140+12: notSupported: files are read only from disk, not by `http`");
   EXPECT_EQ(
       material(
           texture,
@@ -339,6 +340,6 @@ TEST_F(GltfError, PartsOfASceneFile) {
   EXPECT_EQ(
       object(
           R"({"light": {"class": "PointLight"}, "transform": {"keys": [{"scale": 2}, {"scale": 3}]}})"),
-      "s.json:1:64+1: notSupported: a light in a node does not move, but the transform of its "
+      "s.json:1:64+1: notSupported: a light in a node cannot move, but the transform of its "
       "node, or of one above it, has keys");
 }

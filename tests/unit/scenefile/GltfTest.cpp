@@ -214,7 +214,7 @@ TEST_F(Gltf, CamerasAreTheFilesOrFrameIt) {
             "(note it has `wide`, `flat`)");
   EXPECT_EQ(folder.without(errorOf(
                 [&] { camera(file, R"(, "transform": {"keys": [{"scale": 1}, {"scale": 2}]})"); })),
-            "s.json:1:56+1: notSupported: a camera does not move, but its transform has keys");
+            "s.json:1:56+1: notSupported: a camera cannot move, but its transform has keys");
   // The square has the radius sqrt(2) and is seen from the distance sqrt(2) / sin(20 degrees).
   EXPECT_EQ(camera(squareFile()), "PerspectiveCamera (eye=[1.861 1.447 3.391] "
                                   "target=[0 0 0] up=[0 1 0]) fieldOfView=40");
@@ -241,7 +241,7 @@ TEST_F(Gltf, LightsAreInTheWorld) {
   EXPECT_EQ(textOf(described.lights[3]), "PointLight intensity=[1 0.5 0] position=[5 2 103]");
   ASSERT_EQ(described.warnings.size(), 1u);
   EXPECT_EQ(described.warnings[0].message,
-            "`range` of `lights.2` is ignored: light has no limit of distance");
+            "`range` of `lights.2` is ignored: light reaches any distance");
 }
 
 TEST_F(Gltf, SaysWhatIsLeftOut) {

@@ -67,7 +67,7 @@ TEST(JsonValue, SyntaxErrorsPointAtTheToken) {
             "s.json:1:3+1: jsonSyntax: this is not JSON: invalid literal; expected string literal "
             "(note JSON has no comments)");
   EXPECT_EQ(errorOfText("{\"a\": 1e999}"),
-            "s.json:1:7+5: outOfRange: `1e999` is too large: numbers reach to 1.8e+308");
+            "s.json:1:7+5: outOfRange: `1e999` is too large: the largest number is 1.8e+308");
   EXPECT_NE(errorOfText("[\"\xff\"]").find("jsonSyntax"), std::string::npos);
 }
 
@@ -118,7 +118,7 @@ TEST(Override, ReportsWhatIsWrong) {
                                       "list: `first` is not an index");
   EXPECT_EQ(error("textures.checks.scale.x=1"),
             "--set textures.checks.scale.x=1:1:29+1: badOverride: `textures.checks.scale` is a "
-            "number: it has no `x` in it");
+            "number, which cannot contain `x`");
   EXPECT_EQ(error("a..b=1"),
             "--set a..b=1:1:9+0: badOverride: the path of an override has an empty part");
 }

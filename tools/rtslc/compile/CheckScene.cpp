@@ -59,7 +59,7 @@ void noteSharedNodes(const scene::SceneDescription &description, Messages &messa
     for (const scene::LocatedName &root : shared.roots)
       note.label(messages.rangeOf(root.place), fmt::format("the root `{}`", root.text));
     for (std::size_t i = 1; i < std::min(shared.nodes.size(), shown); ++i)
-      note.label(messages.rangeOf(shared.nodes[i].place), "below them, too");
+      note.label(messages.rangeOf(shared.nodes[i].place), "shared, too");
   }
 }
 

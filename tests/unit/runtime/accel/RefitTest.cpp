@@ -194,7 +194,7 @@ TEST(Refit, RefusesWhatCannotMove) {
   EXPECT_EQ(said([&] { scene.moveInstance(0, Transform::scale(0, 1, 1)); }),
             "the transform of `clump` flattens it");
   EXPECT_EQ(said([&] { scene.moveInstance(0, randomMotion(random)); }),
-            "`clump` cannot get keys: nothing moved when the scene was made");
+            "`clump` cannot be given keys: the scene was created without anything that moves");
   EXPECT_EQ(said([&] { scene.moveMesh(mesh, {1, 2, 3}); }),
             "clump: 1 positions are given, but there are 9");
   std::vector<float> wrong = before;

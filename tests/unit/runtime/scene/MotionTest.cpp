@@ -333,7 +333,7 @@ TEST(Motion, KeysOfAMeshMustFit) {
   };
   EXPECT_EQ(message(triangle), "");
   EXPECT_EQ(message(turned),
-            "mesh `b.obj` has other triangles than the first key of its object, `a.obj`");
+            "mesh `b.obj` does not have the triangles of the first key of its object, `a.obj`");
   EXPECT_EQ(message(larger), "mesh `b.obj` has 4 vertices, but the first key of its object, "
                              "`a.obj`, has 3");
 }
