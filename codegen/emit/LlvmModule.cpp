@@ -5,6 +5,7 @@
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/FoldKnownCalls.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
+#include "codegen/emit/rewrites/NarrowLoads.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 #include "codegen/emit/rewrites/UnrollLoops.h"
@@ -281,26 +282,14 @@ static void addScalarization(llvm::PassBuilder &builder) {
       });
 }
 
-/// Does LLVM's SLP pass combine scalars in the function? It also loads several fields of a ray's
-/// state at once, and such a load waits for the narrow stores that wrote them. That costs more than
-/// it gains where they have just been written: in the test of a primitive, and in all of a program
-/// whose rays carry payloads (docs/benchmarks.md, "Paths beside a program by hand").
-static bool combinesScalars(const llvm::Function &function) {
-  const llvm::Function *payloads = function.getParent()->getFunction("rtsl_trace_payload");
-  const bool hasPayloads = payloads && !payloads->isDeclaration();
-  const llvm::StringRef name = function.getName();
-  return !hasPayloads && name != "rtsl_traverse" && !name.contains("findHit") &&
-         !name.contains("testPrimitive") && !name.contains("intersect");
-}
-
-/// Restricts that pass, and disables the one that widens a load to 16 bytes if that many are known
-/// to be valid, to use one or two lanes of them: that load, too, waits for the narrow stores that
-/// wrote them, and may load denormals.
+/// Disables LLVM's SLP pass in functions that are to load fields one by one, and everywhere the
+/// pass that widens a load to 16 bytes if that many are known to be valid, to use one or two lanes
+/// of them: that load, too, waits for the narrow stores that wrote them, and may load denormals.
 static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
   callbacks.registerShouldRunOptionalPassCallback([](llvm::StringRef pass, llvm::Any unit) {
     const auto *function = llvm::any_cast<const llvm::Function *>(&unit);
     return pass != "VectorCombinePass" &&
-           (pass != "SLPVectorizerPass" || !function || combinesScalars(**function));
+           (pass != "SLPVectorizerPass" || !function || !hasNarrowLoads(**function));
   });
 }
 
@@ -348,7 +337,7 @@ static void addUnrolling(llvm::PassBuilder &builder) {
       });
 }
 
-/// After LLVM's simplification, which would move the division behind the choice.
+/// After LLVM's simplification, which would move the division after the choice.
 static void addDivisionOfZeros(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
@@ -368,8 +357,10 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   llvm::CGSCCAnalysisManager components;
   llvm::ModuleAnalysisManager modules;
   llvm::PassInstrumentationCallbacks callbacks;
-  if (!machine.getTargetTriple().isNVPTX())
+  if (!machine.getTargetTriple().isNVPTX()) {
+    markNarrowLoads(module);
     keepLoadsNarrow(callbacks);
+  }
   llvm::PassBuilder builder(&machine, tuning, std::nullopt, &callbacks);
   builder.registerModuleAnalyses(modules);
   builder.registerCGSCCAnalyses(components);
@@ -399,6 +390,7 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
                                        ? builder.buildO0DefaultPipeline(level)
                                        : builder.buildPerModuleDefaultPipeline(level);
   passes.run(module, modules);
+  unmarkNarrowLoads(module);
 }
 
 std::string printLlvm(const llvm::Module &module) {

@@ -125,10 +125,10 @@ static std::vector<std::string> kernels(Organisation organisation) {
   if (organisation == Organisation::Megakernel)
     return {"rtsl_render", "rtsl_sum"};
   if (organisation == Organisation::Persistent)
-    return {"rtsl_persistent", "rtsl_block_state", "rtsl_sum", "rtsl_block_has_stacks",
+    return {"rtsl_persistent", "rtsl_block_state", "rtsl_sum", "rtsl_slots_have_stacks",
             "rtsl_record_groups"};
-  return {"rtsl_wave_begin", "rtsl_wave_sample",     "rtsl_wave_trace",   "rtsl_wave_state",
-          "rtsl_sum",        "rtsl_wave_has_stacks", "rtsl_record_groups"};
+  return {"rtsl_wave_begin", "rtsl_wave_sample",       "rtsl_wave_trace",   "rtsl_wave_state",
+          "rtsl_sum",        "rtsl_slots_have_stacks", "rtsl_record_groups"};
 }
 
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
@@ -203,12 +203,12 @@ void optimize(LlvmCode &code) {
 std::string toPtx(LlvmCode code, runtime::WaveFacts *facts) {
   codegen::nameForPtx(*code.module);
   optimize(code);
-  for (const char *hasStacks : {"rtsl_wave_has_stacks", "rtsl_block_has_stacks"})
-    if (facts && code.module->getFunction(hasStacks)) {
-      facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
-      // Not known of code that is not optimised.
-      facts->hasStacks = codegen::takeConstant(*code.module, hasStacks).value_or(1) != 0;
-    }
+  if (facts && code.organisation != Organisation::Megakernel) {
+    facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
+    // Not known of code that is not optimised.
+    facts->hasStacks =
+        codegen::takeConstant(*code.module, "rtsl_slots_have_stacks").value_or(1) != 0;
+  }
   return take(codegen::printPtx(*code.module, *code.machine));
 }
 

@@ -18,9 +18,9 @@ namespace rtsl::driver {
 
 static void prepare(mlir::MLIRContext &context) {
   mlir::DialectRegistry registry;
+  codegen::registerLlvmDialects(registry);
   codegen::registerLlvmTranslation(registry);
   context.appendDialectRegistry(registry);
-  loadDialects(context, codegen::buildLlvmPipeline);
 }
 
 /// Makes the objects of a scene, with a program that contains only what this needs.

@@ -291,7 +291,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
   llvm::StringRef getArgument() const override { return "rtsl-to-llvm"; }
   llvm::StringRef getDescription() const override { return "converts level 2 to the LLVM dialect"; }
   void getDependentDialects(mlir::DialectRegistry &registry) const override {
-    registry.insert<LLVM::LLVMDialect, mlir::arith::ArithDialect, mlir::ub::UBDialect>();
+    registerLlvmDialects(registry);
   }
 
   void runOnOperation() override {
@@ -345,6 +345,10 @@ void noteWholeProgram(mlir::ModuleOp module) {
 
 std::unique_ptr<mlir::Pass> createConvertToLlvmPass() {
   return std::make_unique<ConvertToLlvm>();
+}
+
+void registerLlvmDialects(mlir::DialectRegistry &registry) {
+  registry.insert<LLVM::LLVMDialect, mlir::arith::ArithDialect, mlir::ub::UBDialect>();
 }
 
 void buildLlvmPipeline(mlir::OpPassManager &module) {

@@ -19,6 +19,7 @@
 #include <memory>
 
 namespace mlir {
+class DialectRegistry;
 class ModuleOp;
 class OpPassManager;
 class Pass;
@@ -33,6 +34,9 @@ std::unique_ptr<mlir::Pass> createConvertToLlvmPass();
 /// Records on operations the facts that the pass derives from the whole program and cannot derive
 /// from a part of it (Parts.h). For a module that is a whole program, the pass calls this itself.
 void noteWholeProgram(mlir::ModuleOp module);
+
+/// The dialects whose operations the pass makes.
+void registerLlvmDialects(mlir::DialectRegistry &registry);
 
 /// From level 2 to the LLVM dialect, cleaned up.
 void buildLlvmPipeline(mlir::OpPassManager &module);

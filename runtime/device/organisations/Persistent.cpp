@@ -23,7 +23,7 @@ void rtsl_block_state(const RtslJob *job, const device::Block *block, uint32_t t
 }
 
 /// Whether slots have a stack; a constant.
-uint32_t rtsl_block_has_stacks() {
+uint32_t rtsl_slots_have_stacks() {
   return !device::hasLevelInRecord();
 }
 

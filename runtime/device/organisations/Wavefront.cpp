@@ -13,7 +13,7 @@ using namespace rtsl;
 extern "C" {
 
 /// Whether slots have a stack; a constant.
-uint32_t rtsl_wave_has_stacks() {
+uint32_t rtsl_slots_have_stacks() {
   return !device::hasLevelInRecord();
 }
 
