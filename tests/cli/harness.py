@@ -91,6 +91,12 @@ def obey_permissions():
 deep = unittest.skipUnless("RTSL_DEEP" in os.environ, "`make deep` runs it")
 
 
+def numbers_of(line):
+    """The numbers of a line that a shader printed, of vectors, too."""
+    values = re.sub(r"vec\d", "", line.split(": ", 1)[1])
+    return [float(n) for n in re.findall(r"[-+]?(?:\d[\d.e+-]*|inf|nan)", values)]
+
+
 class Case(unittest.TestCase):
     # The level of optimisation of these commands where a test gives none; None: that of users, as
     # in `make deep`. No picture depends on it, which tests/render and the conformance suite check,

@@ -4,7 +4,7 @@ import json
 import random
 import struct
 
-from harness import Case
+from harness import Case, numbers_of
 
 PROBES = """
 class Probe2D : rt_RayGeneration {
@@ -92,19 +92,6 @@ class Bindless : rt_RayGeneration {
   }
 };
 """
-
-
-def numbers_of(line):
-    return [
-        float(n)
-        for n in line.split(": ", 1)[1]
-        .replace("vec4(", "")
-        .replace("ivec2(", "")
-        .replace("ivec3(", "")
-        .replace(")", "")
-        .replace(",", " ")
-        .split()
-    ]
 
 
 class ImageCase(Case):

@@ -8,7 +8,8 @@ import re
 import struct
 import unittest
 
-from image_case import ImageCase, numbers_of
+from harness import numbers_of
+from image_case import ImageCase
 from image_files import png, hdr, tiff
 from image_oracle import Oracle, decode_srgb, encode_srgb
 
