@@ -19,117 +19,137 @@ std::vector<ExprPtr> Copier::copies(const std::vector<ExprPtr> &exprs) {
   return made;
 }
 
-/// A node of the same kind and type, without children.
-template <typename T>
-static std::unique_ptr<T> like(const T &expr) {
-  return makeExpr<T>(expr.type, expr.range);
-}
+/// Fills a node of the same kind and type with copies of an expression's children.
+struct Copier::Filler {
+  Copier &copier;
 
-template <typename T, typename Fill>
-static ExprPtr made(const Expr &expr, Fill fill) {
-  const T &from = cast<T>(expr);
-  auto node = like(from);
-  fill(*node, from);
-  return node;
-}
+  void fill(LiteralExpr &to, const LiteralExpr &from) {
+    to.value = from.value;
+    to.spelling = from.spelling;
+    to.variable = copier.copyOf(from.variable);
+    to.member = from.member;
+  }
+  void fill(VariableExpr &to, const VariableExpr &from) {
+    to.variable = copier.copyOf(from.variable);
+  }
+  void fill(StateExpr &to, const StateExpr &from) { to.variable = from.variable; }
+  void fill(MemberExpr &to, const MemberExpr &from) { to.member = from.member; }
+  void fill(FieldExpr &to, const FieldExpr &from) {
+    to.base = copier.copy(from.base);
+    to.field = from.field;
+  }
+  void fill(SwizzleExpr &to, const SwizzleExpr &from) {
+    to.base = copier.copy(from.base);
+    to.components = from.components;
+  }
+  void fill(IndexExpr &to, const IndexExpr &from) {
+    to.base = copier.copy(from.base);
+    to.index = copier.copy(from.index);
+  }
+  void fill(LengthExpr &to, const LengthExpr &from) { to.base = copier.copy(from.base); }
+  void fill(UnaryExpr &to, const UnaryExpr &from) {
+    to.op = from.op;
+    to.operand = copier.copy(from.operand);
+  }
+  void fill(IncDecExpr &to, const IncDecExpr &from) {
+    to.increment = from.increment;
+    to.prefix = from.prefix;
+    to.target = copier.copy(from.target);
+  }
+  void fill(BinaryExpr &to, const BinaryExpr &from) {
+    to.op = from.op;
+    to.left = copier.copy(from.left);
+    to.right = copier.copy(from.right);
+  }
+  void fill(AssignExpr &to, const AssignExpr &from) {
+    to.compound = from.compound;
+    to.op = from.op;
+    to.target = copier.copy(from.target);
+    to.value = copier.copy(from.value);
+  }
+  void fill(ConditionalExpr &to, const ConditionalExpr &from) {
+    to.condition = copier.copy(from.condition);
+    to.whenTrue = copier.copy(from.whenTrue);
+    to.whenFalse = copier.copy(from.whenFalse);
+  }
+  void fill(CommaExpr &to, const CommaExpr &from) {
+    to.left = copier.copy(from.left);
+    to.right = copier.copy(from.right);
+  }
+  void fill(ConvertExpr &to, const ConvertExpr &from) {
+    to.isImplicit = from.isImplicit;
+    to.operand = copier.copy(from.operand);
+  }
+  void fill(ConstructExpr &to, const ConstructExpr &from) { to.args = copier.copies(from.args); }
+  void fill(BuiltinExpr &to, const BuiltinExpr &from) {
+    to.builtin = from.builtin;
+    to.args = copier.copies(from.args);
+  }
+  void fill(CallExpr &to, const CallExpr &from) {
+    to.function = from.function;
+    to.onSelf = from.onSelf;
+    to.isOfBase = from.isOfBase;
+    to.args = copier.copies(from.args);
+  }
+  void fill(MethodCallExpr &to, const MethodCallExpr &from) {
+    to.receiver = copier.copy(from.receiver);
+    to.method = from.method;
+    to.function = from.function;
+    to.args = copier.copies(from.args);
+  }
+  void fill(StringExpr &to, const StringExpr &from) { to.value = from.value; }
+
+  template <typename T>
+  ExprPtr made(const Expr &expr) {
+    auto node = makeExpr<T>(expr.type, expr.range);
+    fill(*node, cast<T>(expr));
+    return node;
+  }
+};
 
 ExprPtr Copier::copyNode(const Expr &expr) {
+  Filler filler{*this};
   switch (expr.kind) {
   case ExprKind::Literal:
-    return made<LiteralExpr>(expr, [&](auto &to, const auto &from) {
-      to.value = from.value;
-      to.spelling = from.spelling;
-      to.variable = copyOf(from.variable);
-      to.member = from.member;
-    });
+    return filler.made<LiteralExpr>(expr);
   case ExprKind::Variable:
-    return made<VariableExpr>(
-        expr, [&](auto &to, const auto &from) { to.variable = copyOf(from.variable); });
+    return filler.made<VariableExpr>(expr);
   case ExprKind::State:
-    return made<StateExpr>(expr, [](auto &to, const auto &from) { to.variable = from.variable; });
+    return filler.made<StateExpr>(expr);
   case ExprKind::Member:
-    return made<MemberExpr>(expr, [](auto &to, const auto &from) { to.member = from.member; });
+    return filler.made<MemberExpr>(expr);
   case ExprKind::Field:
-    return made<FieldExpr>(expr, [&](auto &to, const auto &from) {
-      to.base = copy(from.base);
-      to.field = from.field;
-    });
+    return filler.made<FieldExpr>(expr);
   case ExprKind::Swizzle:
-    return made<SwizzleExpr>(expr, [&](auto &to, const auto &from) {
-      to.base = copy(from.base);
-      to.components = from.components;
-    });
+    return filler.made<SwizzleExpr>(expr);
   case ExprKind::Index:
-    return made<IndexExpr>(expr, [&](auto &to, const auto &from) {
-      to.base = copy(from.base);
-      to.index = copy(from.index);
-    });
+    return filler.made<IndexExpr>(expr);
   case ExprKind::Length:
-    return made<LengthExpr>(expr, [&](auto &to, const auto &from) { to.base = copy(from.base); });
+    return filler.made<LengthExpr>(expr);
   case ExprKind::Unary:
-    return made<UnaryExpr>(expr, [&](auto &to, const auto &from) {
-      to.op = from.op;
-      to.operand = copy(from.operand);
-    });
+    return filler.made<UnaryExpr>(expr);
   case ExprKind::IncDec:
-    return made<IncDecExpr>(expr, [&](auto &to, const auto &from) {
-      to.increment = from.increment;
-      to.prefix = from.prefix;
-      to.target = copy(from.target);
-    });
+    return filler.made<IncDecExpr>(expr);
   case ExprKind::Binary:
-    return made<BinaryExpr>(expr, [&](auto &to, const auto &from) {
-      to.op = from.op;
-      to.left = copy(from.left);
-      to.right = copy(from.right);
-    });
+    return filler.made<BinaryExpr>(expr);
   case ExprKind::Assign:
-    return made<AssignExpr>(expr, [&](auto &to, const auto &from) {
-      to.compound = from.compound;
-      to.op = from.op;
-      to.target = copy(from.target);
-      to.value = copy(from.value);
-    });
+    return filler.made<AssignExpr>(expr);
   case ExprKind::Conditional:
-    return made<ConditionalExpr>(expr, [&](auto &to, const auto &from) {
-      to.condition = copy(from.condition);
-      to.whenTrue = copy(from.whenTrue);
-      to.whenFalse = copy(from.whenFalse);
-    });
+    return filler.made<ConditionalExpr>(expr);
   case ExprKind::Comma:
-    return made<CommaExpr>(expr, [&](auto &to, const auto &from) {
-      to.left = copy(from.left);
-      to.right = copy(from.right);
-    });
+    return filler.made<CommaExpr>(expr);
   case ExprKind::Convert:
-    return made<ConvertExpr>(expr, [&](auto &to, const auto &from) {
-      to.isImplicit = from.isImplicit;
-      to.operand = copy(from.operand);
-    });
+    return filler.made<ConvertExpr>(expr);
   case ExprKind::Construct:
-    return made<ConstructExpr>(expr,
-                               [&](auto &to, const auto &from) { to.args = copies(from.args); });
+    return filler.made<ConstructExpr>(expr);
   case ExprKind::Builtin:
-    return made<BuiltinExpr>(expr, [&](auto &to, const auto &from) {
-      to.builtin = from.builtin;
-      to.args = copies(from.args);
-    });
+    return filler.made<BuiltinExpr>(expr);
   case ExprKind::Call:
-    return made<CallExpr>(expr, [&](auto &to, const auto &from) {
-      to.function = from.function;
-      to.onSelf = from.onSelf;
-      to.isOfBase = from.isOfBase;
-      to.args = copies(from.args);
-    });
+    return filler.made<CallExpr>(expr);
   case ExprKind::MethodCall:
-    return made<MethodCallExpr>(expr, [&](auto &to, const auto &from) {
-      to.receiver = copy(from.receiver);
-      to.method = from.method;
-      to.function = from.function;
-      to.args = copies(from.args);
-    });
+    return filler.made<MethodCallExpr>(expr);
   case ExprKind::String:
-    return made<StringExpr>(expr, [](auto &to, const auto &from) { to.value = from.value; });
+    return filler.made<StringExpr>(expr);
   }
   return nullptr;
 }

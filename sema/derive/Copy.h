@@ -25,6 +25,9 @@ protected:
   const typed::Variable *copyOf(const typed::Variable *variable) const;
 
   std::map<const typed::Variable *, const typed::Variable *> variables; // others stay
+
+private:
+  struct Filler;
 };
 
 } // namespace rtsl::derive

@@ -50,6 +50,10 @@ private:
   void evaluate(const typed::Expr &expr, SourceRange range, std::vector<typed::StmtPtr> &out);
   void forgetWritten(const typed::Expr &expr, std::vector<typed::StmtPtr> &out);
   void loop(const typed::ForStmt &from, std::vector<typed::StmtPtr> &out);
+  typed::StmtPtr single(const typed::Stmt &from);
+  typed::StmtPtr nested(const typed::StmtPtr &from);
+  std::unique_ptr<typed::SwitchStmt> choice(const typed::SwitchStmt &from);
+  std::unique_ptr<typed::IlluminanceStmt> illuminance(const typed::IlluminanceStmt &from);
   typed::ExprPtr returned(const typed::ExprPtr &value);
 
   // DerivedExpressions.cpp

@@ -138,11 +138,85 @@ ExprPtr DerivedBody::returned(const ExprPtr &value) {
   return derivativeOf(*value, result == Result::AlongX ? Axis::X : Axis::Y);
 }
 
+/// Statements inside of another one. What they declare is declared with them, and what the
+/// statement itself has declared so far stays before it.
+StmtPtr DerivedBody::nested(const StmtPtr &one) {
+  std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
+  StmtPtr made = statement(one);
+  keptDeclarations = std::move(declarations);
+  return made;
+}
+
+std::unique_ptr<SwitchStmt> DerivedBody::choice(const SwitchStmt &stmt) {
+  auto made = blank(stmt);
+  made->value = copy(stmt.value);
+  std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
+  for (const SwitchStmt::Arm &arm : stmt.arms) {
+    SwitchStmt::Arm &copied = made->arms.emplace_back();
+    copied.values = arm.values;
+    copied.isDefault = arm.isDefault;
+    copied.range = arm.range;
+    for (const StmtPtr &inner : arm.body)
+      statement(*inner, copied.body);
+  }
+  keptDeclarations = std::move(declarations);
+  return made;
+}
+
+std::unique_ptr<IlluminanceStmt> DerivedBody::illuminance(const IlluminanceStmt &stmt) {
+  auto made = blank(stmt);
+  made->point = copy(stmt.point);
+  made->normal = copy(stmt.normal);
+  made->angle = copy(stmt.angle);
+  made->body = nested(stmt.body);
+  return made;
+}
+
+/// A statement that becomes one statement, after declarations.
+StmtPtr DerivedBody::single(const Stmt &stmt) {
+  switch (stmt.kind) {
+  case StmtKind::If: {
+    const auto &branch = cast<IfStmt>(stmt);
+    auto made = blank(branch);
+    made->condition = copy(branch.condition);
+    made->thenStmt = nested(branch.thenStmt);
+    made->elseStmt = nested(branch.elseStmt);
+    return made;
+  }
+  case StmtKind::While: {
+    const auto &loop = cast<WhileStmt>(stmt);
+    auto made = blank(loop);
+    made->condition = copy(loop.condition);
+    made->body = nested(loop.body);
+    return made;
+  }
+  case StmtKind::DoWhile: {
+    const auto &loop = cast<DoWhileStmt>(stmt);
+    auto made = blank(loop);
+    made->body = statement(loop.body);
+    made->condition = copy(loop.condition);
+    return made;
+  }
+  case StmtKind::Switch:
+    return choice(cast<SwitchStmt>(stmt));
+  case StmtKind::Illuminance:
+    return illuminance(cast<IlluminanceStmt>(stmt));
+  case StmtKind::Break:
+    return blank(cast<BreakStmt>(stmt));
+  case StmtKind::Continue:
+    return blank(cast<ContinueStmt>(stmt));
+  case StmtKind::Return: {
+    auto made = blank(cast<ReturnStmt>(stmt));
+    made->value = returned(cast<ReturnStmt>(stmt).value);
+    return made;
+  }
+  default:
+    return nullptr;
+  }
+}
+
 void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
-  const auto finish = [&](StmtPtr made) {
-    declareKept(out);
-    out.push_back(std::move(made));
-  };
+  const std::size_t first = out.size();
   switch (stmt.kind) {
   case StmtKind::Compound: {
     const auto &block = cast<CompoundStmt>(stmt);
@@ -151,86 +225,23 @@ void DerivedBody::statement(const Stmt &stmt, std::vector<StmtPtr> &out) {
       statement(*inner, made->body);
     return out.push_back(std::move(made));
   }
-  case StmtKind::Declaration: {
-    const std::size_t first = out.size();
+  case StmtKind::Declaration:
     for (const Variable *variable : cast<DeclarationStmt>(stmt).variables)
       declare(*variable, out);
     if (out.size() > first)
       out[first]->comment = stmt.comment;
     return;
-  }
-  case StmtKind::Expression: {
-    const std::size_t first = out.size();
+  case StmtKind::Expression:
     evaluate(*cast<ExpressionStmt>(stmt).expr, stmt.range, out);
     out[first]->comment = stmt.comment;
     return;
-  }
-  case StmtKind::If: {
-    const auto &branch = cast<IfStmt>(stmt);
-    auto made = blank(branch);
-    made->condition = copy(branch.condition);
-    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
-    made->thenStmt = statement(branch.thenStmt);
-    made->elseStmt = statement(branch.elseStmt);
-    keptDeclarations = std::move(declarations);
-    return finish(std::move(made));
-  }
   case StmtKind::For:
     return loop(cast<ForStmt>(stmt), out);
-  case StmtKind::While: {
-    const auto &loop = cast<WhileStmt>(stmt);
-    auto made = blank(loop);
-    made->condition = copy(loop.condition);
-    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
-    made->body = statement(loop.body);
-    keptDeclarations = std::move(declarations);
-    return finish(std::move(made));
-  }
-  case StmtKind::DoWhile: {
-    const auto &loop = cast<DoWhileStmt>(stmt);
-    auto made = blank(loop);
-    made->body = statement(loop.body);
-    made->condition = copy(loop.condition);
-    return finish(std::move(made));
-  }
-  case StmtKind::Switch: {
-    const auto &choice = cast<SwitchStmt>(stmt);
-    auto made = blank(choice);
-    made->value = copy(choice.value);
-    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
-    for (const SwitchStmt::Arm &arm : choice.arms) {
-      SwitchStmt::Arm &copied = made->arms.emplace_back();
-      copied.values = arm.values;
-      copied.isDefault = arm.isDefault;
-      copied.range = arm.range;
-      for (const StmtPtr &inner : arm.body)
-        statement(*inner, copied.body);
-    }
-    keptDeclarations = std::move(declarations);
-    return finish(std::move(made));
-  }
-  case StmtKind::Break:
-    return out.push_back(blank(cast<BreakStmt>(stmt)));
-  case StmtKind::Continue:
-    return out.push_back(blank(cast<ContinueStmt>(stmt)));
-  case StmtKind::Return: {
-    auto made = blank(cast<ReturnStmt>(stmt));
-    made->value = returned(cast<ReturnStmt>(stmt).value);
-    return finish(std::move(made));
-  }
-  case StmtKind::Illuminance: {
-    const auto &lit = cast<IlluminanceStmt>(stmt);
-    auto made = blank(lit);
-    made->point = copy(lit.point);
-    made->normal = copy(lit.normal);
-    made->angle = copy(lit.angle);
-    std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
-    made->body = statement(lit.body);
-    keptDeclarations = std::move(declarations);
-    return finish(std::move(made));
-  }
   default:
-    return;
+    if (StmtPtr made = single(stmt)) {
+      declareKept(out);
+      out.push_back(std::move(made));
+    }
   }
 }
 

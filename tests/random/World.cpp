@@ -311,9 +311,8 @@ void World::describeMaterial(RtslInstance &instance, const ClassInfo &material) 
   instance.anyHit = material.anyHit;
 }
 
-World::World(const runtime::Program &code, const Program &program)
-    : code(code), program(program), host{code.slots}, transforms(someTransforms()), treeItems(1),
-      mesh(someMesh()) {
+/// For the records of all objects, after what is used already.
+std::size_t World::wordsOfRecords() const {
   std::size_t words = used;
   std::vector<std::string> all = {program.camera, program.miss, program.selector, program.exception,
                                   program.rayGeneration};
@@ -325,7 +324,54 @@ World::World(const runtime::Program &code, const Program &program)
       words += (info->recordSize + 15) / 16 * 4;
   if (const ClassInfo *info = code.find("sampler2D"))
     words += imageCount * ((info->recordSize + 15) / 16 * 4);
-  records.resize(words);
+  return words;
+}
+
+/// Each primitive with each material in turn, and a mesh.
+void World::addInstances() {
+  if (primitives.empty() || materials.empty())
+    return;
+  const std::size_t count = std::max(primitives.size(), materials.size()) + 1;
+  for (std::size_t i = 0; i != count; ++i) {
+    RtslInstance instance{};
+    instance.primitive = primitives[i % primitives.size()];
+    instance.material = materials[i % materials.size()];
+    addInstance(instance, 1 + static_cast<std::uint32_t>(i) % 2);
+  }
+  for (const Object &object : objects)
+    if (std::find(program.meshMaterials.begin(), program.meshMaterials.end(), object.info->name) !=
+        program.meshMaterials.end()) {
+      RtslInstance instance{};
+      instance.material = object.reference;
+      instance.needs = program.seed % 2 == 0 ? RTSL_HAS_NO_BACKS : 0;
+      addInstance(instance, mesh.triangleCount);
+      break;
+    }
+}
+
+/// What does not depend on the objects that it starts with.
+void World::describeLaunch() {
+  launch.meshes = &mesh;
+  launch.meshCount = 1;
+  launch.instances = instances.data();
+  launch.instanceCount = static_cast<std::uint32_t>(instances.size());
+  launch.lights = lights.data();
+  launch.lightCount = static_cast<std::uint32_t>(lights.size());
+  for (unsigned i = 0; i != RTSL_MAX_COLOR; ++i) {
+    launch.backgroundColor[i] = 0.25f * static_cast<float>(i + 1);
+    launch.ambient[i] = 0.125f * static_cast<float>(i + 3);
+  }
+  launch.colorComponents = code.colorComponents;
+  launch.width = 5;
+  launch.height = 3;
+  launch.slices = 1;
+  launch.seed = program.seed;
+}
+
+World::World(const runtime::Program &code, const Program &program)
+    : code(code), program(program), host{code.slots}, transforms(someTransforms()), treeItems(1),
+      mesh(someMesh()) {
+  records.resize(wordsOfRecords());
   launch.records = reinterpret_cast<std::uint8_t *>(records.data());
 
   std::vector<RtslRef> cameras, misses, selectors, exceptions, rayGenerations;
@@ -344,43 +390,12 @@ World::World(const runtime::Program &code, const Program &program)
   if (!selectors.empty())
     addSelections(selectors[0]);
 
-  if (!primitives.empty() && !materials.empty()) {
-    const std::size_t count = std::max(primitives.size(), materials.size()) + 1;
-    for (std::size_t i = 0; i != count; ++i) {
-      RtslInstance instance{};
-      instance.primitive = primitives[i % primitives.size()];
-      instance.material = materials[i % materials.size()];
-      addInstance(instance, 1 + static_cast<std::uint32_t>(i) % 2);
-    }
-    for (const Object &object : objects)
-      if (std::find(program.meshMaterials.begin(), program.meshMaterials.end(),
-                    object.info->name) != program.meshMaterials.end()) {
-        RtslInstance instance{};
-        instance.material = object.reference;
-        instance.needs = program.seed % 2 == 0 ? RTSL_HAS_NO_BACKS : 0;
-        addInstance(instance, mesh.triangleCount);
-        break;
-      }
-  }
-  launch.meshes = &mesh;
-  launch.meshCount = 1;
-  launch.instances = instances.data();
-  launch.instanceCount = static_cast<std::uint32_t>(instances.size());
-  launch.lights = lights.data();
-  launch.lightCount = static_cast<std::uint32_t>(lights.size());
+  addInstances();
   launch.camera = cameras.empty() ? 0 : cameras[0];
   launch.background = misses.empty() ? 0 : misses[0];
   launch.exception = exceptions.empty() ? 0 : exceptions[0];
   launch.rayGeneration = rayGenerations.empty() ? 0 : rayGenerations[0];
-  for (unsigned i = 0; i != RTSL_MAX_COLOR; ++i) {
-    launch.backgroundColor[i] = 0.25f * static_cast<float>(i + 1);
-    launch.ambient[i] = 0.125f * static_cast<float>(i + 3);
-  }
-  launch.colorComponents = code.colorComponents;
-  launch.width = 5;
-  launch.height = 3;
-  launch.slices = 1;
-  launch.seed = program.seed;
+  describeLaunch();
   addMotion();
   launch.transforms = transforms.data();
   launch.transformCount = static_cast<std::uint32_t>(transforms.size());

@@ -59,7 +59,10 @@ private:
   void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
   void putBuffer(std::uint8_t *to, const runtime::Words &words);
+  std::size_t wordsOfRecords() const;
+  void addInstances();
   void addInstance(RtslInstance instance, std::uint32_t primitives);
+  void describeLaunch();
   static std::vector<RtslTransform> someTransforms();
   static RtslMesh someMesh();
   void listAttributes();
