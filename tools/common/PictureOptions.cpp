@@ -94,9 +94,9 @@ void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree) {
             Choices<Tree>{{"auto", std::nullopt},
                           {"fast", runtime::TreeKind::Fast},
                           {"good", runtime::TreeKind::Good}},
-            "the tree for the traversal of GPUs: good, with the least cost for a ray; fast, built "
-            "sooner, and on the GPU if there is one; auto: by the number of triangles. The picture "
-            "is the same");
+            "the tree that GPUs traverse: good, for the fastest traversal; fast, for the fastest "
+            "construction, on the GPU if there is one; auto: by the number of triangles. The "
+            "picture is the same");
 }
 
 } // namespace rtsl::tool

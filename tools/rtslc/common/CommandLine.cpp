@@ -161,22 +161,20 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
                                        {"least-waste", Schedule::LeastWaste},
                                        {"round-robin", Schedule::RoundRobin},
                                        {"naive", Schedule::Naive}},
-      "how the lanes of a GPU's warp choose the next step: the one that most wait for; states "
-      "before traversal, new samples last; the one that wastes the least time of lanes that wait; "
-      "each step in its turn; or that of the first lane. auto: prioritized, but where shaders "
-      "choose rays at random majority, or least-waste where each of these rays takes the place of "
-      "the one that sent it, in a scene without a tree. The picture is the same");
+      "how a GPU's warp chooses the next step of its lanes: majority, the step that most lanes "
+      "wait for; prioritized, states before traversal, and new samples last; least-waste, the step "
+      "that wastes the least time of waiting lanes; round-robin, each step in turn; naive, the "
+      "step of the first lane; auto: by the rays of the program. The picture is the same");
   addChoice(
       command, "--organisation", options.compile.organisation,
       Choices<std::optional<Organisation>>{{"auto", std::nullopt},
                                            {"megakernel", Organisation::Megakernel},
                                            {"wavefront", Organisation::Wavefront},
                                            {"persistent", Organisation::Persistent}},
-      "how the steps of samples are organised on a GPU: megakernel, all in one kernel; "
-      "wavefront, a kernel for each step and queues of samples between them; persistent, all "
-      "in one kernel and blocks of lanes with queues of their own; auto: wavefront where rays "
-      "are chosen at random in a scene with a tree, and only `generate` waits for them. The "
-      "picture is the same");
+      "how the steps of samples are organised on a GPU: megakernel, in one kernel; wavefront, in "
+      "a kernel for each step, with queues of samples between them; persistent, in one kernel "
+      "whose blocks have queues of their own; auto: megakernel or wavefront, by the rays of the "
+      "program. The picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,
