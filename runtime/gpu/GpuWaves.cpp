@@ -12,7 +12,7 @@ namespace rtsl::runtime {
 namespace {
 
 /// More keep more lanes busy at each step, and take more memory: docs/gpu.md.
-constexpr std::uint64_t mostSlots = std::uint64_t(4) << 20;
+constexpr std::uint64_t mostSlots = std::uint64_t(8) << 20;
 /// Of the device's free memory, for samples in flight: one part of four.
 constexpr std::uint64_t memoryShare = 4;
 
@@ -20,13 +20,14 @@ constexpr std::uint64_t memoryShare = 4;
 
 GpuWaves::GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const WaveFacts &facts,
                    std::uint64_t stackBytes)
-    : device(device), begin(device.kernel("rtsl_wave_begin", program)) {
-  kernels.push_back(device.kernel("rtsl_wave_trace", program));
-  kernels.push_back(device.kernel("rtsl_wave_sample", program));
+    : device(device), begin(device.kernel("rtsl_wave_begin", program)),
+      sampleKernel(device.kernel("rtsl_wave_sample", program)) {
+  queueKernels.push_back(device.kernel("rtsl_wave_trace", program));
   for (std::uint32_t state = 1; state <= facts.states; ++state)
-    kernels.push_back(device.kernel(("rtsl_wave_state_" + std::to_string(state)).c_str(), program));
+    queueKernels.push_back(
+        device.kernel(("rtsl_wave_state_" + std::to_string(state)).c_str(), program));
   memory.slots = 0;
-  memory.steps = std::uint32_t(kernels.size());
+  memory.queues = std::uint32_t(queueKernels.size());
   memory.groups = facts.groups;
   memory.stackBytes = facts.hasStacks ? stackBytes : 0;
 }
@@ -52,23 +53,36 @@ void GpuWaves::launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, v
   device.launchLater(kernel, blocks, threadsPerBlock, arguments);
 }
 
+std::vector<CudaDevice::Kernel> GpuWaves::stepKernels() const {
+  std::vector<CudaDevice::Kernel> kernels = queueKernels;
+  kernels.insert(kernels.begin() + 1, sampleKernel);
+  return kernels;
+}
+
 double GpuWaves::run(Address job, Address rays) {
   const auto start = Clock::now();
-  std::vector<std::uint32_t> counts(memory.steps);
+  std::vector<std::uint32_t> counts(memory.queues);
   const std::size_t countBytes = counts.size() * sizeof counts[0];
   device.clear(rays, 2 * countBytes);
   void *ofBegin[] = {&job};
   launch(begin, memory.slots, ofBegin);
+  bool begins = true; // no sample is in flight, and the last turn was not to begin any
   for (std::uint32_t turn = 0;; turn ^= 1) {
     const Address countsOfTurn = rays + turn * countBytes;
     device.download(counts.data(), countsOfTurn, countBytes); // waits for the last turn
-    if (std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 0; }))
-      break;
     void *arguments[] = {&job, &turn};
-    for (std::size_t step = 0; step < counts.size(); ++step)
-      if (counts[step] != 0)
-        launch(kernels[step], counts[step], arguments);
+    if (std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 0; })) {
+      if (!begins)
+        break;
+      launch(sampleKernel, memory.slots, arguments);
+      begins = false;
+      continue;
+    }
+    for (std::size_t queue = 0; queue < counts.size(); ++queue)
+      if (counts[queue] != 0)
+        launch(queueKernels[queue], counts[queue], arguments);
     device.clear(countsOfTurn, countBytes);
+    begins = true;
   }
   return secondsSince(start);
 }

@@ -1,8 +1,8 @@
 //===- GpuWaves.h - runs the kernels of a wavefront -----------------------===//
 //
 // A turn starts a kernel for each step that samples in flight wait for, one after the other, and
-// then reads how many wait for each step in the next turn
-// (runtime/device/organisations/Wavefront.h).
+// then reads how many wait for each step in the next turn. When none is in flight any more, others
+// begin (runtime/device/organisations/Wavefront.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -40,14 +40,14 @@ public:
   double run(Address job, Address rays);
 
   /// In the order of the steps: traversal, the beginning of samples, and states.
-  const std::vector<CudaDevice::Kernel> &stepKernels() const { return kernels; }
+  std::vector<CudaDevice::Kernel> stepKernels() const;
 
 private:
   void launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, void **arguments);
 
   CudaDevice &device;
-  CudaDevice::Kernel begin;
-  std::vector<CudaDevice::Kernel> kernels;
+  CudaDevice::Kernel begin, sampleKernel;
+  std::vector<CudaDevice::Kernel> queueKernels; // traversal, and states
   device::WaveMemory memory;
 };
 

@@ -11,6 +11,7 @@
 #include "runtime/device/trees/Sort.h"
 #include "runtime/device/trees/Widen.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -135,47 +136,51 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t 
   return Success;
 }
 
-/// The kernels of a wavefront, on counts of slots alone: a sample takes one traversal.
+/// The kernels of a wavefront, on the lengths of the queues alone: a sample takes one traversal.
 struct WaveTurn {
-  std::uint32_t *now, *next; // how many slots wait for each step
+  std::uint32_t *now, *next; // the lengths of the queues: of traversal, and of each state
+  std::size_t queues;
+
+  bool isEmpty() const {
+    return std::all_of(now, now + queues, [](std::uint32_t count) { return count == 0; });
+  }
 };
-constexpr std::size_t traceStep = 0, sampleStep = 1;
+constexpr std::size_t traceQueue = 0;
 
 WaveTurn waveTurn(const RtslJob &job, std::uint32_t turn) {
   auto *counts = reinterpret_cast<std::uint32_t *>(job.lanes);
-  const std::size_t steps = current->waveStates + 2;
-  return {counts + (turn & 1) * steps, counts + (~turn & 1) * steps};
+  const std::size_t queues = current->waveStates + 1;
+  return {counts + (turn & 1) * queues, counts + (~turn & 1) * queues, queues};
 }
 
 int beginWave(const RtslJob &job) {
-  const std::uint64_t queues = 2 * (current->waveStates + 2) * sizeof(std::uint32_t);
+  const std::uint64_t queues = 2 * (current->waveStates + 1) * sizeof(std::uint32_t);
   if (!isAllocated(&job, sizeof job) || job.slots == 0 ||
       !isAllocated(job.lanes, job.slots * (queues + job.laneBytes)))
     return IllegalAddress;
-  if (is("overflow"))
-    job.status->problem = RTSL_PROBLEM_STACK;
-  else
-    waveTurn(job, 0).now[sampleStep] = job.slots;
   return Success;
 }
 
 int traceWave(const RtslJob &job, std::uint32_t turn) {
   const WaveTurn counts = waveTurn(job, turn);
-  if (counts.now[traceStep] == 0)
+  if (counts.now[traceQueue] == 0)
     return IllegalAddress; // a launch for nothing
-  counts.next[sampleStep] += counts.now[traceStep];
   return Success;
 }
 
 int sampleWave(const RtslJob &job, std::uint32_t turn) {
   const WaveTurn counts = waveTurn(job, turn);
-  if (counts.now[sampleStep] == 0)
-    return IllegalAddress;
+  if (!counts.isEmpty())
+    return IllegalAddress; // samples begin when none is in flight
+  if (is("overflow")) {
+    job.status->problem = RTSL_PROBLEM_STACK;
+    return Success;
+  }
   const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
-  for (std::uint32_t slot = 0; slot < counts.now[sampleStep] && !job.status->stop; ++slot)
+  for (std::uint32_t slot = 0; slot < job.slots && !job.status->stop; ++slot)
     if (const std::uint64_t sample = job.status->nextSample++; sample < samples) {
       paint(job, sample);
-      ++counts.next[traceStep];
+      ++counts.next[traceQueue];
     }
   return Success;
 }

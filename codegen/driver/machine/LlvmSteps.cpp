@@ -94,6 +94,10 @@ static Schedule scheduleFor(const CompileOptions &options, const runtime::Progra
              : Schedule::Majority;
 }
 
+/// Instructions of shaders, before they are optimised, from which on a wavefront gains where there
+/// is no tree.
+constexpr unsigned largeShaders = 3500;
+
 /// docs/gpu.md compares the organisations.
 static Organisation organisationFor(const CompileOptions &options, const runtime::Program &program,
                                     const llvm::Module &module) {
@@ -101,8 +105,9 @@ static Organisation organisationFor(const CompileOptions &options, const runtime
     return *options.organisation;
   if (options.countsSteps)
     return Organisation::Megakernel;
-  return followsPaths(program, module) && hasTree(module) ? Organisation::Wavefront
-                                                          : Organisation::Megakernel;
+  const bool isLarge = hasTree(module) || module.getInstructionCount() >= largeShaders;
+  return followsPaths(program, module) && isLarge ? Organisation::Wavefront
+                                                  : Organisation::Megakernel;
 }
 
 /// How the lanes of a warp choose their steps.

@@ -26,13 +26,12 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
           static_cast<std::uint32_t>(image.stackBytes)};
 }
 
-/// How many registers a thread of the kernel may have; docs/gpu.md has the figures. More are worth
-/// more than more warps where rays wait for others, and lanes stay together.
+/// How many registers a thread of a kernel may have; docs/gpu.md has the figures. More are worth
+/// more than more warps where rays wait for others, and lanes stay together; and where a kernel has
+/// one step, or its shared memory leaves room for a few warps only.
 static std::uint32_t registersFor(Organisation organisation, runtime::Paths paths) {
-  if (organisation == Organisation::Wavefront)
-    return 0; // as many as each step needs
-  if (organisation == Organisation::Persistent)
-    return 168; // its shared memory leaves room for a few warps only
+  if (organisation != Organisation::Megakernel)
+    return 168;
   return paths == runtime::Paths::Alike ? 128 : 72;
 }
 

@@ -77,19 +77,20 @@ RTSL_INLINED int32_t runOnSlot(const RtslJob &job, const SlotRecords &records, u
   return rays.next;
 }
 
-/// Ends the sample of a slot, and begins sample `following` of the slice. Returns the next step.
+/// Ends the sample of a slot, if it has one, and begins sample `following` of the slice, if there
+/// is one. Returns the next step: Step::sample if that sample was rendered before.
 inline int32_t sampleOnSlot(const RtslJob &job, const SlotRecords &records, uint32_t slot,
                             uint32_t following) {
   return runOnSlot(job, records, slot, [&](Flight &flight) {
     if (flight.sample != TakenSamples::none)
       storeSample(job, flight.sample, flight.rays);
-    flight.sample = following;
+    flight.sample = TakenSamples::none;
     if (following >= samplesOfSlice(job))
       flight.rays.next = Step::nothing;
-    else if (!beginSample(job, following, flight.rays)) {
-      flight.sample = TakenSamples::none;
+    else if (beginSample(job, following, flight.rays))
+      flight.sample = following;
+    else
       flight.rays.next = Step::sample;
-    }
   });
 }
 

@@ -19,6 +19,11 @@ uint32_t rtsl_slots_have_stacks() {
 
 } // extern "C"
 
+/// Traversal and each state has one, but not the beginning of samples.
+static uint32_t queuesOfWave(const RtslLaunch *launch) {
+  return rtsl_wave_steps(launch) - 1;
+}
+
 #ifdef __NVPTX__
 
 namespace {
@@ -33,7 +38,7 @@ uint32_t threadCount() {
 }
 
 device::Wave waveOf(const RtslJob &job) {
-  return device::Wave({job.slots, rtsl_wave_steps(job.launch), rtsl_record_groups(), job.laneBytes},
+  return device::Wave({job.slots, queuesOfWave(job.launch), rtsl_record_groups(), job.laneBytes},
                       job.lanes);
 }
 
@@ -42,9 +47,6 @@ device::Wave waveOf(const RtslJob &job) {
 extern "C" {
 
 __attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob *job) {
-  const RtslLaunch &launch = *job->launch;
-  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
-    return; // no slot is in flight, and the wave is over
   device::beginWave(waveOf(*job), threadNumber(), threadCount());
 }
 
@@ -53,6 +55,9 @@ __attribute__((nvptx_kernel)) void rtsl_wave_trace(const RtslJob *job, uint32_t 
 }
 
 __attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob *job, uint32_t turn) {
+  const RtslLaunch &launch = *job->launch;
+  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
+    return; // no sample begins, and the job is over
   device::sampleWave(*job, waveOf(*job), turn, threadNumber(), threadCount());
 }
 
@@ -77,7 +82,7 @@ void rtsl_wave_state(const RtslJob *job, const device::Wave *wave, uint32_t turn
 }
 
 static device::WaveMemory memoryOfThread(uint32_t maxDepth, uint32_t referenceChain) {
-  return {device::slotsOfThread, rtsl_wave_steps(nullptr), rtsl_record_groups(),
+  return {device::slotsOfThread, queuesOfWave(nullptr), rtsl_record_groups(),
           device::slotStackBytes(maxDepth, referenceChain)};
 }
 
@@ -95,12 +100,16 @@ void rtsl_run_wave(const RtslJob *job, uint32_t lane) {
   for (uint32_t turn = 0; turn < 2; ++turn)
     wave.clearCounts(turn);
   device::beginWave(wave, 0, 1);
-  for (uint32_t turn = 0; wave.isAnyInFlight(turn); ++turn) {
-    device::sampleWave(*job, wave, turn, 0, 1);
-    device::traceWave(*job, wave, turn, 0, 1);
-    for (uint32_t state = 1; state < wave.steps() - 1; ++state)
-      rtsl_wave_run_state(job, &wave, turn, int32_t(state));
-    wave.clearCounts(turn);
+  for (uint32_t turn = 0;;) {
+    device::sampleWave(*job, wave, turn++, 0, 1);
+    if (!wave.isAnyInFlight(turn))
+      return;
+    for (; wave.isAnyInFlight(turn); ++turn) {
+      device::traceWave(*job, wave, turn, 0, 1);
+      for (uint32_t state = 1; state <= wave.states(); ++state)
+        rtsl_wave_run_state(job, &wave, turn, int32_t(state));
+      wave.clearCounts(turn);
+    }
   }
 }
 

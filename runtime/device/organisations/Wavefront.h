@@ -1,14 +1,18 @@
 //===- Wavefront.h - a whole scene as a kernel for each step --------------===//
 //
 // The machine of Machine.h for many more samples in flight than lanes. Each sample has a slot. All
-// slots that wait for the same step, the traversal of their ray, a certain state, or the beginning
-// of another sample, are in a queue; a kernel takes the slots of one queue, runs the step, and puts
-// each slot into the queue of its next step. So all lanes of a warp run the same step, and a kernel
-// has the registers that one step needs. In exchange the rays are in memory between two steps
-// (LaneRecord.h).
+// slots that wait for the same step, the traversal of their ray or a certain state, are in a queue;
+// a kernel takes the slots of one queue, runs the step, and puts each slot into the queue of its
+// next step. So all lanes of a warp run the same step, and a kernel has the registers that one step
+// needs. In exchange the rays are in memory between two steps (LaneRecord.h).
 //
 // A turn takes all slots through one step. There are two sets of queues: those that the kernels of
 // a turn take from, and those that they fill for the next turn.
+//
+// When all queues are empty, all slots begin another sample, in their order. So the rays of a turn
+// are those that follow as many others, and neighbours in a queue have neighbouring pixels, and
+// records beside each other. If each slot began another sample as soon as it could, slots would
+// soon be in no order at all: docs/gpu.md has figures.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -34,31 +38,34 @@ public:
                 size.stackBytes) {}
 
   uint32_t slots() const { return size.slots; }
-  uint32_t steps() const { return size.steps; }
+  uint32_t states() const { return size.queues - 1; }
 
-  /// How many slots wait for a step in a turn, and which.
+  /// How many slots wait for traversal or a state in a turn, and which.
   uint32_t &count(uint32_t turn, int32_t step) const {
-    return counts[(turn & 1) * size.steps + placeOfStep(step)];
+    return counts[(turn & 1) * size.queues + queueOfStep(step)];
   }
   uint32_t *queue(uint32_t turn, int32_t step) const {
-    return queues + (uint64_t(turn & 1) * size.steps + placeOfStep(step)) * size.slots;
+    return queues + (uint64_t(turn & 1) * size.queues + queueOfStep(step)) * size.slots;
   }
   bool isAnyInFlight(uint32_t turn) const {
-    for (int32_t step = Step::trace; placeOfStep(step) < size.steps; ++step)
-      if (count(turn, step) != 0)
+    for (uint32_t queue = 0; queue < size.queues; ++queue)
+      if (counts[(turn & 1) * size.queues + queue] != 0)
         return true;
     return false;
   }
   void clearCounts(uint32_t turn) const {
-    for (int32_t step = Step::trace; placeOfStep(step) < size.steps; ++step)
-      count(turn, step) = 0;
+    for (uint32_t queue = 0; queue < size.queues; ++queue)
+      counts[(turn & 1) * size.queues + queue] = 0;
   }
 
-  /// Lets the slot wait for a step in a turn. All lanes of the warp call together; lanes with
-  /// Step::nothing have no slot to put.
+  /// Lets the slot wait for a step in a turn. All lanes of the warp call together. Slots that have
+  /// ended their sample are in no queue, nor are lanes with Step::nothing, which have no slot.
   void put(uint32_t turn, int32_t step, uint32_t slot) const;
 
 private:
+  /// States have numbers from 1 on.
+  static uint32_t queueOfStep(int32_t step) { return step == Step::trace ? 0 : uint32_t(step); }
+
   WaveMemory size;
   uint32_t *counts, *queues;
 
@@ -67,6 +74,8 @@ public:
 };
 
 inline void Wave::put(uint32_t turn, int32_t step, uint32_t slot) const {
+  if (step == Step::sample)
+    step = Step::nothing;
   const uint32_t place = placeInQueue(step, [&] { return &count(turn, step); });
   if (step != Step::nothing)
     queue(turn, step)[place] = slot;
@@ -90,14 +99,10 @@ RTSL_INLINED void runQueue(const RtslJob &job, const Wave &wave, uint32_t turn, 
 // The steps
 //===----------------------------------------------------------------------===//
 
-/// All slots wait for a sample, in turn 0. The counts must be 0.
+/// No slot has a sample.
 inline void beginWave(const Wave &wave, uint32_t lane, uint32_t lanes) {
-  for (uint32_t slot = lane; slot < wave.slots(); slot += lanes) {
+  for (uint32_t slot = lane; slot < wave.slots(); slot += lanes)
     wave.records.storeNoSample(slot);
-    wave.queue(0, Step::sample)[slot] = slot;
-  }
-  if (lane == 0)
-    wave.count(0, Step::sample) = wave.slots();
 }
 
 inline void traceWave(const RtslJob &job, const Wave &wave, uint32_t turn, uint32_t lane,
@@ -107,13 +112,20 @@ inline void traceWave(const RtslJob &job, const Wave &wave, uint32_t turn, uint3
   });
 }
 
-/// Ends the samples of slots, and begins others.
+/// Ends the samples of all slots, and begins others. No slot may be in a queue.
 inline void sampleWave(const RtslJob &job, const Wave &wave, uint32_t turn, uint32_t lane,
                        uint32_t lanes) {
-  runQueue(job, wave, turn, Step::sample, lane, lanes, [&](bool takesPart, uint32_t slot) {
-    const uint32_t following = takeOneSample(job, takesPart);
-    return takesPart ? sampleOnSlot(job, wave.records, slot, following) : Step::nothing;
-  });
+  for (uint32_t slot = lane; slot / lanesOfWarp * lanesOfWarp < wave.slots(); slot += lanes) {
+    int32_t next = slot < wave.slots() ? Step::sample : Step::nothing;
+    do { // samples that were rendered before end at once
+      const bool takesPart = next == Step::sample;
+      countStep(job, Step::sample, takesPart);
+      const uint32_t following = takeOneSample(job, takesPart);
+      if (takesPart)
+        next = sampleOnSlot(job, wave.records, slot, following);
+    } while (warp::lanesWhere(next == Step::sample));
+    wave.put(turn + 1, next, slot);
+  }
 }
 
 /// Runs state `number`, by run(rays), which is inlined here: the code generator copies this once

@@ -44,6 +44,12 @@ inline int lanesHere() {
 
 constexpr uint32_t lanesOfWarp = 1;
 
+namespace warp {
+inline uint32_t lanesWhere(bool condition) {
+  return condition;
+}
+} // namespace warp
+
 inline int lanesHere() {
   return 1;
 }

@@ -122,10 +122,14 @@ class Organisations(Case):
             )
             self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
-    def test_paths_through_a_tree_are_a_wavefront(self):
-        for scene, kernel in (("room.json", "rtsl_wave_begin"), ("scene.json", "rtsl_render")):
+    def test_paths_through_a_tree_or_long_shaders_are_a_wavefront(self):
+        for scene, kernel in (
+            ("cornell/room.json", "rtsl_wave_begin"),
+            ("cornell/scene.json", "rtsl_render"),
+            ("cook/scene.json", "rtsl_wave_begin"),
+        ):
             ptx, _ = self.run_rtslc(
-                "compile", EXAMPLES / "cornell" / scene, "--emit=ptx", "-O0", "-Wno-depth-limit"
+                "compile", EXAMPLES / scene, "--emit=ptx", "-O0", "-Wno-depth-limit"
             )
             self.assertIn(f".entry {kernel}(", ptx)
 

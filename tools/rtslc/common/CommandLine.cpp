@@ -173,8 +173,8 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
                                            {"persistent", Organisation::Persistent}},
       "how the steps of samples are organised on a GPU: megakernel, in one kernel; wavefront, in "
       "a kernel for each step, with queues of samples between them; persistent, in one kernel "
-      "whose blocks have queues of their own; auto: megakernel or wavefront, by the rays of the "
-      "program. The picture is the same");
+      "whose blocks have queues of their own; auto: megakernel or wavefront, by the rays and "
+      "the size of the program. The picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,
