@@ -213,19 +213,12 @@ void Dispatcher::makeRunState() {
                              llvm::ArrayRef<std::int32_t>(values), blocks, noOperands);
 }
 
-/// Methods that trace but have no callers and no states, kept by --keep, cannot run on the machine.
+/// Methods that trace but have no states cannot run on the machine. No state calls them: they are
+/// kept by --keep, and may call each other.
 void Dispatcher::dropUncalled() {
-  llvm::SmallVector<FuncOp> uncalled;
-  do {
-    for (FuncOp function : uncalled)
-      function.erase();
-    uncalled.clear();
-    for (FuncOp function : module.getOps<FuncOp>()) {
-      if (ir::anyOperation(function, ir::isTrace) && !ir::attr::state.isOn(function) &&
-          mlir::SymbolTable::symbolKnownUseEmpty(function, module))
-        uncalled.push_back(function);
-    }
-  } while (!uncalled.empty());
+  for (FuncOp function : tracingFunctions(module))
+    if (!ir::attr::state.isOn(function))
+      symbols.erase(function);
 }
 
 mlir::LogicalResult Dispatcher::run() {

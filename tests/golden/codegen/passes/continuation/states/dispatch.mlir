@@ -1,4 +1,4 @@
-// RUN: rtsl-opt %s --rtsl-dispatch | FileCheck %s
+// RUN: rtsl-opt %s --rtsl-dispatch | FileCheck %s --implicit-check-not=@uncalled --implicit-check-not=@cycle
 
 // The frame becomes a parameter and states become numbers: entry points first, then the beginnings of
 // methods, and so on; a jump is negative.
@@ -57,13 +57,24 @@ func.func private @f.state1(%o: !rtsl.ref<"F">) -> i32 attributes {rtsl.state = 
 // CHECK-LABEL: func.func @rtsl_rt_Miss_miss_first
 // CHECK-NEXT:    arith.constant 0 : i32
 
-// Functions that trace, belong to no state and have no callers, as with --keep, are removed.
-// CHECK-NOT: @uncalled
+// Functions that trace and have no states, as with --keep, are removed, those that call each other too.
 func.func @uncalled(%d: vector<3xf32>) -> vector<3xf32> {
   %c = rtsl.trace %d, %d : vector<3xf32>
+  return %c : vector<3xf32>
+}
+func.func private @cycle.there(%o: !rtsl.ref<"F">, %d: vector<3xf32>) -> vector<3xf32> {
+  %c = call @cycle.back(%o, %d) {rtsl.framed} : (!rtsl.ref<"F">, vector<3xf32>) -> vector<3xf32>
+  return %c : vector<3xf32>
+}
+func.func private @cycle.back(%o: !rtsl.ref<"F">, %d: vector<3xf32>) -> vector<3xf32> {
+  %c = call @cycle.there(%o, %d) : (!rtsl.ref<"F">, vector<3xf32>) -> vector<3xf32>
   return %c : vector<3xf32>
 }
 
 // MUTATION dispatch of states/Dispatch.cpp: a jump is taken for a trace
 // -       value = -value;
 // +       value = +value;
+
+// MUTATION drop-uncalled of states/Dispatch.cpp: only functions without callers are removed
+// -    if (!ir::attr::state.isOn(function))
+// +    if (!ir::attr::state.isOn(function) && mlir::SymbolTable::symbolKnownUseEmpty(function, module))
