@@ -4,6 +4,7 @@
 // full disk is not reported.
 //
 //===----------------------------------------------------------------------===//
+#include "runtime/image/ImageClaim.h"
 #include "runtime/image/ImageFormats.h"
 #include "support/ErrorMessages.h"
 
@@ -116,6 +117,27 @@ std::vector<std::string> channelsOfPicture(const Imf::ChannelList &channels) {
   return withoutLayer.empty() ? all : withoutLayer;
 }
 
+/// Throws std::runtime_error if the file cannot hold the pixels of its header.
+void requireHeld(const Imf::Header &header, std::size_t fileBytes) {
+  constexpr const char *compressions[] = {"none",  "rle", "zips", "zip",  "piz",
+                                          "pxr24", "b44", "b44a", "dwaa", "dwab"};
+  const auto compression = std::size_t(header.compression());
+  const Imath::Box2i &window = header.dataWindow();
+  ImageClaim claim;
+  claim.format = "openexr";
+  claim.compression = compression < std::size(compressions) ? compressions[compression] : "";
+  claim.width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
+  claim.height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
+  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
+    const Imf::Channel &stored = channel.channel();
+    ++claim.channels;
+    const std::int64_t sampled = std::int64_t(stored.xSampling) * stored.ySampling;
+    claim.pixelBytes += std::uint64_t((stored.type == Imf::HALF ? 2 : 4) / sampled);
+  }
+  if (const std::string why = whyFileTooSmall(claim, fileBytes); !why.empty())
+    throw std::runtime_error(why);
+}
+
 } // namespace
 
 std::string encodeExr(const Image &image, const std::vector<Layer> &layers,
@@ -146,6 +168,7 @@ Image decodeExr(const std::string &bytes, const std::string &path) {
   try {
     MemoryInput input(bytes);
     Imf::InputFile file(input);
+    requireHeld(file.header(), bytes.size());
     Imath::Box2i window = file.header().dataWindow();
     const std::vector<std::string> names = channelsOfPicture(file.header().channels());
     if (names.empty())

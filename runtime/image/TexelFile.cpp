@@ -5,6 +5,7 @@
 #include "runtime/image/openimageio/ImageReader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
+#include "support/MachineMemory.h"
 #include "support/OwnLibrary.h"
 
 #include <fmt/format.h>
@@ -74,7 +75,7 @@ Pixels readByOpenImageIO(const std::string &path, const std::string *bytes, bool
   Pixels pixels;
   ImageFile file;
   read(path.c_str(), bytes ? bytes->data() : nullptr, bytes ? bytes->size() : 0, mostImageBytes,
-       allocateBytes, &pixels.bytes, &file);
+       availableMemory(), allocateBytes, &pixels.bytes, &file);
   switch (file.problem) {
   case ImageFile::Problem::None:
     break;

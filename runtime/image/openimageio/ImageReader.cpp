@@ -1,5 +1,7 @@
 #include "runtime/image/openimageio/ImageReader.h"
 
+#include "runtime/image/ImageClaim.h"
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -44,18 +46,26 @@ std::string nameOf(const void *bytes, std::uint64_t size) {
   return isJpeg ? "bytes.jpg" : "bytes";
 }
 
-/// How many bytes of pixels a byte of a file may hold, at most; 0: there is no bound that helps.
-/// Formats that are read row by row need none. The others are those whose readers get memory for
-/// the whole image first.
-std::uint64_t mostPixelBytes(const std::string &format) {
-  if (format == "jpeg" || format == "tiff" || format == "openexr" || format == "png")
-    return 0;
-  if (format == "pnm") // bits become bytes
-    return 8;
-  for (const char *ofRuns : {"targa", "bmp", "hdr", "sgi", "psd", "iff", "rla", "softimage"})
-    if (format == ofRuns) // a run has at most 255 equal pixels, and two bytes or more
-      return 128 * 4;
-  return 4096; // dictionaries, such as GIF's
+/// All that is decoded for a pixel, not only the channels that are read.
+ImageClaim claimOf(const OIIO::ImageInput &input) {
+  const OIIO::ImageSpec &spec = input.spec();
+  const auto positive = [](int number) { return static_cast<std::uint64_t>(std::max(number, 1)); };
+  ImageClaim claim;
+  claim.format = input.format_name();
+  claim.compression = std::string(spec.get_string_attribute("compression"));
+  claim.width = positive(spec.width);
+  claim.height = positive(spec.height);
+  claim.depth = positive(spec.depth);
+  claim.channels = positive(spec.nchannels);
+  claim.pixelBytes = spec.pixel_bytes(true);
+  claim.bitsPerSample = positive(
+      spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size())));
+  if (spec.tile_width > 0) {
+    claim.tileWidth = positive(spec.tile_width);
+    claim.tileHeight = positive(spec.tile_height);
+    claim.tileDepth = positive(spec.tile_depth);
+  }
+  return claim;
 }
 
 /// Reads rows from the top, up to `end`, which follow those that have been read.
@@ -93,7 +103,8 @@ bool readPixels(OIIO::ImageInput &input, int channels, OIIO::TypeDesc type, std:
 }
 
 void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBytes,
-          void *(*allocate)(void *, std::uint64_t), void *context, ImageFile &file) {
+          std::uint64_t freeBytes, void *(*allocate)(void *, std::uint64_t), void *context,
+          ImageFile &file) {
   if (!input)
     return fail(file, ImageFile::Problem::Bad, OIIO::geterror());
   const OIIO::ImageSpec &spec = input->spec();
@@ -113,9 +124,11 @@ void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBy
   const std::uint64_t pixelBytes = std::uint64_t(file.channels) * file.bytesPerChannel;
   if (std::uint64_t(file.width) * file.height > mostBytes / pixelBytes)
     return fail(file, ImageFile::Problem::TooLarge, "");
-  const std::uint64_t expansion = mostPixelBytes(input->format_name());
-  if (expansion != 0 && file.width * pixelBytes * file.height / expansion > fileBytes)
-    return fail(file, ImageFile::Problem::Bad, "the file ends too early");
+  const ImageClaim claim = claimOf(*input);
+  if (const std::string why = whyFileTooSmall(claim, fileBytes); !why.empty())
+    return fail(file, ImageFile::Problem::Bad, why);
+  if (memoryToRead(claim, pixelBytes) > static_cast<double>(freeBytes))
+    return fail(file, ImageFile::Problem::NoMemory, "");
   if (!readPixels(*input, channels, type, file.width * pixelBytes, allocate, context, file))
     fail(file, ImageFile::Problem::Bad, input->geterror());
   else if (!file.pixels)
@@ -128,7 +141,7 @@ void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBy
 
 extern "C" __attribute__((visibility("default"))) void
 rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::uint64_t mostBytes,
-                  void *(*allocate)(void *, std::uint64_t), void *context,
+                  std::uint64_t freeBytes, void *(*allocate)(void *, std::uint64_t), void *context,
                   rtsl::runtime::ImageFile *file) {
   using rtsl::runtime::ImageFile;
   *file = {};
@@ -140,9 +153,13 @@ rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::
         bytes ? OIIO::ImageInput::open(rtsl::runtime::nameOf(bytes, size), &config, &memory)
               : OIIO::ImageInput::open(path, &config);
     rtsl::runtime::read(input.get(), bytes ? size : OIIO::Filesystem::file_size(path), mostBytes,
-                        allocate, context, *file);
+                        freeBytes, allocate, context, *file);
   } catch (const std::bad_alloc &) {
-    file->problem = ImageFile::Problem::NoMemory;
+    if (file->width == 0)
+      rtsl::runtime::fail(*file, ImageFile::Problem::Bad,
+                          "there is not enough memory for what its header claims");
+    else
+      file->problem = ImageFile::Problem::NoMemory;
   } catch (const std::exception &error) {
     rtsl::runtime::fail(*file, ImageFile::Problem::Bad, error.what());
   }

@@ -25,12 +25,13 @@ struct ImageFile {
   char message[512]; // of a bad file
 };
 
-/// Reads the first image of a file, unless it has more bytes than `mostBytes`; if `bytes` is not
-/// null, of these bytes, which are a file's. `allocate(context, bytes)` is called several times for
-/// a large file, each time for more, and keeps what the memory before had; it returns null if there
-/// is no memory.
+/// Reads the first image of a file, unless it has more bytes than `mostBytes`, takes more memory
+/// than `freeBytes`, or claims more than a file of this size can hold; if `bytes` is not null, of
+/// these bytes, which are a file's. `allocate(context, bytes)` is called several times for a large
+/// file, each time for more, and keeps what the memory before had; it returns null if there is no
+/// memory.
 using ReadImageFile = void (*)(const char *path, const void *bytes, std::uint64_t size,
-                               std::uint64_t mostBytes,
+                               std::uint64_t mostBytes, std::uint64_t freeBytes,
                                void *(*allocate)(void *context, std::uint64_t), void *context,
                                ImageFile *file);
 constexpr const char *readImageFileSymbol = "rtslReadImageFile";

@@ -1,6 +1,7 @@
 """Descriptions and files of images that are wrong."""
 
 import json
+import os
 import random
 import struct
 import subprocess
@@ -165,6 +166,27 @@ class Mistakes(ImageCase):
             self.scene({"class": "Plain", "image": {"file": name}})
             messages = self.diagnose("check", "scene.json", prepare=bounded)
             self.assert_message(messages, "E0905", f"cannot read `{name}`")
+            if not name.endswith(".png"):
+                size = f"a file of {len(data)} bytes"
+                self.assert_message(messages, "E0905", size)
+
+    def test_more_pixels_than_memory(self):
+        """The file has them, in a hole."""
+        width = 3 << 28
+        head = tiff(1, 1, lambda x, y: (0, 0, 0), "B", 1)
+        for old, new in ((256, width), (279, 3 * width)):
+            size = struct.pack("<I", 1 if old == 256 else 3)
+            head = head.replace(
+                struct.pack("<HHI", old, 4, 1) + size, struct.pack("<HHII", old, 4, 1, new)
+            )
+        self.write("large.tif", head)
+        os.truncate(self.folder / "large.tif", 200 + 3 * width)
+        self.scene({"class": "Plain", "image": {"file": "large.tif"}})
+        self.assert_message(
+            self.diagnose("check", "scene.json", prepare=bounded),
+            "E1001",
+            f"not enough memory for the image `large.tif` of {width} x 1 pixels",
+        )
 
     def diagnose_any(self, file):
         self.scene({"class": "Plain", "image": {"file": file}})
