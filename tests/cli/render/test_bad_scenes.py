@@ -157,9 +157,9 @@ class BadScenes(Case):
         """Each is named; a vertex that is left out would give faces other corners."""
         self.glass_scene()
         for line, said in (
-            ("v 0 1 x", "in line 2: `x` is no number"),
+            ("v 0 1 x", "in line 2: `x` is not a number"),
             ("v 0 1", "in line 2: `v` needs 3 numbers or more"),
-            ("f 1 2 3/a", "in line 2: `3/a` is no number"),
+            ("f 1 2 3/a", "in line 2: `3/a` is not a number"),
             ("f 1 2 0", "in line 2: it has the corner 0, and there are 3 vertices"),
             ("f 1 2 -1", "in line 2: it has the corner -1, and there are 3 vertices"),
         ):

@@ -88,6 +88,12 @@ class Preview(Case):
                 error = self.render(LIBRARY / f"std/{file}.rtsl", "-Werror")
                 self.assertEqual(error, "")
 
+    def test_parameters_of_the_library_have_names_for_authors(self):
+        """Messages and scenes name them: no `center_` that only avoids the name of a member."""
+        for file in sorted((LIBRARY / "std").glob("*/*.rtsl")):
+            for parameters in re.findall(r"void constructor\((.*?)\)", file.read_text(), re.S):
+                self.assertNotRegex(parameters, r"_\b", file.name)
+
     def test_a_default_class_is_not_shown(self):
         message = self.refused(LIBRARY / "std/engines/PathTracer.rtsl", "--class", "PathBackground")
         self.assertIn("has no class `PathBackground`", message["message"])
