@@ -19,7 +19,7 @@ namespace rtsl::scene {
 using Kind = JsonValue::Kind;
 
 std::unique_ptr<gltf::File> openModel(const std::string &path) {
-  return obj::isObj(path) ? obj::readModel(path) : std::make_unique<gltf::File>(path);
+  return obj::isModel(path) ? obj::readModel(path) : std::make_unique<gltf::File>(path);
 }
 
 const gltf::File &ModelFiles::open(const std::string &path, const std::optional<Place> &place) {

@@ -1,4 +1,4 @@
-//===- Models.h - glTF and OBJ files that a scene mentions ----------------===//
+//===- Models.h - glTF, OBJ and PLY files that a scene mentions -----------===//
 //
 // {"model": "chair.glb"} in the place of a node is short for the nodes, materials, images and
 // lights that an author would write for the file: they are added to the scene's JSON before it is
@@ -23,10 +23,10 @@ namespace rtsl::scene {
 
 class KeptFiles;
 
-/// Opens a glTF file, or an OBJ file with its materials. Throws the mistakes in it.
+/// Opens a glTF file, an OBJ file with its materials, or a PLY file. Throws the mistakes in it.
 std::unique_ptr<gltf::File> openModel(const std::string &path);
 
-/// The glTF and OBJ files of a scene, each opened once.
+/// The glTF, OBJ and PLY files of a scene, each opened once.
 class ModelFiles {
 public:
   /// `kept`: those of scenes before this one; null: none.

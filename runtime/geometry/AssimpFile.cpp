@@ -208,8 +208,13 @@ Mesh readByAssimp(const std::string &path, const MeshRequest &request) {
 std::vector<MeshGroup> readGroupsByAssimp(const std::string &path) {
   const std::unique_ptr<Importer> importer = library().open();
   const aiScene &scene = readFile(*importer, path);
+  const bool areColored = std::all_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                                      [](const aiMesh *mesh) { return mesh->HasVertexColors(0); });
+  std::vector<std::string> others;
+  const std::vector<Source> sources =
+      areColored ? sourcesOf(scene, {{"color"}, false}, others) : std::vector<Source>();
   std::map<std::string, Mesh> byName;
-  appendAll(scene, {}, path, [&](const aiMesh &part) -> Mesh & {
+  appendAll(scene, sources, path, [&](const aiMesh &part) -> Mesh & {
     std::string name;
     if (part.mMaterialIndex < scene.mNumMaterials)
       name = importer->materialName(part.mMaterialIndex);

@@ -16,7 +16,7 @@ bool isReadByAssimp(const std::string &extension);
 /// Throws BadMesh, OutOfMemory.
 Mesh readByAssimp(const std::string &path, const MeshRequest &request = {});
 
-/// The same by the names of the materials.
+/// The same by the names of the materials; with colors, if all meshes of the file have them.
 std::vector<MeshGroup> readGroupsByAssimp(const std::string &path);
 
 } // namespace rtsl::runtime

@@ -43,7 +43,8 @@ struct MeshGroup {
   Mesh mesh;
 };
 
-/// The same, as a mesh for each material of an OBJ file, in the order of their names in it.
+/// The same with colors, as a mesh for each material of an OBJ file, in the order of their names in
+/// it.
 std::vector<MeshGroup> loadMeshGroups(const std::string &path);
 
 /// Adds an attribute whose values are in the order of the vertices, or of the faces, of the file

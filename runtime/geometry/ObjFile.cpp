@@ -182,7 +182,6 @@ Mesh meshOf(Contents contents, const MeshRequest &request) {
 Mesh someOf(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
             std::vector<std::uint32_t> &places) {
   Mesh mesh;
-  mesh.otherAttributes = whole.otherAttributes;
   std::vector<std::uint32_t> used;
   for (const std::uint32_t triangle : triangles)
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -193,8 +192,7 @@ Mesh someOf(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
       }
       mesh.indices.push_back(places[vertex]);
     }
-  const auto gather = [&](const std::vector<float> &from, std::vector<float> &to,
-                          std::size_t width) {
+  const auto gather = [&](const auto &from, auto &to, std::size_t width) {
     for (const std::uint32_t vertex : used)
       if (!from.empty())
         to.insert(to.end(), &from[width * vertex], &from[width * vertex] + width);
@@ -202,6 +200,11 @@ Mesh someOf(const Mesh &whole, const std::vector<std::uint32_t> &triangles,
   gather(whole.positions, mesh.positions, 3);
   gather(whole.normals, mesh.normals, 3);
   gather(whole.uvs, mesh.uvs, 2);
+  for (const NamedAttribute &attribute : whole.attributes) {
+    mesh.attributes.push_back(attribute);
+    mesh.attributes.back().words.clear();
+    gather(attribute.words, mesh.attributes.back().words, attribute.components);
+  }
   for (const std::uint32_t vertex : used)
     places[vertex] = none;
   return mesh;
@@ -256,11 +259,11 @@ std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &reque
 
 std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text,
                                                          std::size_t bytesOfPart) {
-  std::optional<Contents> contents = readContents(text, false, bytesOfPart);
+  std::optional<Contents> contents = readContents(text, true, bytesOfPart);
   if (!contents)
     return std::nullopt;
   const std::vector<obj::MaterialUse> uses = usesOf(contents->parts);
-  return groupsOf(meshOf(std::move(*contents), {}), uses);
+  return groupsOf(meshOf(std::move(*contents), {{"color"}, false}), uses);
 }
 
 } // namespace rtsl::runtime

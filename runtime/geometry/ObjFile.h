@@ -23,7 +23,7 @@ constexpr std::size_t bytesOfObjPart = 1 << 20;
 std::optional<Mesh> readPlainObj(std::string_view text, const MeshRequest &request = {},
                                  std::size_t bytesOfPart = bytesOfObjPart);
 
-/// The same, by the names that follow `usemtl`.
+/// The same with colors, by the names that follow `usemtl`.
 std::optional<std::vector<MeshGroup>> readPlainObjGroups(std::string_view text,
                                                          std::size_t bytesOfPart = bytesOfObjPart);
 

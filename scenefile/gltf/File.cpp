@@ -30,12 +30,6 @@ bool isKnown(const std::string &extension) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
-bool hasEnding(const std::string &text, std::string_view ending) {
-  return text.size() > ending.size() &&
-         std::equal(ending.rbegin(), ending.rend(), text.rbegin(),
-                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
-}
-
 std::uint32_t wordAt(std::string_view bytes, std::size_t at) {
   std::uint32_t word = 0;
   for (std::size_t i = 4; i-- > 0;)
@@ -91,8 +85,15 @@ int valueOfBase64(char c) {
 
 } // namespace
 
+bool hasEnding(const std::string &path, std::string_view ending) {
+  return path.size() > ending.size() &&
+         std::equal(ending.rbegin(), ending.rend(), path.rbegin(),
+                    [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
+}
+
 bool isModel(const std::string &path) {
-  return hasEnding(path, ".gltf") || hasEnding(path, ".glb") || hasEnding(path, ".obj");
+  return hasEnding(path, ".gltf") || hasEnding(path, ".glb") || hasEnding(path, ".obj") ||
+         hasEnding(path, ".ply");
 }
 
 bool isDataUri(const std::string &uri) {

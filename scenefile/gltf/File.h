@@ -27,11 +27,15 @@ namespace rtsl::scene::gltf {
 
 struct Mention;
 
+/// What of the colors of its vertices a mesh has: factors of its material's base color and, if they
+/// have alpha, of its opacity.
+enum class VertexColors { None, Rgb, Rgba };
+
 /// What a file of another format has that was made a glTF file.
 struct Prepared {
   /// Makes what an author would write for a material, in place of what its JSON says.
-  std::function<JsonValue(std::size_t material, const Mention &mention, Modules &modules,
-                          std::vector<Warning> &warnings)>
+  std::function<JsonValue(std::size_t material, VertexColors colors, const Mention &mention,
+                          Modules &modules, std::vector<Warning> &warnings)>
       material;
   std::vector<std::string> files; // that it refers to, for dependencies
   std::vector<Warning> warnings;
@@ -96,7 +100,10 @@ private:
   mutable std::map<std::size_t, std::string> buffers; // those that were read
 };
 
-/// Is it a file of a model, glTF or OBJ, by its name?
+/// Whether a path ends with this, which has no capitals, in letters of either case.
+bool hasEnding(const std::string &path, std::string_view ending);
+
+/// Is it a file of a model, glTF, OBJ or PLY, by its name?
 bool isModel(const std::string &path);
 
 /// Is it a `data:` URI? Then its bytes are in it.

@@ -18,16 +18,17 @@ constexpr double lowestIndex = 1.01, highestIndex = 2;
 
 class MaterialReader {
 public:
-  MaterialReader(const File &file, std::size_t index, const Mention &mention, Modules &modules,
-                 std::vector<Warning> &warnings)
+  MaterialReader(const File &file, std::size_t index, VertexColors colors, const Mention &mention,
+                 Modules &modules, std::vector<Warning> &warnings)
       : json(file.list("materials")[index]), what(fmt::format("`materials.{}`", index)),
-        textures(file, mention, modules, warnings), modules(modules), warnings(warnings) {}
+        colors(colors), textures(file, mention, modules, warnings), modules(modules),
+        warnings(warnings) {}
 
   JsonValue read() {
     readBase();
     if (extension(json, "KHR_materials_unlit"))
       return covered(unlit());
-    JsonValue material = made(json, "materials.Principled");
+    JsonValue material = materialObject(json, "Principled", colors, modules);
     set(material, "baseColor", baseColor);
     setMap(material, "baseColorMap", baseMap, Use::Color);
     set(material, "metallic", factor(*metallicRoughness, "metallicFactor", 1, 1));
@@ -100,7 +101,7 @@ private:
 
   /// The color itself, whatever the light.
   JsonValue unlit() {
-    JsonValue material = made(json, "materials.Emitter");
+    JsonValue material = materialObject(json, "Emitter", colors, modules);
     set(material, "radiance", baseColor);
     setMap(material, "radianceMap", baseMap, Use::Color);
     set(material, "isTwoSided", truth(json, true));
@@ -181,21 +182,24 @@ private:
       return material;
     if (mode->string != "BLEND" && mode->string != "MASK")
       throw Error(message::badAlphaMode(of("alphaMode"), mode->string), mode->place());
-    JsonValue wrapper = made(*mode, "materials.Cutout");
-    if (mode->string == "BLEND") {
+    const bool isMask = mode->string == "MASK";
+    const JsonValue *cutoff = isMask ? json.find("alphaCutoff") : nullptr;
+    const double edge = cutoff ? readNumber(*cutoff, of("alphaCutoff")) : isMask ? 0.5 : 0;
+    const bool haveColorsAlpha = colors == VertexColors::Rgba && (!isMask || edge > 0);
+    JsonValue wrapper =
+        made(*mode, haveColorsAlpha ? "materials.VertexColorCutout" : "materials.Cutout");
+    if (!isMask || haveColorsAlpha) {
       set(wrapper, "opacity", number(baseColor, alpha));
       setMap(wrapper, "opacityMap", baseMap, Use::Alpha);
+      if (isMask)
+        set(wrapper, "edge", number(*mode, edge));
+    } else if (baseMap && alpha > 0) {
+      JsonValue threshold = made(*mode, "textures.Threshold");
+      set(threshold, "edge", number(*mode, edge / alpha));
+      setMap(threshold, "pattern", baseMap, Use::Alpha);
+      set(wrapper, "opacityMap", std::move(threshold));
     } else {
-      const JsonValue *cutoff = json.find("alphaCutoff");
-      const double edge = cutoff ? readNumber(*cutoff, of("alphaCutoff")) : 0.5;
-      if (baseMap && alpha > 0) {
-        JsonValue threshold = made(*mode, "textures.Threshold");
-        set(threshold, "edge", number(*mode, edge / alpha));
-        setMap(threshold, "pattern", baseMap, Use::Alpha);
-        set(wrapper, "opacityMap", std::move(threshold));
-      } else {
-        set(wrapper, "opacity", number(*mode, alpha >= edge ? 1 : 0));
-      }
+      set(wrapper, "opacity", number(*mode, alpha >= edge ? 1 : 0));
     }
     set(wrapper, "material", std::move(material));
     return wrapper;
@@ -208,6 +212,7 @@ private:
 
   const JsonValue &json;
   const std::string what;
+  const VertexColors colors;
   Textures textures;
   Modules &modules;
   std::vector<Warning> &warnings;
@@ -220,15 +225,21 @@ private:
 
 } // namespace
 
-JsonValue materialOf(const File &file, std::size_t index, const Mention &mention, Modules &modules,
-                     std::vector<Warning> &warnings) {
+JsonValue materialOf(const File &file, std::size_t index, VertexColors colors,
+                     const Mention &mention, Modules &modules, std::vector<Warning> &warnings) {
   if (const Prepared *prepared = file.prepared())
-    return prepared->material(index, mention, modules, warnings);
-  return MaterialReader(file, index, mention, modules, warnings).read();
+    return prepared->material(index, colors, mention, modules, warnings);
+  return MaterialReader(file, index, colors, mention, modules, warnings).read();
 }
 
-JsonValue defaultMaterial(const JsonValue &source, Modules &modules) {
-  JsonValue material = libraryObject(source, "materials.Principled", modules);
+JsonValue materialObject(const JsonValue &source, const std::string &name, VertexColors colors,
+                         Modules &modules) {
+  const char *prefix = colors == VertexColors::None ? "" : "VertexColor";
+  return libraryObject(source, fmt::format("materials.{}{}", prefix, name), modules);
+}
+
+JsonValue defaultMaterial(const JsonValue &source, VertexColors colors, Modules &modules) {
+  JsonValue material = materialObject(source, "Principled", colors, modules);
   set(material, "baseColor", numbers(source, {1, 1, 1}));
   set(material, "metallic", number(source, 1));
   set(material, "roughness", number(source, 1));

@@ -168,6 +168,17 @@ void checkPrimitive(const File &file, const JsonValue &primitive, const std::str
       differencesOf(file, primitive, part, target, name, vertices.positions.count());
 }
 
+VertexColors vertexColorsOf(const File &file, const JsonValue &primitive, const std::string &part) {
+  const std::optional<Accessor> colors =
+      Vertices(file, primitive, part).attribute(file, primitive, part, "COLOR_0", nullptr);
+  if (!colors)
+    return VertexColors::None;
+  if (colors->json().find("type")->string == "VEC4")
+    return VertexColors::Rgba;
+  colors->require("VEC3");
+  return VertexColors::Rgb;
+}
+
 std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part) {
   std::vector<Warning> warnings;
   if (!hasTriangles(primitive, part))
@@ -177,8 +188,6 @@ std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &p
     for (const auto &[name, number] : primitive.find("targets")->elements[target].members)
       if (name.text != "POSITION" && name.text != "NORMAL" && ignored.insert(name.text).second)
         warnings.push_back({message::targetAttributeIgnored(name.text, part), number.place()});
-  if (const JsonValue *colors = Vertices::attributes(primitive, part).find("COLOR_0"))
-    warnings.push_back({message::vertexColorsIgnored(part), colors->place()});
   return warnings;
 }
 
@@ -229,6 +238,9 @@ void addAttributes(runtime::Mesh &mesh, const File &file, const JsonValue &primi
     const bool isUv = key.text.compare(0, 9, "TEXCOORD_") == 0;
     if (isUv && components == 2)
       flip(numbers);
+    if (name == "color")
+      for (float &one : numbers)
+        one = std::clamp(one, 0.0f, 1.0f);
     mesh.attributes.push_back(runtime::floatAttribute(name, components, numbers));
     mesh.attributes.back().isRgb = key.text.compare(0, 6, "COLOR_") == 0;
     if (name == "tangent" && components == 4)

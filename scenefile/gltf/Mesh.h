@@ -21,12 +21,16 @@ std::size_t targetCount(const JsonValue &primitive, const std::string &part);
 /// Checks a primitive as far as it can be without the bytes of buffers.
 void checkPrimitive(const File &file, const JsonValue &primitive, const std::string &part);
 
+/// Throws BadBuffer for `COLOR_0` of another type than VEC3 and VEC4.
+VertexColors vertexColorsOf(const File &file, const JsonValue &primitive, const std::string &part);
+
 /// What of a primitive is left out, by name.
 std::vector<Warning> warningsOf(const JsonValue &primitive, const std::string &part);
 
 /// Reads a primitive, and of its other attributes those that are requested: `TEXCOORD_1` is `uv1`,
 /// `COLOR_0` `color`, `TANGENT` `tangent`, and an author's own, such as `_WEAR`, `wear`. Texture
 /// coordinates are turned from glTF's, which begin at the upper left corner of an image, to ours.
+/// `COLOR_0` is clamped to [0, 1], as glTF demands.
 /// `weights`: of its morph targets, whose positions and normals are added; empty: all are 0.
 /// Throws BadMesh, BadBuffer.
 runtime::Mesh readMesh(const File &file, const std::string &part,

@@ -182,23 +182,36 @@ private:
                                                          : fmt::format("{}.{}", label, primitive);
   }
 
-  /// The name of a primitive's material, which is made once.
+  /// What the name of a material ends with, on meshes with these vertex colors.
+  static const char *suffixOf(VertexColors colors) {
+    switch (colors) {
+    case VertexColors::None:
+      return "";
+    case VertexColors::Rgb:
+      return " with vertex colors";
+    case VertexColors::Rgba:
+      return " with vertex colors and alpha";
+    }
+    return "";
+  }
+
+  /// The name of a primitive's material, which is made once for each kind of vertex colors.
   JsonValue materialOf(const JsonValue &primitive, const std::string &part) {
+    const VertexColors colors = vertexColorsOf(file, primitive, part);
     const JsonValue *number = primitive.find("material");
     if (!number) {
-      const std::string key = name + "/default material";
-      if (!hasDefault)
-        add(model.materials, key, defaultMaterial(source, model.modules));
-      hasDefault = true;
+      const std::string key = name + "/default material" + suffixOf(colors);
+      if (materials.insert(key).second)
+        add(model.materials, key, defaultMaterial(source, colors, model.modules));
       return text(primitive, key);
     }
     const std::size_t index =
         file.index("materials", *number, fmt::format("`material` of `{}`", part));
-    const std::string key = name + "/" + materialLabels.of(index);
-    if (materials.insert(index).second)
+    const std::string key = name + "/" + materialLabels.of(index) + suffixOf(colors);
+    if (materials.insert(key).second)
       errors.attempt([&] {
         add(model.materials, key,
-            gltf::materialOf(file, index, mention, model.modules, model.warnings));
+            gltf::materialOf(file, index, colors, mention, model.modules, model.warnings));
       });
     return text(*number, key);
   }
@@ -219,8 +232,7 @@ private:
   /// Names of their nodes, by mesh and 1 + the node whose weights it has; empty: without triangles.
   std::map<std::pair<std::size_t, std::size_t>, std::string> meshes;
   std::set<std::string> warned;    // parts
-  std::set<std::size_t> materials; // made
-  bool hasDefault = false;
+  std::set<std::string> materials; // made
   ErrorCollector errors;
 };
 

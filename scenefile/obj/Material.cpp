@@ -1,6 +1,6 @@
 #include "scenefile/obj/Material.h"
 
-#include "scenefile/gltf/Parts.h"
+#include "scenefile/gltf/Material.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -33,9 +33,10 @@ struct Map {
 
 class MaterialMaker {
 public:
-  MaterialMaker(const Material &material, double size, const Mention &mention, Modules &modules,
-                std::vector<Warning> &warnings)
-      : material(material), size(size), mention(mention), modules(modules), warnings(warnings) {}
+  MaterialMaker(const Material &material, double size, VertexColors colors, const Mention &mention,
+                Modules &modules, std::vector<Warning> &warnings)
+      : material(material), size(size), colors(colors), mention(mention), modules(modules),
+        warnings(warnings) {}
 
   JsonValue make() {
     illumination = int(number("illum", 0, 10).value_or(2));
@@ -320,12 +321,13 @@ private:
   }
 
   std::vector<double> diffuse() const {
-    return color("Kd").value_or(std::vector<double>(3, material.find("map_Kd") ? 1 : 0.8));
+    const bool hasColors = material.find("map_Kd") || colors != VertexColors::None;
+    return color("Kd").value_or(std::vector<double>(3, hasColors ? 1 : 0.8));
   }
 
   JsonValue surface() {
     if (isDiffuse()) {
-      JsonValue made = libraryObject(at("Kd"), "materials.Lambert", modules);
+      JsonValue made = materialObject(at("Kd"), "Lambert", colors, modules);
       const std::vector<double> tint = diffuse();
       if (material.find("map_Kd"))
         setColors(made, "albedo", "map_Kd", &tint);
@@ -333,7 +335,8 @@ private:
         setColor(made, "reflectance", "Kd", tint);
       return made;
     }
-    JsonValue made = libraryObject(material.source, "materials.Principled", modules);
+    JsonValue made = materialObject(material.source, "Principled",
+                                    isMirror() ? VertexColors::None : colors, modules);
     if (isMirror()) {
       setColor(made, "baseColor", "Ks", color("Ks").value_or(std::vector<double>(3, 1)));
       setColors(made, "baseColorMap", "map_Ks");
@@ -425,6 +428,7 @@ private:
 
   const Material &material;
   const double size;
+  const VertexColors colors;
   const Mention &mention;
   Modules &modules;
   std::vector<Warning> &warnings;
@@ -434,13 +438,16 @@ private:
 
 } // namespace
 
-JsonValue materialOf(const Material &material, double size, const Mention &mention,
-                     Modules &modules, std::vector<Warning> &warnings) {
-  return MaterialMaker(material, size, mention, modules, warnings).make();
+JsonValue materialOf(const Material &material, double size, VertexColors colors,
+                     const Mention &mention, Modules &modules, std::vector<Warning> &warnings) {
+  return MaterialMaker(material, size, colors, mention, modules, warnings).make();
 }
 
-JsonValue defaultMaterial(const JsonValue &source, Modules &modules) {
-  return libraryObject(source, "materials.Lambert", modules);
+JsonValue defaultMaterial(const JsonValue &source, VertexColors colors, Modules &modules) {
+  JsonValue made = materialObject(source, "Lambert", colors, modules);
+  if (colors != VertexColors::None)
+    set(made, "reflectance", numbers(source, {1, 1, 1}));
+  return made;
 }
 
 } // namespace rtsl::scene::obj

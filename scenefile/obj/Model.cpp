@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -63,6 +62,11 @@ public:
         uvs[i] = 1 - uvs[i];
       set(attributes, "TEXCOORD_0", added(accessor(uvs, floats, "VEC2", 2)));
     }
+    for (const runtime::NamedAttribute &attribute : mesh.attributes)
+      if (attribute.isRgb && !attribute.ofTriangles && attribute.components <= 4)
+        set(attributes, "COLOR_0",
+            added(accessor(attribute.words, floats, attribute.components == 4 ? "VEC4" : "VEC3",
+                           attribute.components)));
     primitives.push_back(
         object(source, {{"attributes", std::move(attributes)},
                         {"indices", added(accessor(mesh.indices, unsignedInt, "SCALAR", 1))},
@@ -130,6 +134,10 @@ private:
   std::vector<JsonValue> primitives, accessors, views;
 };
 
+bool isObj(const std::string &path) {
+  return hasEnding(path, ".obj");
+}
+
 /// What an OBJ file says about materials.
 struct Mentions {
   std::vector<std::pair<std::string, JsonValue>> libraries; // paths
@@ -188,17 +196,15 @@ struct Known {
 
 } // namespace
 
-bool isObj(const std::string &path) {
-  const std::string ending = ".obj";
-  return path.size() > ending.size() &&
-         std::equal(ending.rbegin(), ending.rend(), path.rbegin(), [](char a, char b) {
-           return a == char(std::tolower(static_cast<unsigned char>(b)));
-         });
+bool isModel(const std::string &path) {
+  return isObj(path) || hasEnding(path, ".ply");
 }
 
 std::unique_ptr<File> readModel(const std::string &path) {
-  const std::vector<MeshGroup> groups = runtime::loadMeshGroups(path);
-  const Mentions mentions = mentionsIn(path);
+  const std::vector<MeshGroup> groups =
+      isObj(path) ? runtime::loadMeshGroups(path)
+                  : std::vector<MeshGroup>{{"", runtime::loadMesh(path, {{"color"}, false})}};
+  const Mentions mentions = isObj(path) ? mentionsIn(path) : Mentions();
   Prepared prepared;
   std::map<std::string, Material> materials;
   for (const auto &[library, source] : mentions.libraries) {
@@ -240,16 +246,13 @@ std::unique_ptr<File> readModel(const std::string &path) {
     writer.add(group, known.size());
     known.push_back(std::move(one));
     named.push_back(std::move(json));
-    for (const std::string &attribute : group.mesh.otherAttributes)
-      if (attribute == "color" && known.size() == 1)
-        prepared.warnings.push_back({message::modelColorsIgnored(path), Place{path}});
   }
-  prepared.material = [known = std::move(known),
-                       size = writer.size()](std::size_t index, const Mention &mention,
-                                             Modules &modules, std::vector<Warning> &warnings) {
+  prepared.material = [known = std::move(known), size = writer.size()](
+                          std::size_t index, VertexColors colors, const Mention &mention,
+                          Modules &modules, std::vector<Warning> &warnings) {
     const Known &one = known.at(index);
-    return one.material ? materialOf(*one.material, size, mention, modules, warnings)
-                        : defaultMaterial(one.source, modules);
+    return one.material ? obj::materialOf(*one.material, size, colors, mention, modules, warnings)
+                        : obj::defaultMaterial(one.source, colors, modules);
   };
   JsonValue json = writer.finish(std::move(named));
   return std::make_unique<File>(std::move(json), writer.takeBinary(), path, std::move(prepared));

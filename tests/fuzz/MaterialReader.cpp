@@ -32,7 +32,8 @@ void read(const std::string &path, std::size_t lines) {
     gltf::Modules modules;
     std::vector<Warning> warnings;
     try {
-      const JsonValue made = obj::materialOf(material, 1, mention, modules, warnings);
+      const JsonValue made =
+          obj::materialOf(material, 1, gltf::VertexColors::Rgb, mention, modules, warnings);
       require(made.find("class") != nullptr, "a material is an object of a class");
       require(!modules.empty(), "its class is of the library");
     } catch (const Error &error) {

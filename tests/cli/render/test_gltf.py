@@ -1,5 +1,6 @@
 """glTF files: alone, in scenes, and damaged."""
 
+import base64
 import json
 import shutil
 import struct
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import unittest
 
+from exr_files import channels
 from harness import DIAGNOSED, EXAMPLES, Case
 
 MODEL = EXAMPLES / "gltf"
@@ -18,6 +20,34 @@ SCENE = {
     "objects": [{"model": "still-life.gltf"}],
     "render": {"engine": "path"},
 }
+
+
+FRONT = """
+class Front : rt_Camera { // x from 0 to 2, y from 0 to 1
+  void generateRay() {
+    vec2 pixel = (vec2(rt_LaunchIndex.xy) + vec2(0.5)) / vec2(rt_LaunchSize.xy);
+    rt_RayOrigin = vec3(2.0 * pixel.x, 1.0 - pixel.y, 1.0);
+    rt_RayDirection = vec3(0.0, 0.0, -1.0);
+  }
+};
+"""
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+property uchar red
+property uchar green
+property uchar blue
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 0
+1 0 0 0 255 0
+0 1 0 0 0 255
+3 0 1 2
+"""
 
 
 class Gltf(Case):
@@ -104,6 +134,82 @@ class Gltf(Case):
         self.render("a.json")
         self.render("b.json", output="b.exr")
         self.same("a.exr", "b.exr")
+
+    def colored(self, name, colors, material):
+        """A triangle with a color for each corner: red, green, blue and perhaps alpha."""
+        numbers = [0, 0, 0, 1, 0, 0, 0, 1, 0, *(x for color in colors for x in color)]
+        data = base64.b64encode(struct.pack(f"<{len(numbers)}f", *numbers)).decode()
+        view = {"buffer": 0, "byteOffset": 36, "byteLength": 4 * len(numbers) - 36}
+        kind = {"componentType": 5126, "count": 3}
+        uri = f"data:application/octet-stream;base64,{data}"
+        document = {
+            "asset": {"version": "2.0"},
+            "extensionsUsed": ["KHR_materials_unlit"],
+            "nodes": [{"mesh": 0}],
+            "meshes": [
+                {"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "material": 0}]}
+            ],
+            "materials": [material],
+            "accessors": [
+                {"bufferView": 0, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0], **kind},
+                {"bufferView": 1, "type": f"VEC{len(colors[0])}", **kind},
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}, view],
+            "buffers": [{"byteLength": 4 * len(numbers), "uri": uri}],
+        }
+        (self.folder / name).write_text(json.dumps(document))
+
+    def front(self, *objects, **settings):
+        """A picture of 8 x 4 pixels, with rays through their middles, in light from all around."""
+        self.write("front.rtsl", FRONT)
+        scene = {
+            "rtsl": 1,
+            "import": ["front.rtsl"],
+            "camera": {"class": "Front"},
+            "objects": objects,
+            "background": [1, 1, 1],
+            "render": {"engine": "path", "size": [8, 4], "spp": 1, **settings},
+        }
+        self.write("scene.json", json.dumps(scene))
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-O0", "-Werror")
+        return {
+            name: [struct.unpack("<f", struct.pack("<I", bits))[0] for bits in values]
+            for name, values in channels((self.folder / "a.exr").read_bytes()).items()
+        }
+
+    def test_vertex_colors_are_factors_of_the_base_color(self):
+        """Three formats: what is seen of a corner's color is its barycentric coordinate."""
+        corners = [(2, 0, 0), (0, 1, 0), (0, 0, 1)]  # values above 1 count as 1
+        unlit = {"extensions": {"KHR_materials_unlit": {}}}
+        unlit["pbrMetallicRoughness"] = {"baseColorFactor": [0.5, 0.25, 1, 1]}
+        self.colored("unlit.gltf", corners, unlit)
+        self.write("lit.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n")
+        self.write("lit.ply", PLY)
+        for other in ("lit.obj", "lit.ply"):
+            right = {"model": other, "transform": {"translate": [1, 0, 0]}}
+            seen = self.front({"model": "unlit.gltf"}, right)
+            for pixel in range(32):
+                x, y = (pixel % 4 + 0.5) / 4, 1 - (pixel // 8 + 0.5) / 4
+                if x + y >= 1:  # its edge, and the background
+                    continue
+                factors = (0.5, 0.25, 1) if pixel % 8 < 4 else (1, 1, 1)
+                for name, factor, share in zip("RGB", factors, (1 - x - y, x, y)):
+                    self.assertAlmostEqual(seen[name][pixel], factor * share, delta=1e-5)
+
+    def test_vertex_colors_are_those_of_the_material(self):
+        """The same color in all corners, and as a factor of the material; with alpha."""
+        base = [0.25, 0.5, 0.75, 0.5]
+        for mode in ("BLEND", "MASK"):
+            means = []
+            for vertex, factor in ((base, [1, 1, 1, 1]), ([1, 1, 1, 1], base)):
+                metal = {"baseColorFactor": factor, "metallicFactor": 0.5}
+                material = {"alphaMode": mode, "pbrMetallicRoughness": metal}
+                self.colored("a.gltf", [vertex] * 3, {**material, "alphaCutoff": 0.45})
+                seen = self.front({"model": "a.gltf"}, spp=64)
+                means.append([sum(values) / 32 for values in seen.values()])
+            for one, other in zip(*means):
+                self.assertAlmostEqual(one, other, delta=1e-3)
+            self.assertLess(max(means[0]), 0.99)
 
     def test_all_mistakes_are_told_at_once(self):
         self.document["materials"][1]["pbrMetallicRoughness"]["metallicFactor"] = 2

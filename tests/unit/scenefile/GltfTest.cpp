@@ -259,7 +259,6 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
                 "`nodes.1` is flattened by its transform, and ignored",
                 "the skin of `nodes.0` is ignored: the mesh is not deformed",
                 "`meshes.0.primitives.1` has points or lines, which are ignored",
-                "the colors of vertices, `COLOR_0` of `meshes.0.primitives.1`, are ignored",
                 "`TANGENT` of the morph targets of `meshes.0.primitives.0` is ignored: they change "
                 "positions and normals",
                 "the extension `KHR_materials_iridescence` of `m.gltf` is not supported; what it "
