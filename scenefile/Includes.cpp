@@ -17,7 +17,7 @@ namespace {
 using Kind = JsonValue::Kind;
 using Members = std::vector<std::pair<JsonKey, JsonValue>>;
 
-/// How a section of an included file meets that of the file that includes it.
+/// How a section of an included file is combined with that of the file that includes it.
 enum class Meeting : std::uint8_t {
   Names,  // united; a name in both is an error
   List,   // joined

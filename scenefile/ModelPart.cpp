@@ -15,7 +15,7 @@ using gltf::text;
 
 namespace {
 
-/// Where values are that no file has.
+/// An empty value for the position of values that are in no file.
 JsonValue nowhere() {
   JsonValue value;
   value.file = std::make_shared<const std::string>();

@@ -92,7 +92,7 @@ struct SharedNodes {
   std::vector<LocatedName> nodes; // empty text: written in place
 };
 
-/// A selector above instances, once for each way to it.
+/// A selector above instances, once for each path from a root to it.
 struct SelectorDescription {
   std::size_t node = 0;        // an index in `nodes`
   ReferenceDescription object; // of an rt_Selector class

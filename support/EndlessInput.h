@@ -1,4 +1,4 @@
-//===- EndlessInput.h - what is no file to be read --------------------------===//
+//===- EndlessInput.h - input that may never end --------------------------===//
 #pragma once
 
 #include <sys/stat.h>

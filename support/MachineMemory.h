@@ -12,8 +12,9 @@ namespace rtsl {
 /// another folder in tests only.
 std::uint64_t availableMemory(const std::filesystem::path &root = "/");
 
-/// Counts an allocation whose pages are taken only when they are written. What cannot be had is
-/// refused when it is allocated: otherwise the system kills the process in the middle of a launch.
+/// Counts an allocation whose pages are taken only when they are written. An allocation for which
+/// there is not enough memory is refused at once: otherwise the system would kill the process in
+/// the middle of a launch.
 class MemoryReservation {
 public:
   MemoryReservation() = default;

@@ -27,7 +27,7 @@ public:
   void fail() { failed = true; }
   bool hasFailed() const { return failed; }
 
-  /// Where the text stands, if that is to be printed.
+  /// The place of the range in the source, for `#line`; nothing if `#line` is not to be printed.
   std::optional<SourcePlace> lineDirective(SourceRange range) const;
   std::optional<SourcePlace> lineDirective(SourceRange ofFile, unsigned line) const;
   /// The C++ names that mean something in every method of a class: those at file level, and those

@@ -43,8 +43,8 @@ bool isReserved(const std::string &word) {
          word.compare(0, 5, "rtsl_") == 0;
 }
 
-/// What stands where types are named outside of the author's code: functions in the namespace
-/// `slots`, and what they call their parameters.
+/// Names that are in scope where generated code, rather than the author's, names types: the
+/// functions in the namespace `slots`, and their parameters.
 static const std::set<std::string> &besideTypes() {
   static const std::set<std::string> words = {
 #define RTSL_SLOT(base, method) #method,

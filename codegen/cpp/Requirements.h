@@ -1,7 +1,7 @@
 //===- Requirements.h - what printed functions require of the rest --------===//
 //
-// Functions are made first. What they mention of types of references, operators and exceptions is
-// declared afterwards, and stands above them in the file.
+// Functions are made first. The types of references, the operators and the exceptions that they
+// mention are declared afterwards, but printed before the functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,8 +1,9 @@
 //===- MachineCode.h - what a compilation needs code generators for -------===//
 //
-// LLVM's code generators make a program large and slow to start, and up to C++ nothing needs them.
-// So the compiler is two libraries: rtslCompiler, which does without, and rtslMachineCode, in the
-// folder `machine`, which implements this for it. `rtslc` is linked without the second.
+// LLVM's code generators make a program large and slow to start, and the stages up to C++ output do
+// not need them. So the compiler is two libraries: rtslCompiler, which does without them, and
+// rtslMachineCode, in the folder `machine`, which implements this interface. `rtslc` is linked
+// without the second.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

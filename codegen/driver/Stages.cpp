@@ -63,7 +63,7 @@ bool reachModuleFacts(Compilation &compilation) {
   return compilation.moduleFacts.has_value();
 }
 
-/// What was found to be read is not.
+/// Changes the finding that this subject is read: it is not.
 static void noteNeverRead(Compilation &compilation, Item item, const std::string &subject) {
   if (!compilation.findings)
     return;

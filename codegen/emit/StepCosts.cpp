@@ -25,8 +25,8 @@ namespace {
 // Instructions, counted in the programs of bench/gpu (docs/gpu.md).
 constexpr std::uint64_t ofDivision = 8, ofRuntimeFunction = 32, ofSample = 300, ofRay = 300,
                         ofListedInstance = 40, ofTree = 4000;
-/// Their lanes part again on the way, so that a warp spends more on traversal, and on new rays,
-/// than a lane does.
+/// A factor for traversal and for new rays: the lanes of a warp diverge in these steps, so that the
+/// warp takes longer than a single lane would.
 constexpr std::uint64_t partings = 4;
 constexpr std::uint64_t unit = 16; // instructions of a step with the cost 1
 constexpr unsigned bitsOfStep = 4, mostSteps = 64 / bitsOfStep;

@@ -106,8 +106,9 @@ Parts FunctionLowering::lowerIlluminateBySurface(const typed::BuiltinExpr &expr)
   return {emitter.make<ir::IlluminateOp>(emitter.getI1Type(), Value(), point, side, Value())};
 }
 
-// A side is all that is within a right angle of it. The argument that turns shadows on or off is
-// mostly a constant. RTSL_NO_SHADOWS, which is no possible cosine, turns them off (Abi.h).
+// A side is the cone of all directions within a right angle of the given one. The argument that
+// turns shadows on or off is mostly a constant. RTSL_NO_SHADOWS, which is no possible cosine, turns
+// them off (Abi.h).
 Parts FunctionLowering::lowerIlluminate(const typed::BuiltinExpr &expr) {
   Value light = value(*expr.args[0]), point = value(*expr.args[1]);
   if (expr.args.size() > 2 && !expr.args[2]->type->is(TypeKind::Bool)) {

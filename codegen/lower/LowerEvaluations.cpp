@@ -73,7 +73,8 @@ static const typed::Expr *outputOf(const typed::Expr &expr) {
   return isInOutputBuffer(*place) ? place : nullptr;
 }
 
-/// What a part is a part of; null: nothing.
+/// The expression that this one is a part of: a field's struct, an element's array and so on; null
+/// if it is no part.
 static const typed::Expr *outerPlace(const typed::Expr &part) {
   if (auto *field = dynCast<typed::FieldExpr>(&part))
     return field->base.get();
@@ -240,7 +241,7 @@ static bool isOneStep(const typed::Expr &expr) {
 }
 
 /// The evaluation checks the indices of the places that it reads or writes itself; those of an
-/// assignment before the rays of its value.
+/// assignment are checked before its value sends rays.
 void FunctionLowering::addIndexedPlaces(const typed::Expr &expr, Evaluation &evaluation) {
   std::vector<const typed::Expr *> places = writesOf(expr).lvalues;
   if (mayRaise(expr))

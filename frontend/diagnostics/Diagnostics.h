@@ -18,7 +18,7 @@
 
 namespace rtsl {
 
-/// A note says something that is as it may well be meant: it is never an error.
+/// A note points out something that may well be intended: it is never an error.
 enum class Severity : std::uint8_t { Note, Warning, Error };
 
 /// "note", "warning" or "error".

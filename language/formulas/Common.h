@@ -89,7 +89,7 @@ Number isInf(Number x) {
   return equal(abs(x), infinity);
 }
 
-/// The bits of a NaN differ from machine to machine, so there is one NaN to see.
+/// The bits of a NaN differ from machine to machine, so the result is the same for all of them.
 template <typename Number>
 Number floatBits(Number x) {
   return select(isNan(x), 0x7fc00000, x.bits());

@@ -58,7 +58,7 @@ struct FlatScene {
 /// on addresses: the same scene gives the same bytes. Throws OutOfMemory.
 FlatScene flatten(const Scene &scene);
 
-/// With trees for the device traversal, at its end. Nor do these depend on anything else.
+/// The same with trees for the device traversal, at its end. They depend on the scene alone, too.
 FlatScene flatten(const Scene &scene, const Bvh &bvh);
 
 } // namespace rtsl::runtime

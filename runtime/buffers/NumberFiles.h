@@ -22,8 +22,9 @@ public:
     std::string name; // as NumPy writes it
     std::size_t bytes;
   };
-  /// Reads it. With a `structType` its elements must be such structs, and numbers without; either
-  /// is good for a header. Throws BadBuffer, and the errors of reading a file.
+  /// Reads it. With a `structType` its elements must be such structs, without one they must be
+  /// numbers; for Part::Header it does not matter. Throws BadBuffer, and the errors of reading a
+  /// file.
   explicit NpyFile(const std::string &path, Part part = Part::Whole,
                    const StructType *structType = nullptr);
 

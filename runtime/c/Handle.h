@@ -33,7 +33,7 @@ struct RtslScene {
   rtsl::runtime::Placement takePlacement();
   /// The glTF and OBJ files that were opened.
   const std::shared_ptr<rtsl::scene::ModelFiles> &openModels();
-  /// What of the files of meshes the shaders read.
+  /// What the shaders read of the files of meshes.
   rtsl::runtime::MeshRequest meshRequest() const;
   rtsl::runtime::Mesh loadMesh(const char *path) const;
   /// Leaves out those of its file where they are barycentric.

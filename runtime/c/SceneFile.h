@@ -8,8 +8,8 @@ namespace rtsl::c {
 /// The errors of a file as one, each with its place, one a line.
 Error inLines(const Error &error);
 
-/// Throws LibraryClassesMissing for classes of the library that the scene has objects of, such as
-/// those that the materials of its models become, and that the shaders do not have.
+/// Throws UnknownClass if the scene has objects of classes of the library that the shaders do not
+/// have, such as those that the materials of its models become.
 void requireLibraryClasses(const scene::SceneDescription &description,
                            const runtime::Program &program);
 

@@ -64,7 +64,8 @@ public:
   /// the last call. Not while rays are traced.
   void update(const Scene &scene, unsigned threads);
 
-  /// Before the scene is gone: what tells whether something is elsewhere in the next one.
+  /// To be called before the scene is destroyed: stores the boxes by which follow() finds what has
+  /// moved.
   void rememberBoxes();
   /// The same for another scene, after rememberBoxes(). False if it has other contents
   /// (TreeContents.h): nothing may be traced then.

@@ -88,8 +88,8 @@ void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes);
 /// Follows what has moved. `mesh`: that of a space of its own. True if the tree was built anew.
 bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads);
 
-/// Makes a space that of another scene, whose launch is the current one, and follows what is
-/// elsewhere in it than it was in `boxes` and blocks, if anything.
+/// Makes a space that of another scene, whose launch is the current one, and updates the trees if
+/// anything in it has moved since `boxes` and blocks were stored.
 void followSpace(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
                  const Program::Slots &slots, unsigned threads);
 

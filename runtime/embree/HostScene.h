@@ -48,7 +48,8 @@ public:
   /// Of our own tree, if it has been built.
   const std::optional<TreeFigures> &treeFigures() const { return own.treeFigures(); }
 
-  /// Did the trees that it was given follow, or keep their places?
+  /// Have the trees that were passed to the constructor been kept, updated to this scene if
+  /// anything had moved?
   bool isRefitted() const { return refitted; }
   /// Gives the trees away. Nothing can be traced any more.
   KeptTrees takeTrees();

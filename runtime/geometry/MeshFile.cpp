@@ -1,9 +1,9 @@
 //===- MeshFile.cpp - meshes from files -----------------------------------===//
 //
 // assimp reads all formats, but is slow: for each OBJ or PLY file it clears 32 MiB first. So files
-// of these formats without unusual features are read here, and assimp reads the rest: other
-// formats and rare features. What is wrong with a damaged file is said here, where it is found:
-// assimp reads other numbers from some damaged OBJ files, and some PLY files crash it.
+// of these formats without unusual features are read here, and assimp reads the rest: other formats
+// and rare features. Damaged files are reported here: assimp reads wrong numbers from some damaged
+// OBJ files, and some PLY files crash it.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/geometry/AssimpFile.h"

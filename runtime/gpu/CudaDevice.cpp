@@ -154,7 +154,7 @@ void CudaDevice::unload(const Module &code) {
 }
 
 /// Finds "... properties for KERNEL" in the log, and "8 bytes spill stores, 12 bytes spill loads"
-/// behind it.
+/// after it.
 static void readSpills(const std::string &log, const char *name, CudaDevice::Kernel &kernel) {
   const std::size_t properties = log.find(fmt::format("properties for {}\n", name));
   const std::size_t frame =

@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Throws FileNotFound, FileUnreadable: the library that reads images has fewer words for these.
+/// Throws FileNotFound, FileUnreadable: the messages of the library that reads images are less
+/// precise.
 void requireReadable(const std::string &path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);

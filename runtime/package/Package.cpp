@@ -51,7 +51,8 @@ struct Section {
 };
 static_assert(sizeof(Section) == 24);
 
-/// What runs and what is run must mean the same by a launch.
+/// Sizes and offsets that the program that renders a package and the code in it must have in
+/// common.
 struct Layouts {
   std::uint32_t launch = sizeof(RtslLaunch), state = sizeof(RtslState), status = sizeof(RtslStatus),
                 job = sizeof(RtslJob), node = sizeof(RtslBvhNode), item = sizeof(RtslTreeItem),
@@ -171,7 +172,7 @@ private:
   [[noreturn]] void refuse(const Message &why) const { throw Error(why, Place{name}); }
   [[noreturn]] void refuseDamaged() const { refuse(message::packageDamaged(name)); }
 
-  /// Is it a package, of ours, whole and unharmed?
+  /// Throws unless this is a package of this version, complete and undamaged.
   void checkFile() {
     Header header;
     if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
@@ -245,7 +246,7 @@ private:
       refuseDamaged();
   }
 
-  /// Every pointer must lie in the scene and lead there.
+  /// Every pointer must be within the scene and point into it.
   void readScene(FlatScene &scene) const {
     const std::string_view bytes = content(SectionKind::Scene);
     const std::string_view pointers = content(SectionKind::Pointers);

@@ -1,6 +1,7 @@
 //===- HostPrint.cpp - `print` of shaders on the host ---------------------===//
 //
-// An object of its own: a program that takes what shaders print in another way defines these.
+// An object file of its own, so that a program that handles the output of shaders in another way
+// can define these functions itself.
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/engines/PrintedLines.h"

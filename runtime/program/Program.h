@@ -138,8 +138,8 @@ struct WaveFacts {
   bool isPersistent = false; // one kernel of persistent blocks
 };
 
-/// How the rays of a program go on where they hit: they do not, they send rays that depend on the
-/// hit alone, or rays that are chosen at random.
+/// Whether shaders send rays from hits: none; rays that depend on the hit alone; or rays that are
+/// chosen at random.
 enum class Paths : std::uint8_t { Single, Alike, Random };
 
 struct Program {

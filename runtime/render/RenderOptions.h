@@ -57,10 +57,10 @@ struct RenderOptions {
 
   /// Called from time to time by one thread at a time, with the share that is done, in [0, 1].
   std::function<void(double)> progress;
-  /// Set it from anywhere to stop: render throws Cancelled,
+  /// Any thread may set it to stop the rendering: then render() throws Cancelled,
   const std::atomic<bool> *cancel = nullptr;
-  /// or gives the picture as far as it is: of pixels that were begun the samples so far, and black
-  /// where there are none.
+  /// or, with this, returns the unfinished picture: the mean of the samples so far in each pixel,
+  /// and black where there are none.
   bool keepsUnfinished = false;
 
   /// The program has code for `print`.
@@ -72,7 +72,7 @@ struct RenderOptions {
   /// Renderings in passes only, with a limit of their error: pixels end one by one (Adaptive.h).
   bool isAdaptive = false;
 
-  /// What a pixel is none of whose samples is finite. The megakernel makes it 0 in any case.
+  /// The value of a pixel that has no finite sample. The megakernel always makes it 0.
   float withoutSample = 0;
   /// How many samples that are not finite the statistics name: the first in the order of rows,
   /// columns and samples. The megakernel names no more than RTSL_FIRST_NOT_FINITE.

@@ -21,8 +21,8 @@ public:
   Renderer(const Scene &scene, const RenderOptions &options,
            std::shared_ptr<HostScene> hostScene = nullptr);
   /// With the trees of a renderer of another scene, with the same traversal: if the scenes have the
-  /// same meshes and instances (runtime/accel/TreeContents.h), they follow what is elsewhere in
-  /// this one; otherwise new ones are built. Null: there are none.
+  /// same meshes and instances (runtime/accel/TreeContents.h), the trees are updated to what has
+  /// moved; otherwise new ones are built. Null: there are none.
   Renderer(const Scene &scene, const RenderOptions &options, std::shared_ptr<KeptTrees> kept);
   ~Renderer() override;
 

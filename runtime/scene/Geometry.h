@@ -56,8 +56,8 @@ public:
     return instances.size() + ((transformsGained + primitivesChanged) << 32);
   }
 
-  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops what of meshes
-  /// no material reads, unless the program keeps them.
+  /// Called after Objects::useProgram: updates RtslInstance::needs, and drops data of meshes that
+  /// no material on them reads, unless the program keeps it.
   void useProgram(const Objects &objects);
   /// Set by useProgram.
   const std::vector<MeshAttribute> &meshAttributes() const { return attributes; }

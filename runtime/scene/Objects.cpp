@@ -97,7 +97,7 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
     storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
     checkUnset(classInfo, object.name, values, recordOf(object));
     measureChain(object);
-  } catch (...) { // half an object is none
+  } catch (...) { // an object is added completely or not at all
     objects.pop_back();
     records.resize(before);
     throw;

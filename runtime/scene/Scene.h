@@ -28,8 +28,8 @@ public:
   const Program &program() const;
 
   /// Exchanges the program for one that was linked from the same classes, and may be bound to the
-  /// objects that the scene has: nothing can be added any more. What of meshes no material reads
-  /// that meets them is dropped.
+  /// objects that the scene has: nothing can be added any more. Data of meshes that no material on
+  /// them reads is dropped.
   void useProgram(std::shared_ptr<const Program> program);
 
   /// Normals and texture coordinates of meshes, as useProgram found them.

@@ -29,7 +29,7 @@ public:
   /// of its buffers, and those of its materials.
   std::shared_ptr<const gltf::File> model(const std::string &path);
 
-  /// Forgets what no call was for since the last one of this function.
+  /// Forgets files that were not requested since the last call of this function.
   void forgetUnused();
 
 private:

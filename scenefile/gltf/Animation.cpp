@@ -27,8 +27,8 @@ double dotOf(const std::vector<double> &a, const std::vector<double> &b) {
   return sum;
 }
 
-/// The quaternions between two, by the shorter way (Shoemake, "Animating Rotation with Quaternion
-/// Curves", SIGGRAPH 1985).
+/// The quaternion at a share of the shorter arc between two (Shoemake, "Animating Rotation with
+/// Quaternion Curves", SIGGRAPH 1985).
 std::vector<double> turned(std::vector<double> from, std::vector<double> to, double share) {
   const auto normalize = [](std::vector<double> &q) {
     const double length = std::sqrt(dotOf(q, q));

@@ -49,7 +49,7 @@ struct Node {
   std::optional<ReferenceDescription> selector; // among the children
   std::optional<std::int32_t> id;
   VariableDefinitions variables;
-  std::uint64_t instances = 0; // ways down from here to geometries; at most mostInstances + 1
+  std::uint64_t instances = 0; // paths from here to geometries; at most mostInstances + 1
   bool isReported = false;     // its transform, or a cycle through it
 };
 
@@ -76,7 +76,7 @@ public:
     errors.attempt([&] { readRoots(); });
     if (named && roots.empty() && !root.find("root") && !root.find("roots"))
       errors.add(Error(message::rootMissing(), named->place()));
-    if (!findOrder() || hasMistakes) // cycles of what could be read are said, too
+    if (!findOrder() || hasMistakes) // cycles among what could be read are reported, too
       return;
     errors.attempt([&] { countInstances(); });
     if (hasMistakes)
@@ -307,7 +307,7 @@ private:
     InstanceDescription way; // to the node
   };
 
-  /// Adds an instance to the geometry at the end of each way down from a root.
+  /// Adds an instance to the geometry at the end of each path from a root.
   void placeInstances(std::size_t number) {
     std::vector<Step> path;
     const auto enter = [&](std::size_t node, InstanceDescription way) {
@@ -348,7 +348,7 @@ private:
     errors.attempt([&] { scene.lights.push_back(placedLight(light, way, scene)); });
   }
 
-  /// What the node says of all that is below it.
+  /// Applies the settings of the node to the instances below it.
   void addToWay(const Node &node, InstanceDescription &way) {
     way.transform = node.transform.then(way.transform);
     if (way.inPart)
@@ -373,8 +373,8 @@ private:
 
   double flatness(std::size_t node) const { return worstCondition(nodes[node].transform); }
 
-  /// The transforms above the geometry flatten it, or nearly so; `worst` has the one to blame. Said
-  /// once.
+  /// Reports that the transforms above the geometry flatten it, or nearly so; `worst` is the node
+  /// whose transform does most of it. Once for each such node.
   void reportFlat(const Node &geometry, Node &worst) {
     if (std::exchange(worst.isReported, true))
       return;

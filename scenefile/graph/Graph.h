@@ -3,7 +3,7 @@
 // A node is a geometry (a mesh or a primitive, with a material), or a light, or has children, other
 // nodes, and perhaps a selector among them; each may have a transform, an id and variables, which
 // apply to all that is below. Nodes may be shared: a node is an instance of its geometry for each
-// way from a root down to it. docs/scene-format.md has the keys.
+// path from a root to it. docs/scene-format.md has the keys.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -1,6 +1,6 @@
 //===- VariablePlaces.h - where variables could set an object's members ---===//
 //
-// For messages about members that nothing sets: the nodes on the ways from the roots to the
+// For messages about members that nothing sets: the nodes on the paths from the roots to the
 // instances that use the object.
 //
 //===----------------------------------------------------------------------===//

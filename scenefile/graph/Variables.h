@@ -1,6 +1,6 @@
 //===- Variables.h - which variables of a scene its objects take ----------===//
 //
-// A public member that an object does not set takes the nearest variable of its name, on the way
+// A public member that an object does not set takes the nearest variable of its name, on the path
 // from the instance to the root. So one object of the scene file may be several of the program.
 //
 //===----------------------------------------------------------------------===//
@@ -33,12 +33,12 @@ public:
   const VariableDefinition *of(const runtime::MemberInfo &member,
                                const ObjectDescription &object) const;
 
-  /// What an object and those that it refers to take. In another scope, an object that takes the
-  /// same is the same.
+  /// The definitions that an object and those that it refers to take. In two scopes in which it
+  /// takes the same definitions, it is the same object of the program.
   using Taken = std::set<const JsonValue *>;
   Taken takenBy(const ObjectDescription &object) const;
 
-  /// As long as it lives, objects in the definition are looked at.
+  /// During its lifetime the objects in the definition are being visited.
   class Taking {
   public:
     Taking(const Variables &variables, const VariableDefinition &definition);

@@ -1,6 +1,6 @@
 //===- Mtl.h - files of materials for OBJ files ---------------------------===//
 //
-// The statements of a .mtl file, as text with positions; what they mean is said in Material.h.
+// The statements of a .mtl file, as text with positions; Material.h says what they mean.
 //
 //   newmtl gold
 //   Kd 0.9 0.6 0.2
@@ -49,7 +49,7 @@ struct Material {
 };
 
 /// The materials of a file; of several with one name the first counts. Throws the errors of
-/// readFile, and BadModel for statements before the first `newmtl`.
+/// readFile, and BadMesh for statements before the first `newmtl`.
 std::vector<Material> readMaterials(const std::string &path);
 
 /// Where a word is, for what is made of it.

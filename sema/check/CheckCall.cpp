@@ -298,8 +298,9 @@ ExprPtr FunctionChecker::checkUserCall(const ast::CallExpr &expr,
   return node;
 }
 
-/// Constructors and most methods of the table are called by the engine alone; a few may be called
-/// by other methods of the same object, where these may do what they do.
+/// Constructors and most methods of the table are called by the engine alone; a few may also be
+/// called by other methods of the same object, if these are allowed all that the called method
+/// does.
 bool FunctionChecker::requireCallable(const typed::Function &callee, SourceRange range,
                                       bool onOtherObject) {
   if (!callee.isConstructor && !callee.isStateMethod)
@@ -383,7 +384,7 @@ ExprPtr FunctionChecker::checkBaseCall(const ast::CallExpr &expr) {
 // Built-in functions
 //===----------------------------------------------------------------------===//
 
-/// Is this a function that may run for a hit or elsewhere? There derivatives are 0 (sema/derive).
+/// May this function run both for hits and elsewhere? Elsewhere derivatives are 0 (sema/derive).
 bool FunctionChecker::mayRunAnywhere() const {
   return function && (!scope || (scope->root && scope->root->name == typed::helperRoot));
 }

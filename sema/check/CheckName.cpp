@@ -444,8 +444,8 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
 // Lvalues
 //===----------------------------------------------------------------------===//
 
-/// Is the source text an lvalue? `+x` and `color(c)` may be checked to a mere variable, but are
-/// none.
+/// Is the source text an lvalue? The typed tree of `+x` and `color(c)` may be just a variable, but
+/// they are no lvalues.
 static bool namesAPlace(const ast::Expr &expr) {
   const ast::Expr *at = &expr;
   for (;;) {

@@ -113,8 +113,9 @@ public:
       defaults; // the default classes of an rt_ class
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
 
-  /// What a name at file level denotes where it is used; null: nothing. The library sees nothing of
-  /// the author's: a function of theirs may have the name of a built-in one that it calls.
+  /// What a name at file level denotes where it is used; null: nothing. Names in the author's files
+  /// are not visible in the library: an author's function may have the name of a built-in function
+  /// that the library calls.
   const Symbol *findSymbol(const std::string &name, SourceRange usedAt) const;
   /// The functions at file level of that name, seen from there.
   std::vector<const typed::Function *> findFunctions(const std::string &name,

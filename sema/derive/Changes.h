@@ -18,9 +18,9 @@ public:
   /// Finds the variables. The changes of `returned` values are used along these axes.
   void find(AxisSet returned);
 
-  /// May the value of the expression change? What cannot be followed does not.
+  /// May the value of the expression change? Values that cannot be followed count as constant.
   bool isVaried(const typed::Expr &expr) const;
-  /// Do calls of the function say how what it writes to `out` parameters changes?
+  /// Do calls of the function also write the changes of its `out` parameters?
   bool followsOutputs(const typed::Function &called) const;
   /// Does a variable with its changes accompany this one?
   bool hasCompanions(const typed::Variable *variable) const {

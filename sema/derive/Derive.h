@@ -9,18 +9,18 @@
 //                                      ==>    vec2 uv = rt_TextureUV * 4.0;
 //     float change = dFdx(uv.x);              float change = uv_dx.x;
 //
-// A local variable whose change is used somewhere gets a variable for it, an assignment to it one
-// to that. Functions are called in variants with parameters for the changes of their arguments:
-// `fWithFootprint` has the value of f, which contains dFdx or dFdy, `fDFdx` and `fDFdy` are the
-// changes of its value. Parameters that are written have `out` parameters for their changes in
-// `fWithFootprint`. Changes begin with rt_HitPoint, rt_TextureUV, rt_TextureUVW, rt_ShadingNormal
-// and the scratch members of materials: for the changes of `uv1` the class gets scratch members
-// `uv1_dx` and `uv1_dy`, which are known where the surface is a mesh. Elsewhere than in materials
-// and textures, and functions called from there, all changes are 0.
+// A local variable whose change is used somewhere is accompanied by a variable for the change; an
+// assignment to the former by one to the latter. Functions are called in variants with parameters
+// for the changes of their arguments: `fWithFootprint` has the value of f, which contains dFdx or
+// dFdy, `fDFdx` and `fDFdy` are the changes of its value. Parameters that are written have `out`
+// parameters for their changes in `fWithFootprint`. Changes begin with rt_HitPoint, rt_TextureUV,
+// rt_TextureUVW, rt_ShadingNormal and the scratch members of materials: for the changes of `uv1`
+// the class gets scratch members `uv1_dx` and `uv1_dy`, which are known where the surface is a
+// mesh. Outside of materials, textures and the functions that these call, all changes are 0.
 //
-// Changes of 0 as well have: what language/Derivatives.def says, other members, results of
-// functions that have other effects (they draw random numbers, say, or trace rays), of those with
-// `out` parameters, and of dFdx and dFdy themselves.
+// These have changes of 0, too: what language/Derivatives.def lists as such, other members, and the
+// results of functions that have other effects (draw random numbers or trace rays, for example), of
+// functions with `out` parameters, and of dFdx and dFdy themselves.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

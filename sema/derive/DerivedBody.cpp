@@ -29,7 +29,7 @@ std::unique_ptr<Variable> variableLike(const Variable &from) {
   return made;
 }
 
-/// The name, with underscores behind it if a variable of the function has it already.
+/// The name, with underscores after it if a variable of the function has it already.
 static std::string freeName(const Function &function, std::string name) {
   const auto isTaken = [&](const auto &variables) {
     return std::any_of(variables.begin(), variables.end(),

@@ -8,7 +8,7 @@
 
 namespace rtsl::derive {
 
-/// A variable of its own with the same properties; without a start.
+/// A new variable with the same properties, without an initialiser.
 std::unique_ptr<typed::Variable> variableLike(const typed::Variable &from);
 
 /// Writes a function without dFdx and dFdy: one that replaces it, or a variant of it. The copy has
@@ -25,7 +25,7 @@ public:
   void vary(Result result);
 
 private:
-  /// Variables with the changes of another one; null along an axis that nobody uses.
+  /// Variables with the changes of another one; null along an axis for which it is not used.
   struct Companions {
     const typed::Variable *along[2] = {nullptr, nullptr};
   };
@@ -38,7 +38,7 @@ private:
   void addCompanions(const typed::Variable &of, std::vector<typed::StmtPtr> &out,
                      const Term (&changes)[2]);
   const Companions *companionsOf(const typed::Expr &place) const;
-  /// Moves the declarations of variables of addKept there.
+  /// Moves the declarations of variables made by addKept to `out`.
   void declareKept(std::vector<typed::StmtPtr> &out);
   typed::StmtPtr declaration(const typed::Variable &variable) const;
   typed::StmtPtr assignment(const typed::Variable &variable, typed::ExprPtr value);
@@ -81,8 +81,8 @@ private:
                                std::vector<typed::ExprPtr> args);
   /// The part of the companion that corresponds to a part of a variable.
   typed::ExprPtr companionPlace(const typed::Expr &place, Axis axis);
-  /// The value of an expression again. If evaluating it twice would show, it is kept in a variable
-  /// the first time, which the next `copy` of it sets.
+  /// The value of an expression again. If evaluating it twice could be observed, it is kept in a
+  /// variable, which the next `copy` of the expression sets.
   Term factor(const typed::Expr &expr);
 
   Derivation &derivation;

@@ -178,7 +178,7 @@ Term DerivedBody::change(const Expr &expr, Axis axis) {
     const auto &binary = cast<BinaryExpr>(expr);
     return changeOfBinary(binary.op, *binary.left, *binary.right, expr.type, axis);
   }
-  case ExprKind::Assign: { // it has happened before
+  case ExprKind::Assign: { // it has been evaluated before
     const auto &assign = cast<AssignExpr>(expr);
     const Companions *found = companionsOf(*assign.target);
     if (!found || !found->along[static_cast<int>(axis)])

@@ -36,8 +36,8 @@ ExprPtr DerivedBody::derivativeOf(const Expr &expr, Axis axis) {
   return derivation.isPure(expr) ? std::move(changed) : comma(copy(expr), std::move(changed));
 }
 
-/// Is a function that contains dFdx or dFdy called where its variant has another value, or one
-/// that writes a variable whose change is used?
+/// Must the variant be called: because the function contains dFdx or dFdy and the variant's value
+/// differs, or because it writes a variable whose change is used?
 bool DerivedBody::isCalledWithFootprint(const Function &function,
                                         const std::vector<ExprPtr> &args) {
   if (changes.followsOutputs(function))
@@ -53,8 +53,8 @@ bool DerivedBody::isCalledWithFootprint(const Function &function,
                      [&](const ExprPtr &arg) { return changes.isVaried(*arg); });
 }
 
-/// Where a call writes the change of an `out` argument: one that nobody uses into a variable of no
-/// further use.
+/// The lvalue to which a call writes the change of an `out` argument; a temporary variable if that
+/// change is not used.
 ExprPtr DerivedBody::changeOfOutput(const Variable &parameter, const Expr &arg, Axis axis) {
   const Companions *written = companionsOf(arg);
   if (written && written->along[static_cast<int>(axis)])

@@ -39,8 +39,8 @@ StmtPtr DerivedBody::statement(const StmtPtr &one) {
   return block;
 }
 
-/// Statements for the changes of the variables that an expression sets to 0 by writing them as
-/// `out` arguments.
+/// Where an expression writes variables as `out` arguments of functions that do not write their
+/// changes: statements that set the changes of these variables to 0.
 void DerivedBody::forgetWritten(const Expr &expr, std::vector<StmtPtr> &out) {
   const auto forget = [&](const Expr &place) {
     const Companions *written = companionsOf(place);
@@ -80,7 +80,7 @@ void DerivedBody::declare(const Variable &declared, std::vector<StmtPtr> &out) {
     for (Axis axis : axes)
       if (changes.usedAxes().contains(axis))
         values[static_cast<int>(axis)] = change(*declared.init, axis);
-  // What must be evaluated once is evaluated first.
+  // A value that must be evaluated only once is evaluated before the changes.
   const bool valueFirst = declared.init && !derivation.isPure(*declared.init);
   if (hasCompanions && !valueFirst)
     addCompanions(declared, out, values);
@@ -102,12 +102,12 @@ void DerivedBody::evaluate(const Expr &expr, SourceRange range, std::vector<Stmt
     steps.push_back(copy(expr));
   declareKept(out);
   for (ExprPtr &step : steps)
-    if (step->kind != ExprKind::Variable || steps.size() == 1) // no more than the value
+    if (step->kind != ExprKind::Variable || steps.size() == 1) // only the value, which is not used
       out.push_back(evaluation(std::move(step), range));
   forgetWritten(expr, out);
 }
 
-/// What declares a variable with companions stands before the loop, in a block.
+/// Declarations of a variable with companions are placed before the loop, in a block around both.
 void DerivedBody::loop(const ForStmt &stmt, std::vector<StmtPtr> &out) {
   auto made = blank(stmt);
   std::vector<StmtPtr> before;
@@ -138,8 +138,8 @@ ExprPtr DerivedBody::returned(const ExprPtr &value) {
   return derivativeOf(*value, result == Result::AlongX ? Axis::X : Axis::Y);
 }
 
-/// Statements inside of another one. What they declare is declared with them, and what the
-/// statement itself has declared so far stays before it.
+/// A statement inside of another one. Variables that it needs are declared with it; those that the
+/// outer statement needs are still declared before that one.
 StmtPtr DerivedBody::nested(const StmtPtr &one) {
   std::vector<StmtPtr> declarations = std::exchange(keptDeclarations, {});
   StmtPtr made = statement(one);

@@ -53,9 +53,9 @@ Term operator*(float a, const Term &b);
 
 /// A call of a built-in function; its type is that of the first argument.
 Term call(typed::Builtin function, const std::vector<Term> &args);
-/// The same, with a type of its own.
+/// The same, with the given type.
 Term call(typed::Builtin function, const std::vector<Term> &args, const Type *type);
-/// A number, where an expression is.
+/// A constant with the source range of `at`.
 Term constant(float value, const Term &at);
 /// A component of a vector.
 Term component(const Term &vector, std::uint32_t index);

@@ -33,7 +33,7 @@ static bool intersect(const std::set<const void *> &a, const std::set<const void
   return std::any_of(a.begin(), a.end(), [&](const void *place) { return b.count(place) != 0; });
 }
 
-/// Would it show whether a sample ends before or after this? Rays draw random numbers.
+/// Can it be observed whether a sample ends before or after this? Rays draw random numbers.
 static bool showsEnd(const Effects &effects) {
   return effects.random || effects.hasOutput;
 }
@@ -104,7 +104,7 @@ Effects EffectsOf::ofBodies(const Function &function) {
         for (const auto &method : other->functions)
           if (method->name == function.name && sameParameters(*method, function))
             addBody(*method);
-  // What is local to them does not show.
+  // Effects on local variables cannot be observed outside.
   for (const void *local : locals) {
     effects.reads.erase(local);
     effects.writes.erase(local);
@@ -123,7 +123,7 @@ const Effects &EffectsOf::function(const Function &named) {
   Effects effects = ofBodies(function);
   open.erase(&function);
   known[&function] = std::move(effects);
-  // Where functions call one another round about, each does what all of them do.
+  // In a cycle of calls, each function has the effects of all of them.
   while (hasCycle && open.empty()) {
     hasCycle = false;
     for (auto &[other, effectsSoFar] : known)
@@ -152,7 +152,7 @@ Effects EffectsOf::expression(const Expr &expr) {
   return effects;
 }
 
-/// What lights do with a point.
+/// The effects of the lights' methods where a point is lit.
 void EffectsOf::collectLights(Effects &effects) {
   effects.usesRay = effects.random = true;
   for (StateVariable variable :

@@ -37,7 +37,7 @@ struct Effects {
   bool isPure() const { return writes.empty() && !random && !reportsHit && !hasOutput && !raises; }
 };
 
-/// Would it show if `second` were evaluated before `first`?
+/// Can it be observed if `second` is evaluated before `first`?
 bool conflicts(const Effects &first, const Effects &second);
 
 /// Is this a method of the table that no other method of the object calls?
@@ -51,7 +51,7 @@ public:
   /// `prints`: does `print` print? `raises`: does an index out of range end the sample?
   explicit EffectsOf(const Module &module, bool prints = false, bool raises = false);
 
-  /// All expressions that are evaluated: not what a `print` would print that prints nothing.
+  /// All expressions that are evaluated; the arguments of a `print` that prints nothing are not.
   template <typename Tree, typename Visit>
   void forEachEvaluated(const Tree &tree, const Visit &visit) const {
     std::set<const Expr *> silent;

@@ -5,8 +5,8 @@
 
 namespace rtsl::tool {
 
-/// Writes all of `text` to standard output. Throws Error with FileUnwritable: a full disk
-/// is said, whatever a command prints.
+/// Writes all of `text` to standard output. Throws Error with FileUnwritable: so a full disk is
+/// reported, whatever a command prints.
 void printOut(std::string_view text);
 
 /// Whether all that was printed by other means, such as the help texts, was written; reports it

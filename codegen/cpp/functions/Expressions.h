@@ -15,13 +15,15 @@ public:
   using FunctionPart::FunctionPart;
 
   Code expr(const typed::Expr &expr);
-  /// As an operand of an operator that binds so tightly, in the author's own parentheses.
+  /// The expression as an operand of an operator with this precedence. The author's own parentheses
+  /// are kept.
   Code operand(const typed::Expr &expr, Binding atLeast);
   Code argument(const typed::Expr &expr) { return operand(expr, Binding::Assignment); }
   /// Operands whose order C++ does not define: where it could be noticed, they go into variables.
   std::vector<Code> operands(const std::vector<const typed::Expr *> &exprs, Binding atLeast);
   std::vector<Code> arguments(const std::vector<typed::ExprPtr> &exprs);
-  /// Where control may not come, or come more than once: no statement can be put before it.
+  /// An expression that may be evaluated not at all, or several times: no statement can be put
+  /// before it.
   Code apart(const typed::Expr &expr, Binding atLeast);
   /// An initialiser outside of functions.
   Code initialiser(const typed::Expr &expr);

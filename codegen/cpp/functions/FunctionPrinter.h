@@ -39,7 +39,7 @@ struct FunctionPrinter {
   /// Where statements go that are evaluated before the one being made; null: there is no place.
   Statements *before = nullptr;
   bool isInLambda = false; // they are in a function of their own
-  /// The latter are of variables of its own.
+  /// `temporaries` are the names of variables that the printer has added.
   std::set<std::string> usedNames, temporaries;
   std::set<const typed::Variable *> readVariables, hoistedDeclarations;
   std::map<const typed::Variable *, Interval> counters; // of loops

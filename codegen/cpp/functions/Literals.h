@@ -5,7 +5,7 @@
 
 namespace rtsl::cpp {
 
-/// The shortest literal of a number that reads back as it.
+/// The shortest literal that reads back as the same number.
 Code floatLiteral(float value);
 Code doubleLiteral(double value);
 

@@ -8,7 +8,7 @@
 
 namespace rtsl::cpp {
 
-/// All that derive from a class of the author's or of the language, or are it.
+/// The author's classes that are this class, of the author's or of the language, or derive from it.
 std::vector<const typed::Class *> classesBelow(const typed::Module &module,
                                                const std::string &className);
 

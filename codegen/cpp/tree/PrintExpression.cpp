@@ -18,9 +18,9 @@ static bool isBinary(const Code &code, Operator op) {
   return code->is(ExpressionKind::Binary) && code->op == op;
 }
 
-/// The least binding with which an operand of `op` needs no parentheses. Some parentheses are only
-/// for readers and against warnings: around operators whose precedence is not well known, and
-/// around `&&` within `||`.
+/// The lowest precedence with which an operand of `op` needs no parentheses. Some parentheses are
+/// there only for readers, and to avoid warnings: around operators whose precedence is not well
+/// known, and around `&&` within `||`.
 static Binding needed(Operator op, const Code &operand, bool isRight) {
   const Binding own = bindingOf(op);
   const bool isSame = !isRight && isBinary(operand, op);

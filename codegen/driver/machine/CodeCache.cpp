@@ -13,7 +13,7 @@ namespace rtsl {
 
 namespace {
 
-/// At most: five views, the picture, and a check of its materials.
+/// The most programs for one picture: five views, the picture itself, and a check of its materials.
 constexpr std::uint64_t programsOfPicture = 7;
 
 } // namespace
@@ -28,7 +28,7 @@ struct CodeCache::Implementation {
   std::mutex mutex;                       // for the next two
   std::map<std::string, Entry> entries;
   std::uint64_t program = 0;
-  std::atomic<std::uint64_t> reused{0}, read{0}; // by it
+  std::atomic<std::uint64_t> reused{0}, read{0}; // by this program
 };
 
 CodeCache::CodeCache(std::unique_ptr<const CodeFiles> files)

@@ -1,4 +1,4 @@
-//===- CodeCache.h - machine code of the programs before -------------------===//
+//===- CodeCache.h - machine code of earlier programs ---------------------===//
 //
 // Frames of a sequence, and pictures that are rendered again after a change, often have the same
 // code, or parts of it: what moves is in tables that the code reads. So machine code is kept by the
@@ -27,7 +27,7 @@ public:
   explicit CodeCache(std::unique_ptr<const CodeFiles> files);
   ~CodeCache();
 
-  /// A new program begins: what those of the picture before did not use is forgotten.
+  /// A new program begins: forgets code that the programs of the previous picture did not use.
   void beginProgram();
 
   /// The code of a module, which `identity` names with all that decides what code it gets. Calls
@@ -35,10 +35,10 @@ public:
   codegen::ObjectCode codeOf(const std::string &identity,
                              const std::function<codegen::ObjectCode()> &make);
 
-  /// How many modules of the program were those of programs before, in this run.
+  /// How many modules of the program were found because an earlier program of this run had them.
   std::uint64_t reused() const;
 
-  /// How many were in files.
+  /// How many were found in files.
   std::uint64_t read() const;
 
 private:

@@ -56,7 +56,7 @@ std::string runningProgram() {
                      status.st_mtim.tv_nsec, status.st_ino);
 }
 
-/// Of the rest of a file, which begins with it.
+/// A file begins with the checksum of its rest, in this many hexadecimal digits.
 constexpr std::size_t checksumDigits = 16;
 
 std::string checksumOf(std::string_view text) {

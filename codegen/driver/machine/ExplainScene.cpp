@@ -136,8 +136,8 @@ std::optional<ProgramSize> measureKeeping(Item item, const CompileInput &input,
   return measure(compilation);
 }
 
-/// Members are found where a function reads them. That may be code which the numbers of the scene,
-/// once they are in it, show never to run: such members are left out, too.
+/// A member counts as read if some function reads it. With the numbers of the scene that code may
+/// turn out never to run: such members are left out, too.
 void dropReadsThatNeverRun(const CompileInput &input, const CompileOptions &options,
                            const SourceManager &sources, const runtime::SceneFacts &facts,
                            Findings &findings) {

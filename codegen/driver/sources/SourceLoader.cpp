@@ -163,7 +163,8 @@ const ast::TranslationUnit *SourceLoader::loadModule(const std::string &name,
     offered.push_back(name);
     return load(module.file, importer);
   }
-  // What a folder has is known at once; what is mentioned only when all files have been read.
+  // The files of the folder are known now, but the names that the program mentions only when all of
+  // its files have been read.
   loadImports(false);
   std::unique_ptr<ast::TranslationUnit> &unit = units["module " + name];
   if (!unit) {

@@ -1,9 +1,8 @@
 //===- SourceLoader.h - files and their imports ---------------------------===//
 //
 // Reads RTSL files, each once however often it is imported, and resolves imports: files
-// (frontend/preprocessor/FileSearch.h) and modules (StandardLibrary.h). Of a module that is a
-// folder only those files are read whose names the program mentions, so that importing it costs
-// nothing.
+// (frontend/preprocessor/FileSearch.h) and modules (StandardLibrary.h). If a module is a folder,
+// only the files whose names the program mentions are read, so that importing it costs nothing.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -41,8 +40,8 @@ public:
   /// Names, such as those of a scene's classes, that count as mentioned by the program.
   void mention(const std::string &name) { words.insert(original(name)); }
 
-  /// Gives these names at file level in the library others, so that files that import nothing of
-  /// it may use them for something of their own. Before any file is loaded.
+  /// Renames these names at file level in the library, so that files that import nothing of it may
+  /// use them for something of their own. To be called before any file is loaded.
   void renameInLibrary(const std::vector<std::string> &names);
   /// What renameInLibrary() makes of a name.
   static std::string renamed(const std::string &name);

@@ -2,8 +2,9 @@
 //
 // A GPU divides by a short sequence of instructions, except numbers that this would round wrongly;
 // for these, and for 0, it calls a function. A difference is often exactly 0: the distance from a
-// plane of a ray that starts on it, for which one lane then makes its warp wait. So what a zero
-// difference gives is selected, and something else is divided.
+// plane of a ray that starts on it, for which one lane then makes its warp wait. So the result for
+// a zero difference is selected, and the division gets another dividend, for which it needs no
+// call.
 //
 //   %q = fdiv float %difference, %b
 //   =>

@@ -1,12 +1,12 @@
 //===- PackRecords.h - where the words of a sample in flight are ----------===//
 //
 // The steps of a wavefront load and store the words of records by number, a thousand of them, with
-// rtsl_record_load and rtsl_record_store (runtime/device/organisations/LaneRecord.h). Most of them
-// no step ever needs. This pass, over all steps together, until nothing changes:
+// rtsl_record_load and rtsl_record_store (runtime/device/organisations/LaneRecord.h). No step needs
+// most of them. This pass, over all steps together, until nothing changes:
 //
 //   - removes stores of words that no step loads, and stores of what was loaded from there,
 //   - replaces loads of words that always have the same constant,
-//   - simplifies the functions, by which loads and other stores become useless.
+//   - simplifies the functions, so that further loads and stores become useless.
 //
 // Then the words that are left get places, in the order of their numbers: groups of four in a row,
 // groups of neighbouring slots next to each other. A load or store of a group is one instruction.

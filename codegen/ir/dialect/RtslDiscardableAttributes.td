@@ -25,8 +25,8 @@ def Array         : ValueKind<"ArrayAttr",         "must be an array">;
 def DenseI32Array : ValueKind<"DenseI32ArrayAttr", "must be an array of i32">;
 def DenseF32Array : ValueKind<"DenseF32ArrayAttr", "must be an array of f32">;
 
-/// An attribute of these operations. `setBy` and `readBy` are folders and files of codegen, a
-/// folder of passes/continuation without what is before it.
+/// An attribute of these operations. `setBy` and `readBy` are folders and files of codegen; folders
+/// of passes/continuation are given without that prefix.
 class DiscardableAttribute<string wordInIr, ValueKind kindOfValue, list<string> mayBeOn> {
   string word = wordInIr;
   ValueKind kind = kindOfValue;

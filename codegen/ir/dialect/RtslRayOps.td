@@ -1,6 +1,6 @@
 //===- RtslRayOps.td - rays, hits, and what is known of a sample ----------===//
 //
-// What shaders ask of the runtime: sending a ray, reporting and answering hits, random numbers,
+// What the runtime does for shaders: sending a ray, reporting and answering hits, random numbers,
 // light, and messages about the sample.
 //
 //===----------------------------------------------------------------------===//

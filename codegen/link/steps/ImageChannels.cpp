@@ -5,8 +5,8 @@
 //   %r = vector.extract %c[0]
 //
 // If all that the program does with the images of a member is to look up colors, of which it takes
-// only the red component, the scene need not keep the other channels. What becomes of a color is
-// followed through variables and arithmetic on components; what becomes of a reference is not.
+// only the red component, the scene need not keep the other channels. Uses of a color are followed
+// through variables and arithmetic on components; uses of a reference are not.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/Members.h"

@@ -45,7 +45,7 @@ void addWithReferred(LinkContext &context, const typed::Class &info,
     }
 }
 
-/// What may be on a mesh, if no scene tells.
+/// Without a scene, any material may be on a mesh.
 void addAllMaterials(LinkContext &context) {
   for (const LinkedClass &linked : context.classes)
     if (linked.info->root == "rt_Material")

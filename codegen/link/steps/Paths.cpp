@@ -1,8 +1,8 @@
-//===- Paths.cpp - how the rays of a program go on ------------------------===//
+//===- Paths.cpp - whether the rays of a program stay coherent ------------===//
 //
 // The lanes of a GPU begin with similar rays. Where shaders choose the next ray at random, rays of
-// neighbouring lanes soon have nothing in common; otherwise they stay similar for long. How the
-// megakernel uses its lanes depends on it (runtime/device/organisations/Schedule.h).
+// neighbouring lanes soon diverge; otherwise they stay coherent for long. How the megakernel
+// schedules its lanes depends on this (runtime/device/organisations/Schedule.h).
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Rays.h"

@@ -126,15 +126,16 @@ ClassesByName classesOf(const LinkContext &context);
 /// Null if there is none of this name.
 const typed::Class *findClass(const ClassesByName &classes, const std::string &name);
 
-/// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports scratch members of
-/// theirs of types that meshes do not have.
+/// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports their scratch members
+/// whose types the attributes of a mesh cannot have.
 void findMeshMaterials(LinkContext &context);
-/// Replaces changes of attributes by 0 that materials read which are on no mesh, and those that are
-/// in LinkRequest::without.
+/// Replaces by 0 the changes of attributes that materials read which are on no mesh, and those in
+/// LinkRequest::without.
 void dropChangesOfPrimitives(LinkContext &context);
-/// Whether a class is one of them.
+/// Whether a class is one of the materials that may be on a mesh.
 bool mayBeOnMesh(const LinkContext &context, const std::string &className);
-/// Lists the attributes that they read, which have offsets: LinkContext::meshAttributes.
+/// Lists the attributes that these materials read and that have offsets:
+/// LinkContext::meshAttributes.
 void listMeshAttributes(LinkContext &context, const ClassesByName &classes);
 /// Program::meshAttributes and ClassInfo::attributes.
 std::vector<runtime::AttributeInfo> describeMeshAttributes(const LinkContext &context);
@@ -142,7 +143,7 @@ std::uint32_t meshAttributesOf(const LinkContext &context, const std::string &cl
 
 /// The scratch member of this name of a class; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);
-/// The one whose place this is: of a value, or of its change along an axis.
+/// The scratch member that an attribute stands for: for its value, or for its change along an axis.
 const typed::Member *scratchOf(const typed::Class &info, ir::AttributeOp place);
 
 /// A method that is called through a reference.
@@ -163,7 +164,7 @@ struct Referred {
   bool mayBeNone = false;
 };
 
-/// By slot, as far as members of objects of the scene tell.
+/// The classes by slot, as far as they follow from the members of the scene's objects.
 std::map<SlotCall, Referred> referredClasses(const LinkContext &context);
 
 /// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`, which has
@@ -175,7 +176,7 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
 /// class.
 bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 
-/// How rays go on where they hit. Runs after slots are resolved.
+/// Whether shaders send rays from hits, and how they choose them. Runs after slots are resolved.
 runtime::Paths findPaths(const LinkContext &context);
 
 /// Defines the dispatch function of every slot.

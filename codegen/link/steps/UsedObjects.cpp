@@ -1,4 +1,4 @@
-//===- UsedObjects.cpp - objects that a ray can come to -------------------===//
+//===- UsedObjects.cpp - objects that a ray can reach ---------------------===//
 //
 // A scene may contain materials and textures that nothing refers to, and lights that no shader
 // uses. They are made, because mistakes in them should be found, and records and the random numbers

@@ -48,9 +48,10 @@ static Num stateOf(Emitter &emitter, llvm::StringRef name) {
   return {emitter, emitter.load(emitter.make<ir::StateOp>(name, emitter.getF32Type()))};
 }
 
-/// Floats are compared without roundings, so that the branches are the correct ones and not those
-/// that roundings have led `intersect` to. Errors of elementary functions may leave it open which
-/// branch is correct; then `otherwise`: is it the opposite one? True if that can be.
+/// Makes comparisons of floats use unrounded values, so that the branches are the correct ones, not
+/// those that `intersect` has taken because of rounding. Where errors of elementary functions leave
+/// the result of a comparison uncertain, `otherwise` decides whether it is inverted. Returns
+/// whether there is such a comparison.
 static bool compareUnrounded(llvm::ArrayRef<arith::CmpFOp> comparisons, RunningError &errors,
                              Value otherwise) {
   bool mayBeInDoubt = false;

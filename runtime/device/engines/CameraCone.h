@@ -1,9 +1,9 @@
 //===- CameraCone.h - the cone of a camera's ray --------------------------===//
 //
-// The cone is as wide as the distance to the rays of the neighbouring pixels, which the camera
-// itself tells: it is called again for points of the image one pixel to the right and one pixel up,
-// with the same lens coordinates and random numbers. So it fits any camera. Of the two distances
-// the geometric mean counts.
+// The cone is as wide as the distance to the rays of the neighbouring pixels. For these rays the
+// camera is called again for points of the image one pixel to the right and one pixel up, with the
+// same lens coordinates and random numbers. So this works for any camera. The width is the
+// geometric mean of the two distances.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

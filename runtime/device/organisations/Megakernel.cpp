@@ -32,7 +32,8 @@ void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
 }
 
 #ifdef __NVPTX__
-/// clang's own function for it is of programs for one kind of GPU.
+/// LLVM's intrinsic by its name: clang's built-in function can be used only in programs that are
+/// compiled for sm_80 or later.
 uint32_t leastOf(uint32_t number, uint32_t lanes) __asm__("llvm.nvvm.redux.sync.umin");
 
 /// rtsl_least_of_warp of GPUs from sm_80 on.

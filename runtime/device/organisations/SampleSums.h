@@ -1,7 +1,7 @@
 //===- SampleSums.h - adds the samples of a slice to the pixels -----------===//
 //
 // Lanes finish samples in any order, and a sum of floats depends on the order. So they store each
-// sample, and afterwards the samples of a pixel are added in theirs.
+// sample, and afterwards the samples of a pixel are added in the order of their numbers.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -9,10 +9,10 @@
 // A turn takes all slots through one step. There are two sets of queues: those that the kernels of
 // a turn take from, and those that they fill for the next turn.
 //
-// When all queues are empty, all slots begin another sample, in their order. So the rays of a turn
-// are those that follow as many others, and neighbours in a queue have neighbouring pixels, and
-// records beside each other. If each slot began another sample as soon as it could, slots would
-// soon be in no order at all: docs/gpu.md has figures.
+// When all queues are empty, all slots begin another sample, in their order. So in each turn all
+// samples have run equally many steps; neighbours in a queue have neighbouring pixels, and their
+// records are adjacent. If each slot began another sample as soon as it could, the order of slots
+// would soon be lost: docs/gpu.md has figures.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -3,9 +3,9 @@
 // Parallel locally-ordered clustering (Meister and Bittner, "Parallel Locally-Ordered Clustering
 // for Bounding Volume Hierarchy Construction", 2018): in each round every cluster finds, among its
 // neighbours on the curve, the one with which its box would be the smallest, and those that find
-// each other become one. The height of a tree is limited: clusters that are too high for their
-// number are not joined, so that joining all in pairs always is possible, which is what happens
-// when no others are left, or after many rounds.
+// each other become one. The height of a tree is limited: a cluster is not joined if it would
+// become too high for all clusters to be joined in pairs afterwards. They are joined in pairs when
+// nothing else can be joined, or after many rounds.
 //
 // The functions are steps, as in Sort.h.
 //
@@ -19,7 +19,7 @@ namespace rtsl::device::build {
 /// How far along the curve clusters look for others.
 constexpr uint32_t searchRadius = 8;
 
-/// What a step knows of its round.
+/// The parameters of a round, for its steps.
 struct Round {
   uint32_t number;
   uint32_t clusters;

@@ -20,9 +20,9 @@ public:
   /// Polygons are triangles, and meshes are of one kind of primitive. The scene lives as long as
   /// this. Null if the file is damaged.
   virtual const aiScene *read(const char *path) = 0;
-  /// Why it is.
+  /// The reason why the last read() has failed.
   virtual const char *error() const = 0;
-  /// Of one of the scene's materials; valid until the next call.
+  /// The name of one of the scene's materials; valid until the next call.
   virtual const char *materialName(unsigned index) = 0;
 };
 

@@ -152,7 +152,7 @@ private:
   refuse(path, message::checkpointDamaged(path));
 }
 
-/// Is it a checkpoint of this version, whole and unharmed?
+/// The header. Throws unless this is a checkpoint of this version, complete and undamaged.
 Header checkFile(std::string_view file, const std::string &path, const std::string &producer) {
   Header header;
   if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)

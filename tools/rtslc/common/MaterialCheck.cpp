@@ -119,7 +119,7 @@ std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &mo
   compile.trace = TraceMode::Recurse;
   compile.optimization = 0;
   SourceManager sources;
-  Diagnostics unheard(sources); // all of it has been said
+  Diagnostics unheard(sources); // all of these have been reported already
   const auto program = compileProgram(module, request, compile, unheard,
                                       [&](const auto &) { return scene.facts(); });
   if (!program)

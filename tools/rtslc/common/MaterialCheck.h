@@ -1,4 +1,4 @@
-//===- MaterialCheck.h - whether materials scatter light that can be -------===//
+//===- MaterialCheck.h - checks the BSDFs of a scene's materials ----------===//
 #pragma once
 
 #include "codegen/driver/Compiler.h"

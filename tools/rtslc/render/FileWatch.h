@@ -15,7 +15,7 @@ namespace rtsl::tool {
 /// editors do not write a file but rename another one to its name.
 class FileWatch {
 public:
-  /// Throws Error with FileUnreadable if the system has no inotify to give.
+  /// Throws Error with FileUnreadable if inotify is not available.
   FileWatch();
   ~FileWatch();
   FileWatch(const FileWatch &) = delete;

@@ -35,8 +35,8 @@ std::vector<SampleNotFinite> explainNotFinite(const runtime::RenderStatistics &s
                                               CompileOptions compile, runtime::Scene &scene,
                                               runtime::RenderOptions render,
                                               Diagnostics &diagnostics) {
-  request.keep.add(ItemSet::ofMembers()); // what folds has no line
-  // Calls are the shortest way, and every way has the same bits.
+  request.keep.add(ItemSet::ofMembers()); // members that are constants would have no source line
+  // With traces as calls compiling takes the least time, and all targets give the same bits.
   if (compile.target == Target::HostMegakernel)
     render.traversal = runtime::Traversal::Device;
   compile.target = Target::Host;

@@ -211,7 +211,7 @@ private:
     return true;
   }
 
-  /// Early, so that nothing is waited for in vain.
+  /// Called before anything takes long, so that an error is reported at once.
   bool connectToViewer() {
     if (options.tev.host.empty())
       return true;

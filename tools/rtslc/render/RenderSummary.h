@@ -17,7 +17,7 @@ struct Times {
   double compile = 0, scene = 0, image = 0;
 };
 
-/// What is said of a rendering when it is over.
+/// What is reported about a rendering when it is over.
 struct PictureSummary {
   runtime::RenderOptions render;
   runtime::RenderStatistics statistics;

@@ -1,4 +1,4 @@
-//===- PendingValues.h - what a state evaluates when ----------------------===//
+//===- PendingValues.h - when a state evaluates its values ----------------===//
 //
 // The value of an operation is pending until it is used, and is then part of the expression that
 // uses it, unless something in between would change it: then it gets a variable before.

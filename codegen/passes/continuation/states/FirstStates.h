@@ -1,8 +1,8 @@
 //===- FirstStates.h - the states in which entry points begin -------------===//
 //
-// An entry point of the machine, such as `shade`, is a function that looks at the class of its
-// object and goes on with the method of that class. Split, it is a state. Where it only jumps to
-// the state of a method, the machine goes there directly: one step less for each ray.
+// An entry point of the machine, such as `shade`, is a function that branches on the class of its
+// object and continues with the method of that class. After splitting it is a state. Where it only
+// jumps to the state of a method, the machine goes there directly: one step less for each ray.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
