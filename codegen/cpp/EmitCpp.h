@@ -26,13 +26,13 @@ struct HitErrorFunctions;
 struct Options {
   std::string name = "shaders";      // of the namespace, and of the exported `<name>_shaders`
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
-  bool lineDirectives = false;       // #line before what stands in the author's files
+  bool lineDirectives = false;       // `#line` for code of the author's files
   bool prints = false;               // `print` prints; otherwise it is left out
   bool exceptions = false;           // samples end at what docs/language.md calls an exception
   std::uint32_t undefined = 0;       // RTSL_FEATURE_UNDEFINED_*, for tests
   std::uint32_t sampler = 0;         // RTSL_FEATURE_SAMPLER_*, or 0
   bool checkIndices = true;
-  // what cannot be printed as states, so that traces are calls; empty: nothing
+  // the reason why traces are calls: what cannot be printed as states; empty: there is none
   std::string whyCalls;
   bool fast = false; // RTSL_FAST: the C++ compiler may change last digits (docs/fast.md)
   const HitErrorFunctions *hitErrors = nullptr; // HitErrors.h; null: there are none

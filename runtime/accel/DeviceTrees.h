@@ -19,9 +19,9 @@ struct DeviceTrees {
 
 /// Builds the trees of a scene, in the memory of a device; the arrays are the caller's. The scene
 /// is `there` on the device, and its launch with pointers that are valid in this process is `here`.
-/// Fast trees of many items are built on the device, others in this process: the device runs a step
-/// for each of their levels, and they have few items for it. `threads` 0: one per core. Throws what
-/// the device throws.
+/// Fast trees of many items are built on the device, others in this process: the device runs steps
+/// for each level of a tree, and a small tree has too few items for its threads. `threads` 0: one
+/// per core. Throws what the device throws.
 DeviceTrees buildTrees(BuildDevice &device, TreeKind kind, const RtslLaunch &here,
                        BuildDevice::Address there, unsigned threads);
 

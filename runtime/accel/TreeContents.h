@@ -8,8 +8,8 @@
 
 namespace rtsl::runtime {
 
-/// What an instance has in the trees of its scene, but for positions: if it is the same for all
-/// instances of two scenes, trees of one can follow to the other (Refit.h).
+/// What the trees of a scene contain of an instance, except positions. If it is the same for all
+/// instances of two scenes, trees of one can be refitted to the other (Refit.h).
 struct InstanceContents {
   static constexpr std::uint32_t none = ~0u;
 

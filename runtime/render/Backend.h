@@ -36,11 +36,11 @@ public:
   /// throws OutOfMemory, and Internal if the program or its device fails.
   Image render(RenderStatistics *statistics = nullptr);
 
-  /// As render(), but in passes, which go on with `rendering` if that has sums, and leave it as it
-  /// is at the end. `progress` is called after each pass; RenderOptions::progress is not called.
-  /// RenderOptions::cancel ends it after the pass, of which there is at least one; see also
-  /// PassOptions::checkpoint. Throws OutOfRange if `rendering` has more samples than the options
-  /// allow, or sums of another size, and what the functions of `passes` throw.
+  /// As render(), but in passes, which continue `rendering` if it has sums; at the end it is the
+  /// state that they have reached. `progress` is called after each pass; RenderOptions::progress is
+  /// not called. RenderOptions::cancel ends it after the pass, of which there is at least one; see
+  /// also PassOptions::checkpoint. Throws OutOfRange if `rendering` has more samples than the
+  /// options allow, or sums of another size, and what the functions of `passes` throw.
   Image renderInPasses(const PassOptions &passes,
                        const std::function<void(const PassState &)> &progress,
                        PartialRendering &rendering, RenderStatistics *statistics = nullptr);
@@ -63,7 +63,7 @@ protected:
 
   const RenderOptions options;
   std::uint32_t samplesOfPixel = 0; // run() renders each pixel until it has so many
-  PixelSums *sums = nullptr;        // run() goes on with them; null: pixels begin without samples
+  PixelSums *sums = nullptr;        // run() continues them; null: pixels begin without samples
   double buildSeconds = 0;          // spent by constructors of backends
   std::optional<TreeFigures> trees; // RenderStatistics::tree
   bool isRefitted = false;          // RenderStatistics::isRefitted
@@ -77,8 +77,8 @@ private:
   /// Copies the pixels to `picture`, unless there are sums, and returns the statistics of the last
   /// run, without the times and isUnfinished.
   virtual RenderStatistics finish() = 0;
-  /// Copies `sums` to where run() goes on with them, and back. Backends that use them where they
-  /// are have nothing to do.
+  /// Copies `sums` to where run() continues them, and back. Backends that use them where they are
+  /// have nothing to do.
   virtual void uploadSums() {}
   virtual void fetchSums() {}
 

@@ -18,7 +18,7 @@ std::vector<RtslBox> computeBounds(const Objects &objects, RtslRef primitive, st
   std::vector<RtslBox> given(count);
   callOutsideOfRays(launch, primitive, [&](RtslState &state) {
     for (std::uint32_t number = 0; number < count; ++number) {
-      for (int i = 0; i < 3; ++i) { // what computeBounds leaves out shows
+      for (int i = 0; i < 3; ++i) { // remains where computeBounds sets nothing
         state.BoundMin[i] = std::numeric_limits<float>::quiet_NaN();
         state.BoundMax[i] = std::numeric_limits<float>::quiet_NaN();
       }

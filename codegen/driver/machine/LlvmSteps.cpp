@@ -94,8 +94,8 @@ static Schedule scheduleFor(const CompileOptions &options, const runtime::Progra
              : Schedule::Majority;
 }
 
-/// Instructions of shaders, before they are optimised, from which on a wavefront gains where there
-/// is no tree.
+/// Without a tree, a wavefront is faster from this number of instructions on: those of the shaders
+/// before optimisation.
 constexpr unsigned largeShaders = 3500;
 
 /// docs/gpu.md compares the organisations.

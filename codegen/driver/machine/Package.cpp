@@ -26,9 +26,9 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
           static_cast<std::uint32_t>(image.stackBytes)};
 }
 
-/// How many registers a thread of a kernel may have; docs/gpu.md has the figures. More are worth
-/// more than more warps where rays wait for others, and lanes stay together; and where a kernel has
-/// one step, or its shared memory leaves room for a few warps only.
+/// How many registers a thread of a kernel may have; docs/gpu.md has the figures. More registers
+/// are better than more warps if rays wait for others and the lanes of a warp stay together, and if
+/// a kernel has only one step or its shared memory leaves room for only a few warps.
 static std::uint32_t registersFor(Organisation organisation, runtime::Paths paths) {
   if (organisation != Organisation::Megakernel)
     return 168;

@@ -55,7 +55,7 @@ struct Extent {
   }
 
   /// A factor for each axis, by which distances from `lower` become numbers below `cells`; 0 for an
-  /// axis along which there is nothing to distinguish.
+  /// axis along which the boxes cannot be distinguished.
   Vector scaleTo(float cells) const {
     const Vector side = _mm_sub_ps(upper, lower);
     const Vector scale = _mm_div_ps(_mm_set1_ps(cells * 0.9999f), side);

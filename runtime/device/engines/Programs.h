@@ -1,7 +1,7 @@
 //===- Programs.h - the programs engine: rays with a payload --------------===//
 //
 // A sample is what `generate` of the scene's ray generation writes to SampleColor. The rays that it
-// sends carry a struct of the author's, the payload, whose type selects the programs that handle
+// sends carry a struct of the author's, the payload, whose type selects the methods that handle
 // them: the `closestHit` of the material that is hit, the `miss` of the background, and during
 // traversal `anyHit` of every material that could be hit (AnyHit.h). A ray without a payload is
 // handled by the classic engine, at any depth, and vice versa.
@@ -45,12 +45,12 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   });
 }
 
-/// Describes the result of traversing state's ray, for its payload's programs.
+/// Describes the result of traversing state's ray, for the methods for its payload.
 inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t found) {
   const RtslLaunch &launch = *state.launch;
   if (found == RTSL_HIT) {
     RtslRef material = instanceAt(launch, state.instance).material;
-    if (!(how & RTSL_FIRST_HIT)) { // otherwise no program reads it
+    if (!(how & RTSL_FIRST_HIT)) { // otherwise no method reads it
       describeHit(state);
       describeEmitter(state);
     }
@@ -63,7 +63,7 @@ inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t foun
   return {Arrival::Nothing, 0};
 }
 
-/// Traverses state's ray and describes the result, for its payload's programs.
+/// Traverses state's ray and describes the result, for the methods for its payload.
 inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
   setDefaults(state, rtsl_color_components(state.launch));
   return arriveWithPayloadAt(state, how, rtsl_traverse(&state, how));

@@ -99,7 +99,7 @@ typedef struct RtslMotionKey {
   uint32_t unused;
 } RtslMotionKey;
 
-/// What the numbers of a named attribute of a mesh are: how a transform changes them.
+/// How a transform changes the numbers of a named attribute of a mesh.
 #define RTSL_ATTRIBUTE_NUMBERS 0u // not at all
 #define RTSL_ATTRIBUTE_POINT 1u
 #define RTSL_ATTRIBUTE_VECTOR 2u
@@ -166,7 +166,7 @@ typedef struct RtslLeafItem {
 typedef struct RtslTreeItem {
   float vertices[9];            // in the space of the tree
   uint32_t instance, primitive; // instance: RTSL_NO_HIT in the tree of a mesh or of an object
-  uint32_t hasVertices;         // 1: it is a triangle. 0: the instance tells what it is
+  uint32_t hasVertices;         // 1: it is a triangle. 0: it is what the instance is
 } RtslTreeItem;
 
 /// An instance that emits light: its material has `emission`, and points on it can be chosen.
@@ -276,7 +276,7 @@ typedef struct RtslTreeVisits {
   uint64_t nodes, items; // of all of them, also in the trees of meshes
 } RtslTreeVisits;
 
-/// What all lanes of a job write, atomically. The host clears it before.
+/// What all lanes of a job write, atomically. The host clears it before the job.
 typedef struct RtslStatus {
   uint64_t nextSample;          // the first of the slice that no lane has taken
   uint64_t badRays;             // not finite, or without a direction: their color is 0
@@ -652,8 +652,8 @@ int32_t rtsl_rt_Miss_miss_first(RtslState *state);
 int32_t rtsl_rt_Material_closestHit_payload_first(RtslState *state);
 int32_t rtsl_rt_Miss_miss_payload_first(RtslState *state);
 int32_t rtsl_rt_RayGeneration_generate_first(RtslState *state);
-/// The state to begin with instead of `number`, one of those: that of the object's method, where
-/// the first one would only go on with it.
+/// The state to begin with instead of `number`, which is one of those: if that state would only
+/// jump to the state of the object's method, the latter.
 int32_t rtsl_first_state(RtslState *state, int32_t number, RtslRef object);
 
 /// First half of `trace(origin, direction)`: prepares the ray, which is traced when the state
@@ -675,7 +675,7 @@ void rtsl_spawn_last_payload(RtslState *ray, float ox, float oy, float oz, float
 /// (runtime/device/engines/StackBound.h): the number of kinds of rays, at most RTSL_MAX_RAY_KINDS.
 /// Rays without a payload are kind 0, those of payload type n kind n; `generate`, if the program
 /// has it, is the last kind. The other two functions return sets of kinds, as bits: those that the
-/// programs of a kind may send and wait for, and those that they may send by a tail trace.
+/// methods for a kind may send and wait for, and those that they may send by a tail trace.
 #define RTSL_MAX_RAY_KINDS 32
 int32_t rtsl_ray_kinds(RtslState *state);
 int32_t rtsl_rays_sent(RtslState *state, int32_t kind);

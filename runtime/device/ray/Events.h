@@ -44,8 +44,8 @@ inline bool isAbandoned(const RtslState &state) {
   return hasExceptions(state) && heeds && state.events->exception != RTSL_EXCEPTION_NONE;
 }
 
-/// The color of a sample with an exception that no program handles: red, yellow or magenta; white
-/// if colors are not RGB.
+/// The color of a sample with an exception that no object of the scene handles: red, yellow or
+/// magenta; white if colors are not RGB.
 inline void exceptionColor(uint32_t exception, float *color, uint32_t components) {
   forEachComponent(components, [&](uint32_t i) { color[i] = 1; });
   if (components != 3)

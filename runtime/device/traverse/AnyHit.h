@@ -1,4 +1,4 @@
-//===- AnyHit.h - traversal with any-hit programs -------------------------===//
+//===- AnyHit.h - traversal with `anyHit` ---------------------------------===//
 //
 // A material may reject a hit: if it has `anyHit` for the ray's payload, that runs for a hit before
 // it counts. A primitive contributes one hit to a ray, the nearest, so `anyHit` runs at most once

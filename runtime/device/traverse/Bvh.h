@@ -2,7 +2,7 @@
 //
 // Nodes have up to eight children, whose boxes are on a grid (RtslBvhNode). A child is entered
 // wherever rangeInBox finds a range in the box of an item in it; docs/gpu.md has the proof. So what
-// was said of nested boxes at rangeShare (BoxRange.h) holds, and the grid affects only the time.
+// BoxRange.h says of nested boxes (rangeShare) holds, and the grid affects only the time.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -214,7 +214,7 @@ private:
       // Almost nothing is outside of the hemispheres of normals that spread more.
       node.cosine = least > 0 ? roundedDown(least) : -1;
     }
-    // What has power has some of it as a float, too.
+    // A power above 0 must not become 0 as a float.
     node.power = std::max(float(set.power / total), std::numeric_limits<float>::min());
     node.parent = isTwoSided ? RTSL_SHINES_ON_BOTH_SIDES : 0;
   }

@@ -41,7 +41,7 @@ public:
   /// Names that count as mentioned by the program.
   void mention(const std::string &name) { loader.mention(name); }
 
-  /// Gives names of the library others: SourceLoader.h.
+  /// Renames names of the library: SourceLoader.h.
   void renameInLibrary(const std::vector<std::string> &names) { loader.renameInLibrary(names); }
 
   /// The classes and modules of functions that were imported, `std.cameras.PinholeCamera`.

@@ -19,7 +19,7 @@ std::string count(std::size_t number, const char *noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
-/// Writes the mended texts back, all of them or, if one cannot be written, none. What came from
+/// Writes the corrected texts back, all of them or, if one cannot be written, none. What came from
 /// standard input goes to standard output.
 void writeFixes(const Messages &messages) {
   const std::vector<FileId> files = filesToFix(messages.diagnostics);

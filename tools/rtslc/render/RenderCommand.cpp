@@ -49,7 +49,7 @@ ExitStatus render(const RenderCommandOptions &options, const std::atomic<bool> *
   return messages.status();
 }
 
-/// --watch: what no change of a file can mend ends it at once.
+/// --watch: an error that no change of a file can correct ends it at once.
 int watch(const RenderCommandOptions &options) {
   Messages messages(options.common);
   try {

@@ -122,8 +122,8 @@ rendererOf(const Build &build, runtime::RenderOptions options, runtime::Traversa
   };
 }
 
-/// What renders a reference, and what shows the rounding of single precision beside it: both go the
-/// shortest way.
+/// The configuration that renders a reference, and the one that is compared with it to find the
+/// effect of single precision: both are those that compile and render in the least time.
 constexpr const char *referenceName = "double embree recurse",
                      *singleName = "strict embree recurse";
 
