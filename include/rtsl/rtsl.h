@@ -46,11 +46,13 @@ void rtslSceneDestroy(RtslScene *scene);
  * rtsl_add_shaders(... SHADERS std.materials.Principled std.engines.PathTracer ...). The error for
  * those that are missing lists them. They are, of glTF files:
  *   materials: Principled Emitter NormalMap Cutout
+ *   materials: VertexColorPrincipled VertexColorEmitter VertexColorCutout
  *   textures:  ImageTexture ImageChannel ImageSlope Threshold TransformedPattern
  *   lights:    PointLight SpotLight DistantLight
  *   cameras:   PerspectiveCamera OrthographicCamera
- * and of OBJ files:
+ * and of OBJ and PLY files:
  *   materials: Lambert Principled Dielectric ThinGlass NormalMap BumpMap Cutout
+ *   materials: VertexColorLambert VertexColorPrincipled
  *   textures:  ImageTexture ImageChannel ImageSlope TransformedPattern ExponentRoughness
  *   cameras:   PerspectiveCamera
  * and for images std.images.sampler2D and std.images.sampler3D. */

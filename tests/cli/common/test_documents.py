@@ -46,9 +46,9 @@ def row(rows, words):
 
 class Documents(Case):
     def test_classes_that_models_need(self):
-        """include/rtsl/rtsl.h lists what the readers of glTF and OBJ files make objects of."""
+        """include/rtsl/rtsl.h lists the classes of which the readers of models make objects."""
         said = re.search(
-            r"They are, of glTF files:(.*?)and of OBJ files:(.*?)and for images",
+            r"They are, of glTF files:(.*?)and of OBJ and PLY files:(.*?)and for images",
             read("include/rtsl/rtsl.h"),
             re.DOTALL,
         )
@@ -57,6 +57,8 @@ class Documents(Case):
             for path in (ROOT / "scenefile" / folder).glob("*.cpp"):
                 text = path.read_text(encoding="utf-8")
                 made |= set(re.findall(r'"((?:materials|textures|lights|cameras)\.\w+)"', text))
+                for name in re.findall(r'materialObject\([^,]+, "(\w+)"', text):
+                    made |= {f"materials.{name}", f"materials.VertexColor{name}"}
             if folder == "obj":  # a model without a camera is framed by one, whatever its format
                 made.add("cameras.PerspectiveCamera")
             listed = set()
