@@ -19,8 +19,8 @@ constexpr Slot samplingSlots[] = {
 #include "language/SamplingSlots.def"
 };
 
-/// Those of the sampling slots that the runtime itself calls, to choose a point on a surface that
-/// shines, or a direction of the background.
+/// The sampling slots that the runtime itself calls, to choose a point on a surface that shines, or
+/// a direction of the background.
 constexpr Slot surfaceSlots[] = {{"rt_Primitive", "generateSample"},
                                  {"rt_Primitive", "samplePDF"},
                                  {"rt_Material", "emission"},

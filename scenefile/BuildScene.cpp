@@ -81,7 +81,7 @@ public:
     finish();
   }
 
-  /// Of a part, which leaves the settings of the scene as they are.
+  /// Builds a part, which leaves the settings of the scene as they are.
   AddedPart buildPart() {
     AddedPart part;
     attempt([&] {

@@ -45,7 +45,7 @@ private:
   std::map<std::string, std::shared_ptr<const gltf::File>> opened;
 };
 
-/// Those of a scene.
+/// The model files of a scene.
 ModelFiles &modelsOf(SceneDescription &scene);
 
 /// Replaces the mentions of models in a scene: in `nodes`, `objects`, `root`, `roots` and `camera`.

@@ -61,7 +61,7 @@ void forEachObject(const ReferenceDescription &reference, const ObjectVisitor &v
     forEachObject(*reference.object, visit);
 }
 
-/// In the order of the file's sections.
+/// Visits the objects in the order of the file's sections.
 void forEachObject(const SceneDescription &description, const ObjectVisitor &visit) {
   if (description.camera)
     forEachObject(*description.camera, visit);

@@ -105,7 +105,8 @@ struct SelectorDescription {
 
 struct InstanceDescription : runtime::Placement {
   const VariableScope *scope = nullptr;
-  /// Of a part (ModelPart.h): to the space that the part is added to; otherwise null.
+  /// For a part (ModelPart.h): the transform to the space that the part is added to; otherwise
+  /// null.
   std::shared_ptr<const runtime::MovingTransform> inPart;
   std::size_t selector = 0; // 1 + the index of the selector above it; 0: none
   std::uint32_t childOfSelector = 0;
@@ -125,7 +126,7 @@ struct GeometryDescription {
   std::vector<MeshPath> mesh;                 // of a mesh: its keys, or its only file
   std::vector<float> meshTimes;               // of several keys
   std::string part; // of a glTF file, as "meshes.0.primitives.1"; empty: all meshes of the file
-  /// Of the morph targets of the part, one list or one for each key; empty: all are 0.
+  /// The weights of the morph targets of the part, one list or one for each key; empty: all are 0.
   std::vector<std::vector<double>> weights;
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle

@@ -66,7 +66,8 @@ std::uint64_t leftInHierarchy(const fs::path &root, fs::path group, const GroupF
   return left;
 }
 
-/// By the lines `NUMBER:CONTROLLERS:GROUP` of the process; the second version has no controllers.
+/// What the groups of the process leave, by its lines `NUMBER:CONTROLLERS:GROUP`; the second
+/// version has no controllers.
 std::uint64_t leftInGroups(const fs::path &root) {
   std::uint64_t left = unlimited;
   std::ifstream lines(root / "proc/self/cgroup");

@@ -23,7 +23,8 @@ public:
 
   /// Reports that something cannot be printed.
   void unsupported(SourceRange range, const std::string &what);
-  /// For something that has been reported, or that only a mistake of the compiler leads to.
+  /// Printing fails: for a reason that has been reported, or one that only a fault of the compiler
+  /// can cause.
   void fail() { failed = true; }
   bool hasFailed() const { return failed; }
 

@@ -83,7 +83,7 @@ std::string Signatures::parameterName(const typed::Function &function, std::size
   return name.empty() ? fmt::format("unnamed{}", number + 1) : name;
 }
 
-/// Which parameters and which state the body of a function uses.
+/// The parameters and the state that the body of a function uses.
 struct Signatures::Mentions {
   std::set<const typed::Variable *> variables, read;
   bool ray = false, scratch = false;

@@ -13,7 +13,7 @@ public:
       : names(names), colorComponents(colorComponents), required(required) {}
 
   std::string of(const Type *type) { return spelled(type, false); }
-  /// Of a value in a record, a struct or an array, where a bool has 32 bits.
+  /// The type of a value in a record, a struct or an array, where a bool has 32 bits.
   std::string inMemory(const Type *type) { return spelled(type, true); }
   /// `{}`, or the zero of a number: the value of a variable without an initialiser.
   Code zero(const Type *type) const;

@@ -12,11 +12,11 @@ class Variables {
 public:
   explicit Variables(Context &context) : context(context) {}
 
-  /// At file level.
+  /// A constant at file level.
   Declaration constant(const typed::Variable &constant);
-  /// Of a class, or of its `Scratch`.
+  /// A member of a class, or of its `Scratch`.
   Declaration member(const typed::Member &member);
-  /// With operators, if `context.required` has them.
+  /// A struct, with its operators if `context.required` has them.
   Declaration structure(const typed::Struct &structure) const;
 
 private:

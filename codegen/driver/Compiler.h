@@ -71,9 +71,11 @@ struct CompileOptions {
   FloatingPoint floatingPoint = FloatingPoint::Strict;
   /// The oldest NVIDIA GPU that PTX is for. The default runs on all since 2018.
   std::string gpu = "sm_75";
-  /// Of PTX for a scene. None: by the kind of program, as for the organisation (docs/gpu.md).
+  /// The schedule of PTX for a scene. None: chosen by the kind of program, like the organisation
+  /// (docs/gpu.md).
   std::optional<Schedule> schedule;
-  /// Of programs for GPUs and for Target::HostMegakernel; there, none is Megakernel.
+  /// The organisation of programs for GPUs and for Target::HostMegakernel; for the latter, none
+  /// means Megakernel.
   std::optional<Organisation> organisation;
   /// Megakernels count the steps of warps (runtime/device/organisations/StepCounts.h).
   bool countsSteps = false;

@@ -33,7 +33,7 @@ struct MachineCode {
   bool (*reachPtx)(Compilation &);
 };
 
-/// By LLVM. Defined in rtslMachineCode.
+/// The implementation by LLVM, defined in rtslMachineCode.
 const MachineCode &machineCode();
 
 } // namespace rtsl::driver

@@ -149,7 +149,7 @@ bool reachStructured(Compilation &compilation) {
   return true;
 }
 
-/// From number 1 on.
+/// The names of the states, from number 1 on.
 static std::vector<std::string> stateNames(mlir::ModuleOp ir) {
   std::vector<std::string> names;
   for (auto function : ir.getOps<mlir::func::FuncOp>())

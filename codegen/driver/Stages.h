@@ -30,7 +30,7 @@ struct CompileInput {
   const LinkRequest *scene = nullptr;
   /// For a scene: bind the program to these objects, as for a package. Null: do not bind it.
   MakeObjects makeObjects = nullptr;
-  /// For a scene, and for stages of machine code.
+  /// Required for a scene, and for stages of machine code.
   const driver::MachineCode *machineCode = nullptr;
   CppRequest cpp = {};
 };

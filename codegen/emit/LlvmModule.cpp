@@ -313,7 +313,7 @@ static void addJoining(llvm::PassBuilder &builder) {
       });
 }
 
-/// After the calls are joined: which words a step needs is known then.
+/// Packs records after the calls are joined, when it is known which words a step needs.
 static void addRecordPacking(llvm::PassBuilder &builder) {
   builder.registerPipelineStartEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel) {
@@ -337,7 +337,7 @@ static void addUnrolling(llvm::PassBuilder &builder) {
       });
 }
 
-/// After LLVM's simplification, which would move the division after the choice.
+/// Changes divisions after LLVM's simplification, which would move the division after the select.
 static void addDivisionOfZeros(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {

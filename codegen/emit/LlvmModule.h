@@ -43,7 +43,7 @@ struct MachineOptions {
   /// A megakernel: the rays of a lane are local variables, so calls that take their addresses are
   /// inlined (JoinCalls.h).
   bool isMegakernel = false;
-  /// Of shader code. Device code is always strict.
+  /// The mode of shader code. Device code is always strict.
   FloatingPoint floatingPoint = FloatingPoint::Strict;
 };
 

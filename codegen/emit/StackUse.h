@@ -27,7 +27,7 @@ public:
   /// out. This object must exist until the code is generated.
   explicit StackUse(llvm::Module &module);
   StackUse(StackUse &&) noexcept;
-  /// Of code that has been generated.
+  /// A copy, for code that has been generated.
   StackUse(const StackUse &other);
   ~StackUse();
 

@@ -10,7 +10,7 @@ namespace rtsl {
 /// The report for other programs: {"version": 1, "frameSize": ..., "functions": [...]}.
 nlohmann::ordered_json jsonOf(const SplitReport &report);
 
-/// That as text.
+/// The same as text.
 std::string toJson(const SplitReport &report);
 
 } // namespace rtsl

@@ -44,7 +44,7 @@ struct MemoryAccesses {
 /// Does one write what the other reads or writes? If not, they may be exchanged.
 bool conflict(const MemoryAccesses &a, const MemoryAccesses &b);
 MemoryLocation locationOf(mlir::Value address);
-/// Of an operation and what is nested in it.
+/// The accesses of an operation and of those nested in it.
 MemoryAccesses accessesOf(mlir::Operation *op);
 
 /// Does the evaluation write what lies at the address that it has as this operand?

@@ -19,7 +19,7 @@ struct SourcePlace {
   std::string text() const;
 };
 
-/// Of inlined code: the location where it was written, not that of the call.
+/// The source location. For inlined code it is where the code was written, not that of the call.
 SourcePlace placeOf(mlir::Location location);
 
 } // namespace rtsl::ir

@@ -229,7 +229,7 @@ void describeLights(mlir::ModuleOp ir, const runtime::SceneFacts &scene, Finding
   findings.push_back(ambient);
 }
 
-/// One thing that a scene may have.
+/// A feature that a scene may have.
 struct GraphPart {
   Item item;
   std::uint32_t need; // RTSL_HAS_*

@@ -42,7 +42,7 @@ public:
   void add(ItemSet items) { bits |= items.bits; }
   static ItemSet all();
   static ItemSet only(Item item);
-  /// Those of members of objects.
+  /// The items of members of objects.
   static ItemSet ofMembers();
 
 private:
@@ -62,7 +62,7 @@ using Findings = std::vector<Finding>;
 
 /// Finding::subject of RTSL_NEEDS_FOOTPRINT.
 inline constexpr const char *footprintSubject = "footprints of rays";
-/// That of the change of an attribute along an axis of the footprint, 0 or 1.
+/// Finding::subject of the change of an attribute along an axis of the footprint, 0 or 1.
 std::string changeSubject(const std::string &attribute, std::uint32_t axis);
 
 } // namespace rtsl

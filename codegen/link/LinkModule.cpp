@@ -17,7 +17,7 @@ std::vector<RayTypeFacts> rayTypesOf(const LinkContext &context) {
   return facts;
 }
 
-/// By scratch member, for those that some method uses.
+/// The offset of each scratch member that some method uses.
 std::map<const typed::Member *, std::uint32_t> attributeWordsOf(const LinkContext &context) {
   const ClassesByName classes = classesOf(context);
   std::map<const typed::Member *, std::uint32_t> words;

@@ -230,7 +230,7 @@ void FunctionLowering::answerHit(Builtin builtin) {
   emitReturnOfZero();
 }
 
-/// After a call of a function that may end `anyHit`.
+/// Returns if the function that was just called has ended `anyHit`.
 void FunctionLowering::returnIfHitAnswered() {
   Value ended = emitter.make<ir::HitAnsweredOp>(emitter.getI1Type());
   emitter.ifThen(ended, [&] { emitReturnOfZero(); });

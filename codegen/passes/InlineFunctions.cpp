@@ -21,8 +21,8 @@ constexpr unsigned smallFunction = 60;
 /// With arithmetic in double, values that cross a call in memory are rounded: calls remain only
 /// where inlining would make programs grow without bound.
 constexpr unsigned smallFunctionInDouble = 20000;
-/// For functions that trace: up to this many operations, copies of the code cost less than a frame
-/// of its own.
+/// A function that traces: up to this many operations, copies of its code cost less than a frame of
+/// its own.
 constexpr unsigned smallTracingFunction = 1000;
 
 unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {

@@ -55,7 +55,7 @@ public:
   std::string apply(std::string_view text);
 
   bool isOn(Code code) const;
-  /// For a warning that is on.
+  /// Is a warning, which must be on, an error?
   bool isError(Code code) const;
 
 private:

@@ -18,7 +18,7 @@ struct Messages::Place {
   Origin origin;
   std::string_view text; // there
 
-  /// From here to `end` in the same file.
+  /// The range from here to `end` in the same file.
   Origin to(std::uint32_t end) const {
     Origin result = origin;
     result.range.end = end;

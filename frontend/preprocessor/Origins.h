@@ -19,11 +19,12 @@ public:
           const SourceFileSystem &files)
       : locations(locations), language(language), files(files) {}
 
-  /// Of the token of `size` bytes at a location, in a file or in the expansion of a macro.
+  /// The origin of the token of `size` bytes at a location, in a file or in the expansion of a
+  /// macro.
   Origin of(clang::SourceLocation location, std::uint32_t size);
-  /// Of the token at a location.
+  /// The origin of the token at a location.
   Origin of(clang::SourceLocation location) { return of(location, sizeAt(location)); }
-  /// From one token to another.
+  /// The range from one token to another.
   Origin of(clang::SourceLocation first, clang::SourceLocation last);
 
   /// The text for clang's `id`; 0: none of ours.

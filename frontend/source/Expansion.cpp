@@ -54,7 +54,7 @@ SourceRange join(SourceRange first, SourceRange last) {
   return first.file == last.file && first.begin <= last.end ? first.to(last) : first;
 }
 
-/// From the token at the end of `first` to that at the end of `last`.
+/// The range from the token at the end of `first` to that at the end of `last`.
 WrittenRange between(const std::vector<Expansion> &expansions, const Path &first,
                      const Path &last) {
   WrittenRange result;

@@ -59,17 +59,18 @@ struct WrittenRange {
     std::string_view macro;
     SourceRange range;
   };
-  /// From the macro used at `range` to the one whose body holds the tokens; empty if no macro is
-  /// involved.
+  /// The macros, from the one used at `range` to the one whose body holds the tokens; empty if no
+  /// macro is involved.
   std::vector<MacroPlace> macros;
   /// The `#include`s that led to the file of `range`, the innermost first.
   std::vector<SourceRange> includes;
 };
 
-/// For the range [begin, end) of the text. An empty range is placed after the byte before it.
+/// Where the range [begin, end) of the text was written. An empty range is placed after the byte
+/// before it.
 WrittenRange written(const ExpandedText &text, std::uint32_t begin, std::uint32_t end);
 
-/// For a single token.
+/// The same for a single token.
 WrittenRange written(const std::vector<Expansion> &expansions, const Origin &origin);
 
 /// Where the author finds the beginning of a range: outside of macros, with `#line` applied.

@@ -52,7 +52,7 @@ Number smoothstep(Number edge0, Number edge1, Number x) {
   return (t * t) * (3.0 - 2.0 * t);
 }
 
-/// Of zero: itself; of NaN: NaN.
+/// The sign: -1 or 1; zero for zero, and NaN for NaN.
 template <typename Number>
 Number sign(Number x) {
   return select(less(0.0, x), 1.0, select(less(x, 0.0), -1.0, x));

@@ -46,7 +46,7 @@ Bvh buildBvh(const RtslLaunch &launch, unsigned threads = 0, TreeKind kind = Tre
 inline Bvh buildBvh(const Scene &scene, unsigned threads = 0, TreeKind kind = TreeKind::Good) {
   return buildBvh(scene.launch(), threads, kind);
 }
-/// One of these trees.
+/// Builds one of these trees.
 Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind);
 
 } // namespace rtsl::runtime

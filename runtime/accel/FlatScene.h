@@ -40,7 +40,7 @@ struct FlatScene {
   void setLaunch(const RtslLaunch &launch) { std::memcpy(bytes.data(), &launch, sizeof launch); }
 
   bool hasTrees() const { return launch().nodeCount != 0; }
-  /// Before it is relocated.
+  /// Removes the trees. To be called before relocate().
   void removeTrees();
 
   /// Sets the pointers for a scene at `address`, which is a multiple of 64.

@@ -117,7 +117,7 @@ RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tr
   return device::boxOfTriangle(launch, mesh, item.primitive);
 }
 
-/// From the leaves to the root: a child comes after its parent.
+/// Updates a tree from the leaves to the root: a child comes after its parent.
 void refitPart(Bvh &bvh, const Part &part, const RtslLaunch &launch, const FirstBoxes &firstBoxes) {
   std::vector<RtslBox> boxes(part.endNode - part.firstNode); // of nodes
   for (std::uint32_t i = part.endNode; i-- > part.firstNode;) {

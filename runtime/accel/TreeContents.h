@@ -22,7 +22,7 @@ struct InstanceContents {
 
 bool operator==(const InstanceContents &a, const InstanceContents &b);
 
-/// By instance. The pointers of the launch must be valid here.
+/// The contents by instance. The pointers of the launch must be valid here.
 std::vector<InstanceContents> treeContents(const RtslLaunch &launch);
 
 } // namespace rtsl::runtime

@@ -16,7 +16,7 @@ struct TreeItems {
 
   /// Nothing, if `items` is 0.
   void add(std::uint32_t items, std::uint32_t instance, std::uint32_t number, bool isWhole);
-  /// In this process, for a launch whose pointers are valid here.
+  /// The items in this process, for a launch whose pointers are valid here.
   device::build::Items of(const RtslLaunch &launch) const {
     return {&launch, ranges.data(), std::uint32_t(ranges.size()), count};
   }
@@ -30,7 +30,7 @@ struct SceneTrees {
   std::map<std::uint32_t, TreeItems> ofMeshes; // by number in RtslLaunch::meshTrees
 };
 SceneTrees treesOf(const RtslLaunch &launch);
-/// Of all of them.
+/// The number of items of all trees.
 std::uint64_t itemCount(const SceneTrees &trees);
 
 } // namespace rtsl::runtime

@@ -54,10 +54,10 @@ struct RtslScene {
   std::vector<Node> nodes;                                           // the first is number 1
   std::uint32_t entered = 0;                                         // the innermost
   std::vector<std::vector<rtsl::runtime::NamedValue>> variables{{}}; // of the scene, and inwards
-  /// Of instances below nodes: the node, and where they are in it.
+  /// For instances below nodes: the node, and the transform in it.
   std::map<std::uint32_t, std::pair<std::uint32_t, rtsl::runtime::MovingTransform>> inNodes;
 
-  /// From the space of a node to world space.
+  /// The transform from the space of a node to world space.
   rtsl::runtime::MovingTransform toWorld(std::uint32_t node) const;
   rtsl::runtime::MovingTransform inNode(const rtsl::runtime::MovingTransform &transform) const;
   rtsl::runtime::Placement inNode(rtsl::runtime::Placement placement) const;
@@ -108,13 +108,13 @@ Result guarded(Result failed, Work work) {
   return failed;
 }
 
-/// One number, or a list of them.
+/// The value of one number, or of a list of numbers.
 runtime::Value valueOf(const double *numbers, std::size_t count);
 /// `count` of them, `stride` bytes apart. `what` moves by keys at these times, for messages. Throws
 /// OutOfRange.
 std::vector<float> keyTimes(const char *what, const float *first, std::uint32_t count,
                             std::size_t stride);
-/// Of 12 numbers, four columns of three.
+/// The transform of 12 numbers, four columns of three.
 runtime::Transform transformOf(const double *numbers);
 /// The same; null: none. Throws NotSettable.
 runtime::Transform finiteTransform(const double *transform);

@@ -34,7 +34,7 @@ bool areSame(const RtslRenderSettings &a, const RtslRenderSettings &b) {
   return std::memcmp(&a, &b, sizeof a) == 0; // all of them 32-bit numbers
 }
 
-/// With the trees of the last rendering, which follow what has changed since.
+/// Renders with the trees of the last rendering, which are updated to what has changed since.
 runtime::Image render(const RtslScene *scene, const RtslRenderSettings *settings,
                       bool wantsPicture) {
   lastRendering() = {};

@@ -27,8 +27,8 @@ const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
   return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
 }
 
-/// After a hit that was committed, which the ray's search for the nearest one need not go beyond.
-/// `occluder`: what was hit.
+/// Ends the search at a hit that was committed: nothing beyond it matters. `occluder`: what was
+/// hit.
 void endAtHit(const EmbreeContext &context, RTCRay &ray, const Occluder &occluder) {
   ray.tfar = context.end(context.state->nearest);
   if (!context.endsIfHidden || !device::isPointHidden(*context.state))
@@ -109,7 +109,7 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
-/// For a ray that Embree cannot trace: all that is in the space. True if the search is over.
+/// Tests all that is in the space, for a ray that Embree cannot trace. True if the search is over.
 [[gnu::cold, gnu::noinline]] bool testAll(const EmbreeContext &context,
                                           const device::InstanceRay &ray, bool anyHit) {
   for (unsigned i = 0; i < context.space->primitives.size(); ++i) {

@@ -12,10 +12,11 @@ struct SearchCallbacks {
   RTCOccludedFunctionN occluded;
 };
 
-/// Of items of a space (EmbreeSpace.h), which is the world or one that rays are transformed to.
+/// The callbacks of items of a space (EmbreeSpace.h), which is the world or one that rays are
+/// transformed to.
 SearchCallbacks blockCallbacks(bool isWorld);
 SearchCallbacks primitiveCallbacks(bool isWorld);
-/// Of instances of other spaces, in the world.
+/// The callbacks of instances of other spaces, in the world.
 SearchCallbacks instanceCallbacks();
 
 } // namespace rtsl::runtime

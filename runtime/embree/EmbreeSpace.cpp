@@ -279,8 +279,8 @@ void releaseDistantLevels(EmbreeSpace &space) {
   }
 }
 
-/// After updateBlocks. The first change builds a tree that can follow the next ones. True if the
-/// tree was built anew.
+/// To be called after updateBlocks. The first change builds a tree that can follow the next ones.
+/// True if the tree was built anew.
 bool updateTree(EmbreeSpace &space, unsigned threads) {
   const std::vector<RtslBox> boxes = boxesOf(space);
   if (!space.follows || space.boxesWhenBuilt.degradation(boxes) > largestDegradation) {

@@ -45,7 +45,7 @@ public:
   /// Has our own tree been built?
   bool hasOwnTree() const { return launch.host != nullptr; }
 
-  /// Of our own tree, if it has been built.
+  /// The figures of our own tree, if it has been built.
   const std::optional<TreeFigures> &treeFigures() const { return own.treeFigures(); }
 
   /// Have the trees that were passed to the constructor been kept, updated to this scene if

@@ -79,14 +79,14 @@ KeptTrees HostScene::takeTrees() {
   return {std::move(embree), std::move(own)};
 }
 
-/// With any tree.
+/// Searches any tree.
 template <typename Tree>
 std::uint32_t HostScene::search(RtslState &state, std::uint32_t how, const Tree &tree) const {
   return how & RTSL_INVOKE_ANY_HIT ? device::findHitAsking(state, how, FilledSlots{slots}, tree)
                                    : device::findHit(state, how, FilledSlots{slots}, tree);
 }
 
-/// With our own tree, on a launch that has it: the ray's launch may not have one.
+/// Searches our own tree, with a launch that has it: the ray's launch may not have one.
 std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) const {
   const RtslLaunch *given = state.launch;
   if (given->nodeCount != 0)

@@ -29,7 +29,7 @@ struct Occluder {
 /// What the last occluded rays in roughly the same direction have hit, the latest first.
 class LastOccluders {
 public:
-  /// Those of this thread, by the signs of the ray's direction, which separates lights.
+  /// The occluders of this thread, by the signs of the ray's direction, which separates lights.
   static LastOccluders &towards(const float direction[3]) {
     static thread_local std::array<LastOccluders, 8> all;
     return all[unsigned(direction[0] < 0) | unsigned(direction[1] < 0) << 1 |

@@ -52,10 +52,9 @@ std::vector<MeshGroup> loadMeshGroups(const std::string &path);
 /// BadMesh, and NotSupported if the order is not known.
 void addInFileOrder(Mesh &mesh, NamedAttribute attribute, const std::string &file);
 
-/// One mesh of several, its keys, at these times: they must have the same triangles and as many
-/// vertices. Texture coordinates and attributes are those of the first; normals are kept if all
-/// have them. `names`
-/// are for messages. Throws BadMesh.
+/// Makes one moving mesh of several, which are its keys at these times: they must have the same
+/// triangles and as many vertices. Texture coordinates and attributes are those of the first;
+/// normals are kept if all have them. `names` are for messages. Throws BadMesh.
 Mesh movingMesh(std::vector<Mesh> keys, std::vector<float> times,
                 const std::vector<std::string> &names);
 

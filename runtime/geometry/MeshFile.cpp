@@ -46,7 +46,7 @@ void checkReadable(const std::string &path) {
     throw Error(message::meshEmpty(path), Place{path});
 }
 
-/// With the dot, in lower case.
+/// The extension with the dot, in lower case.
 std::string extensionOf(const std::string &path) {
   const std::size_t dot = path.find_last_of("./");
   if (dot == std::string::npos || path[dot] == '/')

@@ -110,7 +110,7 @@ double normOfLinear(const Transform &map) {
   return std::hypot(norm(map.columns[0]), norm(map.columns[1]), norm(map.columns[2]));
 }
 
-/// Of the linear part and of the translation of a factor, between two of its keys.
+/// The bounds for the linear part and for the translation of a factor, between two of its keys.
 std::pair<Speeds, Speeds> speedsOf(const MotionFactor &factor, double middle) {
   if (isConstant(factor))
     return {{normOfLinear(factor.maps[0]), 0, 0}, {norm(factor.maps[0].columns[3]), 0, 0}};
@@ -132,7 +132,7 @@ std::pair<Speeds, Speeds> speedsOf(const MotionFactor &factor, double middle) {
           {std::max(norm(a.columns[3]), norm(b.columns[3])), norm(change.columns[3]), 0}};
 }
 
-/// Of L v + t, by the product rule.
+/// The bounds for L v + t, by the product rule.
 Speeds mapped(const std::pair<Speeds, Speeds> &factor, const Speeds &v) {
   const auto &[linear, translation] = factor;
   return {linear.value * v.value + translation.value,
@@ -141,7 +141,7 @@ Speeds mapped(const std::pair<Speeds, Speeds> &factor, const Speeds &v) {
               translation.second};
 }
 
-/// Of the points within `radius` of the origin, between two neighbouring key times.
+/// The bounds for the points within `radius` of the origin, between two neighbouring key times.
 Speeds speedsOf(const MovingTransform &map, double radius, double middle) {
   Speeds speeds{radius, 0, 0};
   for (const MotionFactor &factor : map.factors())

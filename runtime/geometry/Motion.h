@@ -33,7 +33,7 @@ struct Turn {
 };
 /// The shortest turn between two orientations.
 Turn turnBetween(const Quaternion &from, const Quaternion &to);
-/// By any number of degrees about an axis, of any length but zero.
+/// A turn by any number of degrees about an axis, of any length but zero.
 Turn turnAbout(const std::array<double, 3> &axis, double fromDegrees, double toDegrees);
 
 struct MotionFactor {

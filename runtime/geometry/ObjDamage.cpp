@@ -9,7 +9,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// Without the comment at its end.
+/// The words of a line, without the comment at its end.
 std::vector<std::string_view> wordsOf(std::string_view line) {
   line = line.substr(0, line.find('#'));
   std::vector<std::string_view> words;

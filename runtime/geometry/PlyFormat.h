@@ -66,7 +66,8 @@ public:
         format(header.format) {}
 
   std::size_t bytesLeft() const { return std::size_t(end - position); }
-  /// Of text: the last word that was read, which is at fault after a failure; empty at the end.
+  /// In a text file, the last word that was read, which is at fault after a failure; empty at the
+  /// end.
   std::string_view lastWord() const { return word; }
 
   bool skip(const Property &property) {
@@ -86,7 +87,7 @@ public:
     return true;
   }
 
-  /// So many rows of an element, which has properties.
+  /// Skips so many rows of an element, which has properties.
   bool skipRows(const Element &element, std::uint64_t count) {
     const bool hasLists = std::any_of(element.properties.begin(), element.properties.end(),
                                       [](const Property &one) { return one.isList; });

@@ -32,7 +32,7 @@ public:
   /// 90 for sm_90.
   int capability() const { return computeCapability; }
   int multiprocessors() const { return multiprocessorCount; }
-  /// Of a multiprocessor, at once.
+  /// The threads that a multiprocessor runs at once, at most.
   int mostThreads() const { return threadsOfMultiprocessor; }
   /// The shared memory of a multiprocessor, and how much of it a block may have.
   int sharedBytes() const { return sharedBytesOfMultiprocessor; }

@@ -25,7 +25,7 @@ public:
 
   const CudaDevice::Kernel &kernel() const { return persistent; }
   std::uint32_t slots() const { return memory.slots; } // of a block
-  /// Of a sample in flight: in shared memory, and of its stack.
+  /// The bytes of a sample in flight: in shared memory, and of its stack.
   std::uint64_t slotBytes() const;
   std::uint64_t stackBytes() const { return memory.stackBytes; }
 

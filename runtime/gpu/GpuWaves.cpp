@@ -13,7 +13,7 @@ namespace {
 
 /// More keep more lanes busy at each step, and take more memory: docs/gpu.md.
 constexpr std::uint64_t mostSlots = std::uint64_t(8) << 20;
-/// Of the device's free memory, for samples in flight: one part of four.
+/// Samples in flight get the device's free memory divided by this.
 constexpr std::uint64_t memoryShare = 4;
 
 } // namespace

@@ -16,8 +16,8 @@
 
 namespace rtsl::runtime {
 
-/// Of the kernels that render: four warps, few enough that the last lanes of a block do not hold
-/// many others up.
+/// The threads in a block of the kernels that render: four warps, few enough that the last lanes of
+/// a block do not hold many others up.
 constexpr unsigned threadsPerBlock = 128;
 
 class GpuWaves {
@@ -32,14 +32,14 @@ public:
   /// bytes of memory that they need. Throws OutOfMemory.
   std::uint64_t setSlots(std::uint64_t samples);
   std::uint32_t slots() const { return memory.slots; }
-  /// Of a sample in flight.
+  /// The bytes of a sample in flight.
   std::uint64_t slotBytes() const;
   std::uint64_t stackBytes() const { return memory.stackBytes; }
 
   /// Runs the job, with `rays` of the size that setSlots() returned. Returns the seconds.
   double run(Address job, Address rays);
 
-  /// In the order of the steps: traversal, the beginning of samples, and states.
+  /// The kernels in the order of the steps: traversal, the beginning of samples, and states.
   std::vector<CudaDevice::Kernel> stepKernels() const;
 
 private:

@@ -23,7 +23,7 @@ public:
   std::unique_ptr<Backend> prepare(const GpuCode &code, FlatScene scene,
                                    const RenderOptions &options);
 
-  /// Of each device, while the last backend exists.
+  /// The statistics of each device, while the last backend exists.
   std::vector<GpuStatistics> statistics() const;
 
 private:

@@ -15,7 +15,8 @@ struct Image {
   std::uint32_t width = 0, height = 0, channels = 3;
   std::vector<float> pixels;
 
-  /// Of a part of a larger picture: where it begins in that, and the size of that. 0: it is whole.
+  /// For a part of a larger picture: where it begins in the whole, and the size of the whole. 0:
+  /// the picture is whole.
   std::uint32_t left = 0, top = 0, wholeWidth = 0, wholeHeight = 0;
 
   Image() = default;

@@ -19,7 +19,7 @@ struct Expansion {
   std::uint64_t most;
 };
 
-/// By compression. Black images come close.
+/// The largest expansion by compression. Black images come close.
 constexpr Expansion ofOpenExr[] = {
     {"none", 1},
     {"rle", 64}, // 128 bytes become 2

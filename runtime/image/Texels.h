@@ -22,7 +22,7 @@ enum class TexelFormat : std::uint8_t { Unorm8 = 0, Srgb8, Unorm16, Float16, Flo
 /// 1, 2 or 4.
 std::uint32_t bytesOf(TexelFormat format);
 
-/// One channel of a texel as a number, and back.
+/// Converts a channel of a texel to a number, and back.
 class ChannelCodec {
 public:
   explicit ChannelCodec(TexelFormat format);

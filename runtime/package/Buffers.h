@@ -50,7 +50,7 @@ public:
   std::uint32_t lengthOf(const PackageBuffer &buffer) const;
 
   const FlatScene &scene() const { return flat; }
-  /// After the launch. Throws NotSupported if the launch only reads the buffer.
+  /// The buffer after the launch. Throws NotSupported if the launch only reads the buffer.
   OutputBuffer output(const PackageBuffer &buffer);
 
 private:

@@ -43,7 +43,7 @@ struct MemberInfo {
   bool hasDefault = false; // for a reference: it may be empty
   bool isRequired = false; // no object may be without a value (codegen/link/RequiredMembers.h)
   bool isRead = true;      // by some function of the program
-  /// Of images that a member refers to: which channels the program reads, bits 0 to 3 for red,
+  /// For a member that refers to images: which channels the program reads, bits 0 to 3 for red,
   /// green, blue and alpha.
   static constexpr std::uint32_t allChannels = 15;
   std::uint32_t imageChannels = allChannels;
@@ -53,7 +53,8 @@ struct MemberInfo {
 struct AttributeInfo {
   std::string name;
   ValueType type;
-  /// In RtslState::attributes, in words: of the value, and of its changes along dPdx and dPdy.
+  /// Offsets in RtslState::attributes, in words: of the value, and of its changes along dPdx and
+  /// dPdy.
   std::uint32_t offset = RTSL_NOT_READ;
   std::uint32_t changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ};
 };
@@ -129,8 +130,8 @@ struct MegakernelCode {
   std::uint64_t stackBytes = 0; // of the calling thread
 };
 
-/// Of a wavefront or of persistent blocks for a GPU (runtime/device/organisations/Wavefront.h,
-/// Persistent.h).
+/// Facts of a wavefront or of persistent blocks for a GPU
+/// (runtime/device/organisations/Wavefront.h, Persistent.h).
 struct WaveFacts {
   std::uint32_t states = 0;  // of a wavefront each has a kernel; 0: it is a megakernel
   std::uint32_t groups = 0;  // of four words, in the record of a sample in flight
@@ -197,7 +198,8 @@ struct Program {
   std::vector<Place> numberPlaces;
 
   std::vector<PrintFormat> prints; // by number
-  /// Of the machine, from number 1; empty: it has none, or its names are not known.
+  /// The names of the machine's states, from number 1; empty: it has none, or its names are not
+  /// known.
   std::vector<std::string> stateNames;
 
   std::shared_ptr<void> code; // keeps the code alive

@@ -89,7 +89,7 @@ void Megakernel::prepare() {
   }
 }
 
-/// For some lines of each sample in flight.
+/// Allocates memory for some lines of each sample in flight.
 void Megakernel::allocatePrinted() {
   constexpr std::uint64_t ofSample = 1024, least = std::uint64_t(1) << 20,
                           most = std::uint64_t(1) << 30;
@@ -100,7 +100,7 @@ void Megakernel::allocatePrinted() {
   upload(printedAddress, &printed, sizeof printed);
 }
 
-/// Those of a launch that is over.
+/// Takes the lines of a launch that is over.
 void Megakernel::takePrinted() {
   RtslPrintedLines lines;
   download(&lines, printedAddress, sizeof lines);
@@ -136,7 +136,7 @@ RenderStatistics Megakernel::renderPart(const Window &part, std::uint32_t sample
   return statistics;
 }
 
-/// For a scene without trees that was copied there.
+/// Builds trees for a scene without trees that was copied there.
 void Megakernel::buildTreesAt(Address sceneAddress) {
   RtslLaunch launch = scene.launch();
   // The small ones are built of the scene's copy here, whose pointers must all lead there.

@@ -39,7 +39,7 @@ public:
   virtual void enterThread() {}
   /// How many samples it renders before it adds them up.
   std::uint64_t samplesInMemory() const { return mostInMemory; }
-  /// Of the program's colors.
+  /// The components of the program's colors.
   std::uint32_t channels() const final { return colorComponents; }
   double secondsToPrepare() const { return buildSeconds; }
   const std::optional<TreeFigures> &builtTrees() const { return trees; }

@@ -126,7 +126,7 @@ void checkOptions(const RenderOptions &options);
 /// The pixels that are rendered.
 Window windowOf(const RenderOptions &options);
 
-/// Of a rendering: the requested number, or one a core.
+/// The number of threads of a rendering: the requested one, or one per core.
 unsigned threadCount(const RenderOptions &options);
 
 } // namespace rtsl::runtime

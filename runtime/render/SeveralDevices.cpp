@@ -15,8 +15,8 @@ namespace {
 /// The rows of a picture are numbered in bands of so many (runtime/device/organisations/Slice.h).
 constexpr std::uint32_t rowsOfBand = 4;
 
-/// Of a pixel: with so many the lanes of a warp, which begin with following samples, begin with the
-/// same pixel.
+/// With so many samples of a pixel the lanes of a warp, which begin with consecutive samples, begin
+/// with the same pixel.
 constexpr std::uint32_t enoughSamples = 64;
 
 /// Rows to take at once while so many are left: of several devices, half of each one's share. A

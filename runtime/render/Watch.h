@@ -15,7 +15,7 @@ namespace rtsl::runtime {
 /// use isStopped and advance; programs that cannot are polled.
 class Watch {
 public:
-  /// Of a part of what `whole` watches; null: of all of it.
+  /// Watches a part of what `whole` watches; null: a whole rendering.
   explicit Watch(const RenderOptions &options, const Watch *whole = nullptr)
       : options(options), whole(whole) {}
 

@@ -31,8 +31,8 @@ public:
                              const Placement &placement, std::uint32_t count,
                              const std::function<RtslLaunch()> &launch,
                              std::vector<Warning> &warnings);
-  /// After a member of a primitive has changed: what `computeBounds` says now, for all instances of
-  /// it. Throws DegenerateGeometry, and leaves bounds as they were.
+  /// To be called after a member of a primitive has changed: runs `computeBounds` again, for all of
+  /// its instances. Throws DegenerateGeometry, and leaves bounds as they were.
   void updatePrimitive(const Objects &objects, RtslRef primitive,
                        const std::function<RtslLaunch()> &launch, std::vector<Warning> &warnings);
   /// Scene::addSelector.
@@ -103,9 +103,9 @@ private:
                              const std::optional<rtsl::Place> &where);
   std::uint32_t addMotion(const MovingTransform &transform);
   const Bounds &meshBounds(std::uint32_t mesh);
-  /// Of an instance that has a transform, which moves or is as it is stored.
+  /// Sets the bounds of an instance that has a transform, which moves or is as it is stored.
   void setBounds(RtslInstance &instance, const MovingTransform &transform);
-  /// Of an instance of primitives. `given`: in their own space.
+  /// Sets the bounds of an instance of primitives. `given`: the bounds in their own space.
   void setPrimitiveBounds(RtslInstance &instance, const Bounds &given,
                           const MovingTransform &transform) const;
   MovingTransform transformOf(const RtslInstance &instance) const;

@@ -49,7 +49,7 @@ public:
   };
   /// Throws UnknownName.
   const Object &at(RtslRef reference) const;
-  /// In the order in which they were added, which is that of their references.
+  /// All objects in the order in which they were added, which is that of their references.
   const std::vector<Object> &all() const { return objects; }
 
   /// Throws WrongClass if the object's class does not derive from the class `root` of the language,

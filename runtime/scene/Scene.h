@@ -89,7 +89,7 @@ public:
   /// Gives a mesh other positions, of as many vertices (at all its keys), and other normals, if it
   /// has any and they are given. Throws BadMesh and leaves the mesh as it was, UnknownName.
   void moveMesh(std::uint32_t mesh, std::vector<float> positions, std::vector<float> normals = {});
-  /// Those that a mesh has, at all its keys.
+  /// The positions of a mesh, at all its keys.
   const std::vector<float> &positions(std::uint32_t mesh) const;
   /// How many times something was moved; and a mesh.
   std::uint64_t moves() const;
@@ -102,7 +102,7 @@ public:
 
   void addLight(RtslRef light);
   void setCamera(RtslRef camera);
-  /// Of the programs engine, in place of a camera.
+  /// Sets the object that generates rays in the programs engine, in place of a camera.
   void setRayGeneration(RtslRef rayGeneration);
   void setBackground(RtslRef miss);
   /// How `illuminate(P)` chooses one of the surfaces that shine.

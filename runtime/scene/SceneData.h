@@ -30,9 +30,10 @@ struct Placement {
   std::uint32_t mask = ~0u;  // rays see it whose mask has a common bit
   std::uint32_t roots = 1;   // bit r: rays that enter at root r can see it
   std::int32_t id = 0;       // rt_InstanceId
-  /// Of Scene::addSelector: rays see it if the selector visits that child. 0: always.
+  /// A result of Scene::addSelector: rays see the instance if the selector visits that child. 0:
+  /// always.
   std::uint32_t selection = 0;
-  /// Of a mesh: whether rays meet triangles that they reach along rt_GeometricNormal.
+  /// For a mesh: whether rays meet triangles that they reach along rt_GeometricNormal.
   bool hasBackFaces = true;
 };
 

@@ -23,7 +23,7 @@ constexpr std::uint32_t signedByte = 5120, unsignedByte = 5121, signedShort = 51
 constexpr std::uint32_t mostZeros = 1u << 24;
 constexpr std::uint32_t mostWhole = 0xffffffff;
 
-/// In bytes; 0: no such type.
+/// The size in bytes; 0: there is no such type.
 std::uint32_t sizeOf(std::uint32_t componentType) {
   switch (componentType) {
   case signedByte:

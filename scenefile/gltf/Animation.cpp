@@ -129,7 +129,7 @@ struct Animation::Channel {
 struct Animation::NodeChannels {
   std::optional<Channel> translation, rotation, scale, weights;
 
-  /// Of its transform.
+  /// The channels of the node's transform.
   std::vector<const Channel *> ofMotion() const {
     std::vector<const Channel *> channels;
     for (const std::optional<Channel> *one : {&translation, &rotation, &scale})

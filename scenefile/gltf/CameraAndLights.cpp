@@ -20,7 +20,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr double degrees = 180 / pi;
 
-/// Of a camera that frames a scene.
+/// The field of view of a camera that frames a scene.
 constexpr double framingField = 40; // degrees
 constexpr double framingFrom[3] = {0.45, 0.35, 0.82};
 

@@ -60,7 +60,7 @@ int valueOfHex(char c) {
   return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
 }
 
-/// Without the %XX of a URI.
+/// Decodes the %XX of a URI.
 std::string decodePercent(const std::string &uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {

@@ -427,7 +427,7 @@ private:
     return known.alike[keyOf(way)];
   }
 
-  /// Those that a root leads to.
+  /// The nodes that a root leads to.
   std::vector<bool> usedNodes() const {
     std::vector<bool> isUsed(nodes.size(), false);
     for (const Edge &edge : roots)

@@ -56,7 +56,7 @@ void VariablePlaces::useVariables(const VariableScope *scope, const User &user) 
                       [&](const ObjectDescription &other, bool) { use(other, user); });
 }
 
-/// Those that are written in the scene file, the nearest first.
+/// The names of the nodes that are written in the scene file, the nearest first.
 std::vector<std::string> VariablePlaces::namesAbove(const std::vector<User> &users) const {
   std::vector<std::string> names;
   std::vector<std::size_t> nodes; // in the order in which they are found

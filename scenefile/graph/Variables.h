@@ -49,7 +49,7 @@ public:
     const Variables &variables;
   };
 
-  /// For variables that no object has taken.
+  /// Warnings about variables that no object has taken.
   std::vector<Warning> warnings() const;
 
 private:

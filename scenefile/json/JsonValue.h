@@ -40,7 +40,7 @@ struct JsonValue {
   bool isIncluded = false;   // from another file than the scene's: paths in it are relative to that
 
   Place place() const { return {*file, line, column, length}; }
-  /// Of a key of this object, or of the object whose value this is.
+  /// The place of a key of this object, or of the object whose value this is.
   Place place(const JsonKey &key) const {
     return {key.file ? *key.file : *file, key.line, key.column, key.length};
   }

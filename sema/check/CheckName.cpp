@@ -168,7 +168,7 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
   }
 }
 
-/// Those of the names that contain the word or are contained in it: authors remember a part.
+/// The names that contain the word or are contained in it: authors remember a part.
 static std::vector<std::string> namesAround(std::string word,
                                             const std::vector<std::string> &names) {
   const auto lower = [](std::string &text) {

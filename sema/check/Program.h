@@ -122,7 +122,7 @@ public:
                                                      SourceRange usedAt) const;
   /// Adds to a message about an unknown name which module of the library defines it, if one does.
   bool suggestImport(Diagnostic &diagnostic, const std::string &name) const;
-  /// In the class or one of its bases.
+  /// The member in the class or one of its bases.
   const typed::Member *findMember(const ClassScope *scope, const std::string &name) const;
   /// All functions of that name that an object of the class has: own ones, and inherited ones that
   /// are not overridden.
@@ -147,7 +147,7 @@ public:
   void declareFunctions();
   void checkBodies();
   void judgeCalls(); // CallGraph.cpp
-  /// For a program without errors.
+  /// Warns of what is slow (-Wperf). For a program without errors.
   void checkPerformance();
 
 private:

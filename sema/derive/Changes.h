@@ -7,7 +7,8 @@
 
 namespace rtsl::derive {
 
-/// Which values of a function change across the footprint, and of which of them the change is used.
+/// Finds which values of a function change across the footprint, and of which of them the change is
+/// used.
 class Changes {
 public:
   Changes(Derivation &derivation, const typed::Function &function, bool isAtHit)

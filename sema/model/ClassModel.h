@@ -116,7 +116,8 @@ const std::vector<RootModel> &rootModels();
 /// Null if there is no such base class.
 const RootModel *rootModel(const std::string &name);
 
-/// For a class that derives from no rt_ class: its functions may do what their callers may.
+/// The model of a class that derives from no rt_ class: its functions may do what their callers
+/// may.
 const RootModel &helperModel();
 
 /// The rules of `constructor`, the same for every class.

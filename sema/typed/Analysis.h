@@ -64,7 +64,7 @@ bool takesPayload(const Function &function);
 /// ignoreIntersection() or terminateRay()?
 bool isHitAnswer(const Expr &expr);
 
-/// Which functions end `anyHit`, because they, or their callees, use ignoreIntersection or
+/// Finds the functions that end `anyHit` because they, or their callees, use ignoreIntersection or
 /// terminateRay. Sema ensures that only `anyHit` reaches them.
 class HitAnswers {
 public:

@@ -85,8 +85,8 @@ struct Member {
   std::unique_ptr<Constant> constant; // const members
   ExprPtr init;                       // default of a public or private member; null: none (zero)
   const Class *owner = nullptr;
-  /// Of a scratch member that sema/derive has added: the one whose change it is, along an axis of
-  /// the footprint, 0 or 1. Null: the author's.
+  /// For a scratch member that sema/derive has added: the member whose change it is, along an axis
+  /// of the footprint, 0 or 1. Null: it is the author's.
   const Member *changeOf = nullptr;
   int axis = 0;
   SourceRange range;

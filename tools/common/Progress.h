@@ -17,7 +17,7 @@ public:
   ~Progress() { finish(); }
   /// `share` in [0, 1]; drawn at most ten times a second.
   void update(double share);
-  /// Of a rendering without a known end. `state` is shown.
+  /// For a rendering without a known end: shows `state`.
   void update(const std::string &state);
   /// Wipes the line.
   void finish();

@@ -75,7 +75,7 @@ std::string notFiniteJson(const std::vector<runtime::SampleId> &samples) {
   return "[" + text + "]";
 }
 
-/// Without brackets.
+/// The members of a JSON object, without brackets.
 std::string gpuJson(const runtime::GpuStatistics &gpu) {
   std::string text =
       fmt::format("\"registers\": {}, \"localBytes\": {}, \"occupancy\": {}, \"blocks\": {}, "

@@ -55,7 +55,7 @@ static Code differ(const Code &a, const Code &b) {
       binary(Operator::Or, binary(Operator::Less, a, b), binary(Operator::Greater, a, b)));
 }
 
-/// Of floats. Unordered comparisons hold for a NaN: they are the opposite of ordered ones.
+/// Comparisons of floats. Unordered ones hold for a NaN: they are the opposite of ordered ones.
 static Code compare(arith::CmpFPredicate predicate, const Code &a, const Code &b) {
   using P = arith::CmpFPredicate;
   auto ordered = [&](Operator op) { return binary(op, a, b); };
@@ -125,7 +125,7 @@ static Operator operatorOf(arith::CmpIPredicate predicate) {
   return Operator::Equal;
 }
 
-/// Of ints; the unsigned predicates come last.
+/// Comparisons of ints; the unsigned predicates come last.
 static Code compare(arith::CmpIPredicate predicate, const Code &a, const Code &b) {
   const bool isUnsigned = predicate >= arith::CmpIPredicate::ult;
   return isUnsigned

@@ -19,7 +19,7 @@ public:
   /// neither.
   Statements hitAnswer(const typed::Expr &expr);
   Code endOfAnyHit(const typed::BuiltinExpr &expr);
-  /// After a call of what may end `anyHit`: nothing more happens.
+  /// Returns from the function if the call before it has ended `anyHit`.
   void leaveIfAnswered();
   bool mayEndAnyHit() const;
 };

@@ -194,7 +194,7 @@ Code Lvalues::bufferElement(const typed::IndexExpr &expr, bool storeIndices) {
   return callMember(buffer, "at", std::move(codes));
 }
 
-/// Of a buffer, or of one of its dimensions.
+/// The length of a buffer, or of one of its dimensions.
 Code Lvalues::lengthOf(const Code &buffer, std::optional<std::size_t> dimension) {
   std::vector<Code> arguments;
   if (dimension)

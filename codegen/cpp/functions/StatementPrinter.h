@@ -9,7 +9,7 @@ class StatementPrinter : FunctionPart {
 public:
   using FunctionPart::FunctionPart;
 
-  /// Those of the function's body.
+  /// The statements of the function's body.
   Statements body();
   /// What an expression does, as statements; its value is not used.
   Statements expressionStatement(const typed::Expr &expr);

@@ -44,7 +44,7 @@ public:
   /// A new name for the number of a state.
   std::string stepName(const typed::Class &definition, const std::string &function);
 
-  /// Of a declaration in the IR; null: there is no such method.
+  /// The method that a declaration in the IR stands for; null: there is none.
   const CalledMethod *calledMethod(const std::string &symbol) const;
   const CalledMethod *calledMethod(const typed::Class &definition,
                                    const typed::Function &method) const;
@@ -63,7 +63,7 @@ private:
   const typed::Module &module;
   const Names &names;
   std::set<std::string> fileTypes, stepNames;
-  /// By class, name of the method in the IR, and whether it has a frame of its own.
+  /// The states by class, name of the method in the IR, and whether it has a frame of its own.
   std::map<std::tuple<std::string, std::string, bool>, std::vector<mlir::func::FuncOp>> states;
 };
 

@@ -42,7 +42,7 @@ public:
 
   /// The frame and the states of a method, as members of a class.
   Declarations of(const typed::Class &definition, const typed::Function &method);
-  /// Of methods of bases whose states are others in this class.
+  /// The frames and states of inherited methods whose states differ in this class.
   Declarations inherited(const typed::Class &definition);
 
   StateEntries entries;

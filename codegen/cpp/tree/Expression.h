@@ -170,7 +170,7 @@ Code remark(std::string text, Code inside);
 Binding bindingOf(const Code &code);
 /// Are both the same expression, parentheses aside?
 bool same(const Code &a, const Code &b);
-/// Without the author's parentheses around it.
+/// The expression without the author's parentheses around it.
 Code bare(Code code);
 bool isName(const Code &code);
 /// A number that is 0, `false`, `{}`, or a vector or color made of one zero.

@@ -10,7 +10,7 @@
 
 namespace rtsl::cpp {
 
-/// In parentheses if it binds less tightly than `atLeast`.
+/// The text of an expression, in parentheses if it binds less tightly than `atLeast`.
 std::string print(const Code &code, Binding atLeast = Binding::Comma);
 std::string print(const std::vector<Code> &codes); // a, b, c
 std::string print(const Statement &statement);

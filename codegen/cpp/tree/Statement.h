@@ -100,7 +100,7 @@ void append(Statements &statements, const Statements &more);
 
 /// If the statement is `name = value;`, the name; otherwise empty.
 std::string assignedName(const Statement &statement);
-/// Of an assignment, without a compound operator: `x op y` for `x op= y`.
+/// The value that an assignment assigns, without a compound operator: `x op y` for `x op= y`.
 Code assignedValue(const Statement &statement);
 /// The variable, if the statement assigns all of a known variable; otherwise null.
 const void *assignedVariable(const Statement &statement);

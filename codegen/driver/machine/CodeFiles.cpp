@@ -48,7 +48,8 @@ bool isOfUserAlone(const std::string &folder) {
          status.st_uid == ::geteuid() && (status.st_mode & (S_IWGRP | S_IWOTH)) == 0;
 }
 
-/// Which build of the compiler runs: another one may make other code of the same module.
+/// Identifies the build of the compiler that runs: another one may make other code of the same
+/// module.
 std::string runningProgram() {
   struct stat status{};
   ::stat("/proc/self/exe", &status);

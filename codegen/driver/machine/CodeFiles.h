@@ -21,10 +21,10 @@ struct ObjectCode;
 /// May be used by several threads and processes at once.
 class CodeFiles {
 public:
-  /// Those in the folder that the environment variable RTSL_CACHE names, or else in `rtslc` in the
-  /// folder of the user's caches (XDG Base Directory Specification). Null if RTSL_CACHE is `off` or
-  /// empty, if there is no such folder and it cannot be made, and if others may write to it: its
-  /// code is executed.
+  /// The files in the folder that the environment variable RTSL_CACHE names, or else in `rtslc` in
+  /// the folder of the user's caches (XDG Base Directory Specification). Null if RTSL_CACHE is
+  /// `off` or empty, if there is no such folder and it cannot be made, and if others may write to
+  /// it: its code is executed.
   static std::unique_ptr<CodeFiles> open();
 
   /// Removes what was not used for longest if there is too much; looks every 20 minutes.

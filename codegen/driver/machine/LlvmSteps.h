@@ -68,8 +68,8 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
 const std::vector<std::string> &
 hostEntries(std::optional<Organisation> organisation = std::nullopt);
 
-/// Before linking with the device code of an organisation that keeps samples in records, and after
-/// it.
+/// To be called before linking with the device code of an organisation that keeps samples in
+/// records, and after it.
 void beginRecords(LlvmCode &code, const runtime::Program &program);
 void endRecords(LlvmCode &code, const runtime::Program &program);
 

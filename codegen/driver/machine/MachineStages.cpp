@@ -82,7 +82,8 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   return toPtx(std::move(code));
 }
 
-/// For a scene: one kernel, `rtsl_render`, that takes an RtslJob (runtime/device/ray/Abi.h).
+/// PTX. For a scene it is one kernel, `rtsl_render`, that takes an RtslJob
+/// (runtime/device/ray/Abi.h).
 static bool reachPtx(Compilation &compilation) {
   if (!reachGpuMachine(compilation))
     return false;

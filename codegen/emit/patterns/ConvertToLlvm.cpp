@@ -93,7 +93,7 @@ void notePayloads(mlir::ModuleOp module) {
     ir::attr::holdsPayloads.set(module);
 }
 
-/// Before the class declarations are erased.
+/// Records the offsets of members before the class declarations are erased.
 void noteMemberOffsets(mlir::ModuleOp module) {
   const ir::ClassTable classes(module);
   mlir::Builder builder(module.getContext());

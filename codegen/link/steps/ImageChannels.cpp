@@ -96,7 +96,8 @@ std::uint32_t ofReference(mlir::Value reference) {
   return read;
 }
 
-/// Of what an address leads to: a reference to an image, or an array or a buffer of them.
+/// The channels read through an address of: a reference to an image, or an array or a buffer of
+/// them.
 std::uint32_t ofAddress(mlir::Value address) {
   std::uint32_t read = 0;
   for (mlir::Operation *user : address.getUsers())

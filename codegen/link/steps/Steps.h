@@ -230,9 +230,9 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
 /// What is read of the images that members hold, as MemberInfo::imageChannels: by the class of the
 /// object as the reader knows it, which may be of a derived class, and the member's name.
 using ImageChannels = std::map<std::pair<std::string, std::string>, std::uint32_t>;
-/// Before resolveSlots.
+/// To be called before resolveSlots.
 ImageChannels findImageChannels(const LinkContext &context);
-/// Of the objects of a class.
+/// The channels read of the images that a member of a class holds.
 std::uint32_t channelsOf(const ImageChannels &channels, const typed::Class &info,
                          const std::string &member);
 

@@ -113,7 +113,7 @@ void Recorder::planned(llvm::ArrayRef<SuspendPlan> plans) {
   }
 }
 
-/// Which of the values that plain liveness would save are recomputed, and at what cost.
+/// Records which of the values that plain liveness would save are recomputed, and at what cost.
 void Recorder::explainPlan(const SuspendPlan &plan, TraceReport &trace) {
   trace.steps.push_back(stepBeforeSplit("rematerialise", plan));
   llvm::StringSet<> live;

@@ -14,7 +14,7 @@ struct ElementaryErrors {
 /// Correctly rounded. Used for double too: values in memory are single in both, and both are to
 /// trace the same rays.
 constexpr ElementaryErrors strictErrors{0x1p-24, false};
-/// With --fp=fast.
+/// The errors with --fp=fast.
 constexpr ElementaryErrors fastErrors{0x1p-21, true};
 
 } // namespace rtsl

@@ -128,7 +128,7 @@ bool Builder::putEdge(Block *target, Block *at, const Context &context) {
                                             : putJump(target, at, context);
 }
 
-/// After a loop that is never left.
+/// Ends a region after a loop that is never left.
 bool Builder::putUnreachable(Block *at) {
   llvm::SmallVector<Value> zeros;
   builder.setInsertionPointToEnd(at);

@@ -38,7 +38,7 @@ struct BinaryTree {
 /// does not depend on their number.
 BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads);
 
-/// Of a tree of so many boxes: subtrees of up to this many are left to one thread each, whatever
+/// In a tree of so many boxes, subtrees of up to this size are left to one thread each, whatever
 /// the number of threads.
 inline std::size_t largestForOneThread(std::size_t boxes) {
   return std::max<std::size_t>(4096, boxes / 256);

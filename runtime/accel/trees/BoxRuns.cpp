@@ -296,8 +296,8 @@ private:
     return middles;
   }
 
-  /// Of `count` cells from this one; each half of them is a group of its own if together they are
-  /// too large.
+  /// Adds the groups of `count` cells from this one on; each half of them is a group of its own if
+  /// together they are too large.
   static void addGroups(const std::vector<std::uint32_t> &starts, std::size_t cell,
                         std::size_t count, std::size_t offset, std::vector<Group> &groups) {
     const std::size_t first = starts[cell], end = starts[cell + count];

@@ -155,7 +155,7 @@ private:
     device.run(step, address, count, a, b, c);
   }
 
-  /// In place of each of so many sums: that of all before it.
+  /// Replaces each of so many numbers by the sum of all before it.
   void sumBefore(std::uint32_t elements) {
     const std::uint32_t tiles = tileCount(elements), lanes = device.lanes();
     run(BuildStep::SumTile, tiles * lanes, elements);
@@ -169,7 +169,7 @@ private:
     return sum;
   }
 
-  /// By the surface area heuristic.
+  /// The cost by the surface area heuristic.
   float cost() {
     const std::uint32_t root = build.count - 1; // of the nodes that are no leaves
     if (root == 0)

@@ -46,7 +46,7 @@ float probabilityOf(uint32_t number, ChanceOf chanceOf) {
 inline auto chancesOfEmitters(const RtslLaunch &launch) {
   return [emitters = launch.emitters](uint32_t i) { return emitters[i].chances; };
 }
-/// Those of the triangles of a mesh, or of the primitives of an object with several.
+/// The chances of the triangles of a mesh, or of the primitives of an object with several.
 inline auto chancesOfParts(const RtslLaunch &launch, const RtslEmitter &emitter) {
   return [chances = launch.partChances + emitter.firstPart](uint32_t i) { return chances[i]; };
 }

@@ -60,7 +60,7 @@ __attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob *job) {
 
 #else
 
-/// Of a block of one lane on a CPU.
+/// The memory of a block of one lane on a CPU.
 static device::BlockMemory sizeOfBlock(uint32_t maxDepth, uint32_t referenceChain) {
   constexpr uint32_t slots = 64;
   return {slots, rtsl_wave_steps(nullptr), rtsl_record_groups(),

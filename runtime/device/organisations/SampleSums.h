@@ -176,9 +176,9 @@ inline void addSamplesOfPixel(const RtslJob &job, uint32_t place, uint32_t count
     job.sums.taken[pixel] = end;
 }
 
-/// After all lanes of the job: adds the samples that were taken to the sums, and computes the means
-/// if these are wanted; without sums, of the slice alone. Each of `lanes` lanes adds those of its
-/// share of the pixels.
+/// To be run after all lanes of the job: adds the samples that were taken to the sums, and computes
+/// the means if these are wanted; without sums, of the slice alone. Each of `lanes` lanes adds
+/// those of its share of the pixels.
 inline void addSamples(const RtslJob &job, uint32_t lane, uint32_t lanes) {
   const uint64_t next = job.status->nextSample, all = samplesOfSlice(job);
   const auto taken = uint32_t(next < all ? next : all);

@@ -68,7 +68,7 @@ typedef struct RtslSelection {
 typedef struct RtslTransform {
   float linear[9], translation[3];
   double inverse[9]; // of `linear`; with squaredScale > 0 of what `linear` rounds
-  /// Of a rotation with a uniform scale s, at all times: s squared; `inverse` is the transpose of
+  /// For a rotation with a uniform scale s, at all times: s squared; `inverse` is the transpose of
   /// the linear part divided by it. 1: it is rigid. Negative: it scales alike along all axes, and
   /// does not turn. 0: any other.
   double squaredScale;

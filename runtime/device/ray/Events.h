@@ -54,7 +54,7 @@ inline void exceptionColor(uint32_t exception, float *color, uint32_t components
   color[2] = exception == RTSL_EXCEPTION_INDEX ? 1.0f : 0.0f;
 }
 
-/// At the end of a sample whose color is in SampleColor.
+/// To be called at the end of a sample whose color is in SampleColor.
 inline void endEvents(RtslState &state) {
   if (!hasExceptions(state) || !isAbandoned(state))
     return;

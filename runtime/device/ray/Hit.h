@@ -50,8 +50,8 @@ inline bool reportHit(RtslState &state, float t) {
   return true;
 }
 
-/// Of a ray towards a point at distance 1, such as one of a light: a hit before this distance hides
-/// the point.
+/// For a ray towards a point at distance 1, such as one towards a light: a hit before this distance
+/// hides the point.
 constexpr float hiddenBefore = 1 - 0x1p-10f;
 
 /// How rtsl_traverse searches for such a ray, beside RTSL_FIRST_HIT and the others: for the nearest
@@ -70,13 +70,14 @@ inline bool endsWithHit(const RtslState &state, uint32_t how) {
   return how & RTSL_FIRST_HIT || (how & towardsPoint && isPointHidden(state));
 }
 
-/// Before a traversal: nothing is hit up to HitDistance, the ray's end.
+/// To be called before a traversal: nothing is hit yet up to HitDistance, the ray's end.
 inline void beginSearch(RtslState &state) {
   state.nearest = state.HitDistance;
   state.areAttributesLost = 0;
 }
 
-/// After it: HitDistance is that of the hit, if there is one. Returns RTSL_HIT or RTSL_MISS.
+/// To be called after it: HitDistance becomes that of the hit, if there is one. Returns RTSL_HIT or
+/// RTSL_MISS.
 inline uint32_t endSearch(RtslState &state) {
   if (state.instance == RTSL_NO_HIT)
     return RTSL_MISS;

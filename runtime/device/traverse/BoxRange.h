@@ -24,7 +24,7 @@ struct Range {
   float near, far;
 
   bool isEmpty() const { return !(near <= far * bvhSlack); }
-  /// By rangeShare of its distances on both sides: where hits in the box may be.
+  /// The range enlarged on both sides by rangeShare of its distances: where hits in the box may be.
   Range widened() const { return {near * (1.0f - rangeShare), far * (1.0f + rangeShare)}; }
 };
 

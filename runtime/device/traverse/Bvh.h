@@ -100,7 +100,7 @@ struct GridAxis {
   float leaves(uint32_t planes, int i) const { return fused(float(byteOf(planes, i)), step, far); }
 };
 
-/// For positions of children in sets: the slots are flipped so that nearer ones come later.
+/// The bits with which slots are flipped in sets of children, so that nearer ones come later.
 inline uint32_t flippedSlots(const TriangleRay &ray) {
   return (ray.inverse.x < 0 ? 0u : 1u) | (ray.inverse.y < 0 ? 0u : 2u) |
          (ray.inverse.z < 0 ? 0u : 4u);
@@ -171,9 +171,10 @@ inline uint32_t enteredChildren(const NodeWords &node, const RtslBvhNode &inMemo
   return entered;
 }
 
-/// Of a traversal: bits 31 to 24 of `bits` are children of a node that are to be visited, the
-/// largest first, bits 7 to 0 are the slots of all its children that are nodes, and `first` is the
-/// first of these in memory. If bits 31 to 24 are 0, the others are items from `first` on.
+/// A part of what a traversal has still to visit: bits 31 to 24 of `bits` are children of a node
+/// that are to be visited, the largest first, bits 7 to 0 are the slots of all its children that
+/// are nodes, and `first` is the first of these in memory. If bits 31 to 24 are 0, the others are
+/// items from `first` on.
 struct alignas(8) Open {
   uint32_t first, bits;
 

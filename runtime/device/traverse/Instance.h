@@ -126,7 +126,7 @@ inline Vec3 vectorToWorld(const RtslTransform &transform, Vec3 v) {
           rowToWorld(transform, 2, v, 0)};
 }
 
-/// Of a transform without turns. Translations are not -0, so no sum is.
+/// A vector by a transform without turns. Translations are not -0, so no sum is.
 inline Vec3 scaledToWorld(const RtslTransform &transform, Vec3 v, Vec3 offset) {
   const float *m = transform.linear;
   return {float(__builtin_fma(double(m[0]), double(v.x), double(offset.x))),
@@ -134,7 +134,7 @@ inline Vec3 scaledToWorld(const RtslTransform &transform, Vec3 v, Vec3 offset) {
           float(__builtin_fma(double(m[8]), double(v.z), double(offset.z)))};
 }
 
-/// Of one that is a rotation with a uniform scale, or a scale alone.
+/// A vector by a transform that is a rotation with a uniform scale, or a scale alone.
 inline Vec3 similarToWorld(const RtslLaunch &launch, const RtslTransform &transform, Vec3 v,
                            Vec3 offset) {
   if (!hasScale(launch))

@@ -58,7 +58,7 @@ struct TriangleVertices {
   Vec3 v0, v1, v2;
 };
 
-/// Of a mesh that does not move, or at its first key.
+/// The vertices in a mesh that does not move, or at its first key.
 inline TriangleVertices triangleVertices(const RtslMesh &mesh, uint32_t triangle) {
   const uint32_t *index = mesh.indices + 3 * size_t(triangle);
   return {load(mesh.positions + 3 * size_t(index[0])), load(mesh.positions + 3 * size_t(index[1])),
@@ -210,8 +210,8 @@ bool visitInItsSpace(const RtslState &state, const TriangleRay &ray, const RtslL
          visit(item, entered);
 }
 
-/// After a search: `intersect` stores the attributes of its hit, whether it wins or not. If they
-/// are not those of the winning hit, its `intersect` runs again.
+/// To be called after a search: `intersect` stores the attributes of its hit, whether it wins or
+/// not. If they are not those of the winning hit, its `intersect` runs again.
 template <typename Intersect>
 void findLostAttributes(RtslState &state, const TriangleRay &ray, Intersect intersect) {
   if (!(rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES) || !state.areAttributesLost ||

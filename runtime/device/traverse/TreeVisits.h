@@ -9,7 +9,7 @@
 
 namespace rtsl::device {
 
-/// Of one search below one root. Destroying it adds to RtslStatus::visits.
+/// Counts the visits of one search below one root. Destroying it adds them to RtslStatus::visits.
 class TreeVisits {
 public:
   TreeVisits(const RtslLaunch &launch, uint32_t root) : launch(launch), root(root) {}

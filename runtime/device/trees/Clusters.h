@@ -43,8 +43,8 @@ inline void makeLeaf(const TreeBuild &build, uint32_t i) {
   build.heights[i] = 0;
 }
 
-/// Of several neighbours that are equally near, the one whose number differs in the lowest bits: so
-/// in a row of equal boxes all find each other in pairs. In any row, some do.
+/// Of several neighbours that are equally near, the result is the one whose number differs in the
+/// lowest bits: so in a row of equal boxes all find each other in pairs. In any row, some do.
 inline void findNearest(const TreeBuild &build, uint32_t i, Round round) {
   if (round.isInPairs) {
     build.nearest[i] = (i ^ 1) < round.clusters ? i ^ 1 : i;
@@ -79,8 +79,8 @@ inline bool isJoined(const TreeBuild &build, uint32_t i) {
   return build.nearest[i] != i && build.nearest[build.nearest[i]] == i;
 }
 
-/// Which clusters are left: 1 in the lower half of the sum. The first of two that are joined makes
-/// a node: 1 in the upper half.
+/// Counts the clusters that are left: each is 1 in the lower half of the sum. The first of two that
+/// are joined makes a node: 1 in the upper half.
 inline void countCluster(const TreeBuild &build, uint32_t i) {
   const bool isSecond = isJoined(build, i) && build.nearest[i] < i;
   build.sums[i] = isSecond ? 0 : isJoined(build, i) ? uint64_t(1) << 32 | 1 : 1;

@@ -10,7 +10,7 @@ namespace rtsl::device::build {
 /// No path from the root of the binary tree is longer, and so none of the wide one.
 constexpr uint32_t mostHeight = 63;
 
-/// Of the place of an item on the curve.
+/// Bits of the place of an item on the curve, along each axis, and the passes to sort by them.
 constexpr uint32_t bitsOfAxis = 20, sortPasses = 3 * bitsOfAxis / digitBits;
 static_assert(3 * bitsOfAxis % digitBits == 0);
 

@@ -42,7 +42,7 @@ inline void startWide(const TreeBuild &build, uint32_t) {
   build.wide[0].node = 2 * build.count - 2;
 }
 
-/// Of node `first` + i: the sizes of its children.
+/// Sums the sizes of the children of node `first` + i.
 inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t first) {
   const Children children = childrenOfWide(build, build.wide[first + i].node);
   uint64_t sum = 0;
@@ -51,7 +51,8 @@ inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t first) {
   build.sums[i] = sum;
 }
 
-/// Of the same node: where its children are. Those of the level begin at these.
+/// Sets where the children of the same node are; the children of the whole level begin at
+/// `firstNode` and `firstItem`.
 inline void placeChildren(const TreeBuild &build, uint32_t i, uint32_t first, uint32_t firstNode,
                           uint32_t firstItem) {
   WideNode &wide = build.wide[first + i];

@@ -12,7 +12,7 @@
 
 namespace rtsl::runtime {
 
-/// One file.
+/// Reads one file.
 class Importer {
 public:
   virtual ~Importer() = default;

@@ -26,7 +26,7 @@ struct PixelSums {
 
   static constexpr std::uint32_t allClosed = 3;
 
-  /// Without samples. Throws OutOfMemory.
+  /// Sums without samples. Throws OutOfMemory.
   static PixelSums make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive = false);
 
   /// A copy of those of `count` pixels from `first` on. Throws OutOfMemory.

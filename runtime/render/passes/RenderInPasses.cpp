@@ -101,7 +101,7 @@ bool Backend::runPass(const PassOptions &passes, Clock::time_point pause, Render
   return isDone;
 }
 
-/// After a pass of a rendering that ends by its error.
+/// Measures the error after a pass of a rendering that ends by its error.
 void Backend::measure(const PassOptions &passes, PartialRendering &rendering) {
   fetchSums();
   if (!options.isAdaptive) {

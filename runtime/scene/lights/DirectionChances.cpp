@@ -7,7 +7,7 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// By texel, from 0 on.
+/// The luminance of each texel, from 0 on.
 std::vector<double> luminances(const Texels &texels) {
   const ChannelCodec codec(texels.format);
   const std::size_t channelBytes = bytesOf(texels.format);

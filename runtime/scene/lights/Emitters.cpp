@@ -102,7 +102,7 @@ private:
     return emission;
   }
 
-  /// At points of triangles spread over its list.
+  /// Looks at points of triangles that are spread over the mesh's list.
   Look lookAtMesh(std::uint32_t number, std::uint32_t triangles) const {
     Look look;
     Vector unused;
@@ -192,7 +192,7 @@ Vector inWorld(const RtslTransform &transform, double x, double y, double z) {
   return point;
 }
 
-/// With an empty box and no normal.
+/// A lamp with an empty box and no normal.
 Lamp emptyLamp(std::uint32_t emitter, std::uint32_t part, double power) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   return {{inf, inf, inf}, {-inf, -inf, -inf}, {}, false, power, emitter, part};
@@ -215,7 +215,7 @@ Lamp wholeLamp(const RtslLaunch &launch, const RtslInstance &instance, std::uint
   return lamp;
 }
 
-/// One triangle of a mesh, or primitive of an object with several, that does not move.
+/// The lamp of one triangle of a mesh, or primitive of an object with several, that does not move.
 Lamp partLamp(const RtslLaunch &launch, const RtslInstance &instance, std::uint32_t emitter,
               std::uint32_t part, double power) {
   Lamp lamp = emptyLamp(emitter, part, power);

@@ -66,7 +66,7 @@ struct Set {
   }
 };
 
-/// Of a cosine, up to the rounding of normals: the cone becomes wider, not narrower.
+/// A cosine that is lower by the rounding of normals: the cone becomes wider, not narrower.
 float roundedDown(double cosine) {
   constexpr double rounding = 0x1p-40;
   const auto rounded = float(cosine);

@@ -17,7 +17,7 @@ namespace {
 
 using device::Vec3;
 
-/// Of each object, from both sides of a surface.
+/// Directions that are drawn for each object, from both sides of a surface.
 constexpr unsigned directions = 512;
 
 /// How often a method wrote what it should not.
@@ -31,7 +31,7 @@ struct Faults {
   }
 };
 
-/// By class and method.
+/// The faults by class and method.
 using FaultsByMethod = std::map<std::pair<std::string, std::string>, Faults>;
 
 /// A hit of a ray from a random direction with a surface in the plane z = 0.
@@ -88,7 +88,7 @@ void draw(const runtime::Scene &scene, RtslRef material, FaultsByMethod &found) 
   }
 }
 
-/// Of all materials, in the scene's program with SamplingSlots.def.
+/// Draws directions of all materials, in the scene's program with SamplingSlots.def.
 FaultsByMethod drawAll(const runtime::Scene &scene) {
   const RtslLaunch launch = scene.launch();
   std::set<RtslRef> materials;

@@ -30,7 +30,8 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
 std::vector<std::string> withFiles(const scene::SceneDescription &description,
                                    std::vector<std::string> filesRead);
 
-/// Which classes the scene has objects of, and which materials meet which primitives.
+/// The request for the linker: which classes the scene has objects of, and which materials meet
+/// which primitives.
 LinkRequest linkRequest(const scene::SceneDescription &description);
 
 } // namespace rtsl::tool

@@ -8,7 +8,7 @@
 
 namespace rtsl::tool {
 
-/// Of a thread of a kernel.
+/// What a thread of a kernel takes.
 struct KernelFigures {
   int registers = 0;
   int localBytes = 0;                         // arrays, and registers that are spilled
@@ -26,7 +26,7 @@ public:
 
   /// What assembled it, for people; empty if there is neither a GPU nor `ptxas`.
   const std::string &assembler() const { return name; }
-  /// Of the names, in their order; empty without an assembler.
+  /// The figures of the kernels, in the order of the names; empty without an assembler.
   const std::vector<KernelFigures> &kernels() const { return figures; }
 
 private:

@@ -40,7 +40,8 @@ public:
   void write(const runtime::PartialRendering &rendering, bool isLast);
   double seconds() const { return options.seconds; }
 
-  /// After the last write: it is an error if that failed, and a warning if others did.
+  /// To be called after the last write: reports an error if that failed, and a warning if others
+  /// did.
   void report(Messages &messages) const;
 
 private:

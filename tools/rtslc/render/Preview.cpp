@@ -368,7 +368,7 @@ private:
     return object;
   }
 
-  /// Of a class of the library.
+  /// The name of a class of the library.
   std::string nameInScene(const std::string &name) const {
     return taken.count(name) ? SourceLoader::renamed(name) : name;
   }

@@ -135,7 +135,7 @@ private:
     const std::unique_ptr<ScenePicture> picture;
   };
 
-  /// Before the picture is rendered, for their programs may have mistakes.
+  /// Compiles the views before the picture is rendered, because their programs may have mistakes.
   bool compileViews() {
     for (const std::string &name : options.aovs) {
       RenderCommandOptions ofView = options;
@@ -159,7 +159,7 @@ private:
     return true;
   }
 
-  /// Those that are complete.
+  /// Renders the views; returns those that are complete.
   std::vector<runtime::Layer> renderViews() {
     std::vector<runtime::Layer> layers;
     std::string missing;

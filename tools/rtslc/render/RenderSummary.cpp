@@ -42,7 +42,7 @@ double samplesOfPixel(const PictureSummary &summary) {
   return double(summary.statistics.samples) / double(windowOf(summary.render).pixels());
 }
 
-/// Of RenderStatistics::steps.
+/// The name of a step, by its place in RenderStatistics::steps.
 std::string nameOfStep(const PictureSummary &summary, std::size_t place) {
   return place == 0 ? "traversal" : place == 1 ? "begin samples" : summary.stateNames.at(place - 2);
 }

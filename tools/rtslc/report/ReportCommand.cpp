@@ -183,7 +183,7 @@ struct Configuration {
   }
 };
 
-/// Those that --only leaves, the usual one first; throws if it leaves none.
+/// The configurations that --only leaves, the usual one first; throws if it leaves none.
 std::vector<Configuration> configurationsFor(const ReportOptions &options) {
   const std::pair<FloatingPoint, const char *> precisions[] = {{FloatingPoint::Strict, "strict"},
                                                                {FloatingPoint::Fast, "fast"}};

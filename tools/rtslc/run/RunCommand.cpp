@@ -56,7 +56,7 @@ struct Launch {
   std::vector<runtime::OutputBuffer> outputs;
 };
 
-/// Of the launch alone: by the clock of the GPU, if that runs it.
+/// The seconds of the launch alone: by the clock of the GPU, if that runs it.
 double secondsOf(const runtime::RenderStatistics &statistics) {
   return statistics.kernelSeconds > 0 ? statistics.kernelSeconds : statistics.renderSeconds;
 }
@@ -269,7 +269,7 @@ private:
   std::vector<std::unique_ptr<runtime::Scene>> scenes; // which the targets outlive
 };
 
-/// Of each dimension; two unless the launch has three.
+/// The size of each dimension; two unless the launch has three.
 std::vector<std::uint32_t> sizeOf(const runtime::RenderOptions &render) {
   std::vector<std::uint32_t> sizes{render.width, render.height / render.slices};
   if (render.slices > 1)

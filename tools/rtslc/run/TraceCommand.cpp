@@ -34,7 +34,7 @@ std::string extensionOf(const std::string &file) {
   return std::filesystem::path(file).extension().string();
 }
 
-/// Of the numbers in the file, or in the chosen columns.
+/// The shape of the numbers in the file, or in the chosen columns.
 std::vector<std::size_t> shapeOf(const TraceOptions &options) {
   const std::string &file = options.rays, extension = extensionOf(file);
   if (extension == ".csv")

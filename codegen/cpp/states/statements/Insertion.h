@@ -7,7 +7,7 @@
 
 namespace rtsl::cpp {
 
-/// One after the other.
+/// Components of a vector that are replaced one after the other.
 struct Insertion {
   struct Part {
     std::optional<std::size_t> component; // nothing: the one at `index`

@@ -27,7 +27,7 @@ struct StatePrinter {
 
   /// The statements of the state.
   Statements body(mlir::func::FuncOp function);
-  /// Those of one operation.
+  /// Appends the statements of one operation.
   void print(mlir::Operation &op, Statements &out);
   void unsupported(mlir::Operation &op) { method.unsupported(op); }
 

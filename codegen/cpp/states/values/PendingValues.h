@@ -40,9 +40,9 @@ public:
 
   /// Evaluates pending values that accesses would change, or whose evaluation would change these.
   void flush(const ir::MemoryAccesses &accesses, Statements &out);
-  /// Before a construct with regions: values that an inner statement would change are not pending
-  /// in another region, and a value that is used once is not evaluated in each iteration of a
-  /// loop.
+  /// To be called before a construct with regions: values that an inner statement would change are
+  /// not pending in another region, and a value that is used once is not evaluated in each
+  /// iteration of a loop.
   void flushBefore(mlir::Operation &op, Statements &out);
 
   ir::MemoryAccesses consumed; // by the values used for the operation that is being printed

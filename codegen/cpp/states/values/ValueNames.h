@@ -21,7 +21,7 @@ public:
   ValueNames(Context &context, const SourceTable &source, const Machine &machine,
              FunctionPrinter &functions);
 
-  /// One that nothing else in the state has.
+  /// A name that nothing else in the state has.
   std::string fresh(const std::string &wanted);
   const std::string &of(ir::VarOp variable);
   /// nameFor(), or the name of its field in the frame.

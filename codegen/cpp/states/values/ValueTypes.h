@@ -8,19 +8,19 @@
 
 namespace rtsl::cpp {
 
-/// Of the values in the states of one method.
+/// Finds the types of the values in the states of one method.
 class ValueTypes {
 public:
   ValueTypes(Context &context, const SourceTable &source, const Machine &machine)
       : context(context), source(source), machine(machine) {}
 
   const Type *vec3();
-  /// Null: the type is not known.
+  /// The type of a value; null: it is not known.
   const Type *of(mlir::Value value);
   const Type *ofVariable(ir::VarOp variable);
-  /// Of a variable that stays whole, or of a part of one; null: it is not known.
+  /// The type of a variable that stays whole, or of a part of one; null: it is not known.
   const Type *ofMemory(mlir::Value address);
-  /// Of a value in the frame by its name there, where all that is saved are constants.
+  /// The type of a value in the frame by its name there, where only constants are saved to it.
   const Type *ofSaved(const std::string &key, mlir::Type type);
 
 private:

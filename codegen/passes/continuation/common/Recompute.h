@@ -28,7 +28,7 @@ struct StateWrites {
   bool add(const StateWrites &other);
 };
 
-/// Which state variables the functions of a module may write, including callees.
+/// Finds which state variables the functions of a module may write, including their callees.
 class WriteSummary {
 public:
   explicit WriteSummary(mlir::ModuleOp module);

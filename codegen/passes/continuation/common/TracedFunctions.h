@@ -20,7 +20,7 @@ mlir::Value objectOf(FuncOp function);
 /// The functions of the module that trace, or that call one that does.
 llvm::SmallVector<FuncOp> tracingFunctions(mlir::ModuleOp module);
 
-/// Those of them that are recursive.
+/// The recursive ones among the tracing functions.
 llvm::SmallVector<FuncOp> functionsThatMayCallThemselves(mlir::ModuleOp module);
 
 /// The slots whose entry points the machine starts (runtime/device/engines/Machine.h): these become

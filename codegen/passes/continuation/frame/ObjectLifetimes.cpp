@@ -72,7 +72,7 @@ BitVector Finder::atEnd(mlir::Block &block) {
   return live;
 }
 
-/// Which objects are live at the beginning of each block; iterates until nothing changes.
+/// Finds which objects are live at the beginning of each block; iterates until nothing changes.
 void Finder::findLive() {
   llvm::SmallVector<mlir::Block *> order(llvm::post_order(&function.getBody().front()));
   bool changed = true;
@@ -94,8 +94,8 @@ void Finder::findLive() {
   }
 }
 
-/// Which objects are live while another is accessed; a lifetime begins at the first access, or with
-/// the function.
+/// Finds which objects are live while another is accessed; a lifetime begins at the first access,
+/// or with the function.
 void Finder::walkBack(mlir::Block &block) {
   BitVector live = atEnd(block);
   const auto *suspend = llvm::find(suspends, llvm::dyn_cast<ir::SuspendOp>(block.back()));

@@ -19,7 +19,7 @@ struct ObjectLifetime {
   llvm::BitVector objects;  // that are live while this one is
 };
 
-/// In the order of the objects; `suspends` are those of the function.
+/// The lifetimes in the order of the objects; `suspends` are those of the function.
 std::vector<ObjectLifetime> lifetimesOfObjects(FuncOp function,
                                                llvm::ArrayRef<ir::SuspendOp> suspends);
 

@@ -43,7 +43,7 @@ struct RematerialiseOptions {
 /// with a message if a value can neither be saved nor recomputed.
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
 planContinuations(FuncOp function, const RematerialiseOptions &options);
-/// With a summary, which takes a walk over the module to compute.
+/// The same with a given summary, which takes a walk over the module to compute.
 mlir::FailureOr<llvm::SmallVector<SuspendPlan>>
 planContinuations(FuncOp function, const RematerialiseOptions &options,
                   const WriteSummary &summary);

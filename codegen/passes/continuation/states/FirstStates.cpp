@@ -71,7 +71,7 @@ public:
   }
 
 private:
-  /// Those that are reached before a number is known.
+  /// Visits the blocks that are reached before the number is known.
   void visit(mlir::Block *block) {
     if (!reached.insert(block).second)
       return;

@@ -22,7 +22,7 @@ struct KeptState {
   std::uint32_t words(std::uint32_t colorComponents) const;
 };
 
-/// For a module whose functions have been split and not numbered yet.
+/// Finds it for a module whose functions have been split but not numbered yet.
 KeptState findKeptState(mlir::ModuleOp module);
 
 /// Components of the colors of a module; 3 if it uses no color.

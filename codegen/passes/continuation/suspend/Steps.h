@@ -24,7 +24,7 @@ Endings endingsOf(FuncOp function);
 
 /// InsertSuspends.cpp: ends blocks at their traces.
 void insertSuspends(FuncOp function);
-/// With a summary, which takes a walk over the module to compute.
+/// The same with a given summary, which takes a walk over the module to compute.
 void insertSuspends(FuncOp function, const WriteSummary &summary);
 
 /// TailTraces.cpp: ends a method at a trace that nothing follows; its ray replaces this one.
