@@ -46,7 +46,7 @@ public:
               return channelsOfImages(className, member);
             }) {}
 
-  /// All of a scene.
+  /// Builds all of a scene.
   void build() {
     attempt([&] {
       if (description.camera)

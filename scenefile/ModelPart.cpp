@@ -48,7 +48,7 @@ SceneDescription readWith(const char *key, JsonValue value, const ModelPlay &pla
   return readPart(std::make_shared<JsonValue>(std::move(root)), std::move(part));
 }
 
-/// As `"matrix"` of a scene file.
+/// A transform as `"matrix"` of a scene file.
 JsonValue matrixOf(const runtime::Transform &transform) {
   std::vector<double> all;
   for (std::size_t column = 0; column < 4; ++column) {

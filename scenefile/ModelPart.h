@@ -14,7 +14,8 @@
 
 namespace rtsl::scene {
 
-/// As `animation` and `fps` beside a model, `frame` of a scene, and whether it has a `shutter`.
+/// What a model shows: as `animation` and `fps` beside a model, `frame` of a scene, and whether it
+/// has a `shutter`.
 struct ModelPlay {
   std::string animation;      // empty: the first one
   double framesPerSecond = 0; // 0: the default
@@ -28,7 +29,7 @@ struct ModelPlay {
 SceneDescription modelPart(const std::string &path, const ModelPlay &play,
                            const InstanceDescription &above, std::shared_ptr<ModelFiles> models);
 
-/// Its camera of this name (empty: the first), with a transform as beside `"model"`.
+/// The model's camera of this name (empty: the first), with a transform as beside `"model"`.
 SceneDescription modelCameraPart(const std::string &path, const std::string &name,
                                  const ModelPlay &play, const runtime::Transform &transform,
                                  std::shared_ptr<ModelFiles> models);

@@ -275,7 +275,7 @@ struct PartInstance {
   runtime::MovingTransform inPart; // as InstanceDescription::inPart
 };
 
-/// What a part has become.
+/// What addPart() has added for a part.
 struct AddedPart {
   RtslRef camera = 0;
   std::vector<PartInstance> instances;

@@ -78,7 +78,7 @@ private:
     add(selector.object, part);
   }
 
-  /// What variables refer to is used, whatever takes them.
+  /// Objects that variables refer to count as used, whatever takes the variables.
   void variables(const VariableScope &scope) {
     for (const auto &[name, value] : scope.variables)
       add(*value.second, begin(Part::Role::Root, "variable " + name, value.first));

@@ -41,8 +41,9 @@ struct Stage {
 
   std::string_view name; // of --emit
   Needs needs;
-  /// Null: the stage is also available for a scene's linked program. From `split` on that is the
-  /// program for GPUs: without recursion, with the traversal of runtime/device.
+  /// The reason why the stage is not available for a scene's linked program; null if it is. From
+  /// `split` on that program is the one for GPUs: without recursion, with the traversal of
+  /// runtime/device.
   const char *whyNoScene;
   bool keepsEvents; // supports prints and exceptions without a scene, too
   bool hasDouble;   // arithmetic may be in double
@@ -52,7 +53,7 @@ struct Stage {
   std::string (*show)(driver::Compilation &);
 };
 
-/// All of them, in order.
+/// All stages, in order.
 const std::vector<Stage> &stages();
 
 /// The stage of that name. Throws std::logic_error if there is none.

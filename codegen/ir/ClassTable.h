@@ -21,7 +21,7 @@ public:
     // bytes from the start of the record; none for a scratch member
     std::optional<std::uint32_t> offset;
   };
-  /// Null if the class is not declared or does not have the member.
+  /// The member of this name of the class; null if the class is not declared or does not have it.
   const Member *find(llvm::StringRef className, llvm::StringRef member) const;
 
 private:

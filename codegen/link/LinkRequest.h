@@ -44,8 +44,8 @@ struct LinkRequest {
   /// The members that the scene sets in some object of a class, by class. An optional one that is
   /// not listed is empty in all objects; of a class that is not listed nothing is known.
   std::map<std::string, std::set<std::string>> givenMembers = {};
-  /// What must not be in the code: the values of members "Class.member", or of all members of a
-  /// "Class" and of what is derived from it.
+  /// Members whose values must not be constants of the code: "Class.member", or "Class" for all
+  /// members of the class and of the classes derived from it.
   std::set<std::string> editable = {};
   /// The classes of the objects that a member refers to in objects of a class, by the names of the
   /// class and the member. Of members that are not listed nothing is known.

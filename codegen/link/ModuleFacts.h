@@ -21,7 +21,7 @@ struct RayTypeFacts {
 struct MeshAttributeFacts {
   std::string name;
   const Type *type = nullptr;
-  /// As in runtime::AttributeInfo.
+  /// The offsets, as in runtime::AttributeInfo.
   std::uint32_t offset = RTSL_NOT_READ, changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ};
 };
 

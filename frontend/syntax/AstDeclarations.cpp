@@ -27,7 +27,8 @@ void AstBuilder::addItem(Parser::FileItemContext *item) {
   }
 }
 
-/// All that follows `class Name : Base;` belongs to it; what cannot be a member is reported.
+/// Reports what follows `class Name : Base;` and cannot be a member: all that follows it belongs to
+/// the class.
 void AstBuilder::checkFollowsFileClass(SourceRange where, const char *what) {
   if (!hasFileClass)
     return;

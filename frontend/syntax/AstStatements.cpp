@@ -5,7 +5,7 @@ namespace rtsl {
 
 using namespace ast;
 
-/// Null for a broken statement, which has been reported.
+/// The statement; null for a broken one, which has been reported.
 StmtPtr AstBuilder::buildStatement(Parser::StatementContext *context) {
   if (!context)
     return nullptr;

@@ -26,8 +26,8 @@
 
 namespace rtsl::formulas {
 
-/// What goes into a call and what comes out. A value is the columns of a matrix, and of anything
-/// else one number.
+/// The arguments and results of a call. A matrix is given by its columns, any other value by one
+/// number.
 template <typename Number>
 struct Call {
   std::vector<Columns<Number>> arguments; // but for those that are `out`

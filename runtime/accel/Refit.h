@@ -33,8 +33,8 @@ void refit(Bvh &bvh, const RtslLaunch &launch);
 class BoxOrder {
 public:
   explicit BoxOrder(const std::vector<RtslBox> &boxes = {});
-  /// As many boxes, after they moved: how many times the cost is what it was. At least 0; 1 if
-  /// nothing has moved.
+  /// The ratio of the cost to what it was, after the boxes have moved; there must be as many as
+  /// before. At least 0; 1 if nothing has moved.
   double degradation(const std::vector<RtslBox> &boxes) const;
 
 private:

@@ -14,12 +14,13 @@ enum class TreeKind : std::uint8_t {
 /// Trees of fewer items are built in a tenth of a second whatever builds them.
 constexpr std::uint64_t manyItems = 1 << 18;
 
-/// What is built for a rendering if nothing is requested, for trees of so many items together.
+/// The kind of trees that is built for a rendering: the requested one, or else one chosen by the
+/// number of items in all trees.
 inline TreeKind treeKind(std::optional<TreeKind> requested, std::uint64_t items) {
   return requested.value_or(items < manyItems ? TreeKind::Good : TreeKind::Fast);
 }
 
-/// What the trees of a scene took, and how good they are.
+/// The time that the trees of a scene took to build, and their quality.
 struct TreeFigures {
   TreeKind kind = TreeKind::Good;
   std::uint32_t nodes = 0, items = 0;

@@ -25,7 +25,7 @@ struct BufferDescription {
 /// The end of the file's name, with the dot.
 std::string extensionOf(const BufferDescription &buffer);
 
-/// As a block of memory for a member of this type. `what` names the member in messages.
+/// Reads it as a block of memory for a member of this type. `what` names the member in messages.
 /// Throws WrongType, OutOfRange, BadBuffer, and the errors of reading a file.
 Value readBuffer(const BufferDescription &buffer, const ValueType &type,
                  std::uint32_t colorComponents, const std::string &what);

@@ -97,7 +97,7 @@ public:
           failIn(element, i, property);
   }
 
-  /// Only white space may follow.
+  /// Throws unless only white space follows.
   void finish() const {
     if (bytes.substr(bytes.size() - body.bytesLeft()).find_first_not_of(" \t\r\n") != bytes.npos)
       throw Error(message::numbersTooLong(path));

@@ -16,7 +16,7 @@ using rtsl::c::guarded;
 
 namespace {
 
-/// As a scene file says it: the same checks apply.
+/// The description as it would be in a scene file, so that the same checks apply.
 scene::BufferDescription describe(const char *path, const RtslBufferFile *file) {
   using namespace scene::gltf;
   scene::JsonValue nowhere;

@@ -61,7 +61,7 @@ RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
           render.slices};
 }
 
-/// What a file gives with these settings.
+/// The scene of a file with these settings.
 RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std::string &file,
                const char *const *settings, std::size_t count) {
   try {

@@ -78,7 +78,8 @@ bool isScale(const MovingTransform &transform);
 /// change: the square of that; 1 if it is rigid. Otherwise 0. The product of the linear part with
 /// its transpose is the identity times this number, to within a share of `mostStretch`.
 double squaredScale(const MovingTransform &transform);
-/// What products of rotations in double stay far below, and 2^-16 of a rounding unit of floats.
+/// A bound that products of rotations in double stay far below; it is 2^-16 of a rounding unit of
+/// floats.
 constexpr double mostStretch = 0x1p-40;
 
 bool operator==(const MovingTransform &a, const MovingTransform &b);
@@ -99,7 +100,7 @@ struct SweptBox {
 SweptBox sweptBox(const MovingTransform &map, const float lower[3], const float upper[3],
                   float begin = 0, float end = 1);
 
-/// Its keys and some times between them, at which a map is checked.
+/// The times at which a map is checked: its keys and some times between them.
 std::vector<double> timesToCheck(const MovingTransform &map);
 
 } // namespace rtsl::runtime

@@ -49,7 +49,7 @@ struct FileOrder {
   std::vector<std::uint32_t> faces;           // of each triangle; empty: the same
 };
 
-/// What of a file to read beside what every mesh has.
+/// What to read of a file in addition to what every mesh has.
 struct MeshRequest {
   std::vector<std::string> attributes; // those of these names that the file has
   bool keepsOrder = false;             // sets Mesh::order, if the reader can tell

@@ -11,7 +11,8 @@ namespace rtsl::runtime {
 namespace {
 
 constexpr std::uint32_t lanesOfWarp = 32;
-/// More slots than lanes fill the last warps of each step: docs/gpu.md.
+/// Limits of the slots of a block. There are more slots than lanes so that the last warps of each
+/// step are filled: docs/gpu.md.
 constexpr std::uint32_t fewestBlockSlots = threadsPerBlock * 2,
                         mostBlockSlots = threadsPerBlock * 4;
 /// What the system takes of the shared memory of a multiprocessor for each block.

@@ -11,7 +11,8 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// More keep more lanes busy at each step, and take more memory: docs/gpu.md.
+/// The most samples in flight. More keep more lanes busy at each step, but take more memory:
+/// docs/gpu.md.
 constexpr std::uint64_t mostSlots = std::uint64_t(8) << 20;
 /// Samples in flight get the device's free memory divided by this.
 constexpr std::uint64_t memoryShare = 4;

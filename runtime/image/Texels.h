@@ -72,8 +72,8 @@ Pixels decodePixels(const std::string &bytes, const std::string &name, ColorSpac
 /// Throws OutOfRange if there are more than 2^31 - 1 texels or words.
 Texels texelsOf(const std::vector<Pixels> &slices);
 
-/// As many bytes as the shape has, little-endian, in the order of texels. Throws OutOfRange, like
-/// texelsOf.
+/// Texels of as many bytes as the shape has, little-endian, in the order of texels. Throws
+/// OutOfRange, like texelsOf.
 Texels texelsOfBytes(const void *bytes, Texels shape);
 
 /// The bytes of a file as texels, little-endian, in their order. Throws BadImage if there are more

@@ -30,7 +30,8 @@ struct PackageBuffer {
   bool isNamed(const std::string &wanted) const { return name == wanted || sceneName == wanted; }
 };
 
-/// As bytes, and back. Throws std::bad_alloc, and returns false if the bytes are damaged.
+/// Conversion to bytes, and back. Throws std::bad_alloc, and returns false if the bytes are
+/// damaged.
 std::string serialize(const std::vector<PackageBuffer> &buffers);
 bool parse(std::string_view bytes, std::vector<PackageBuffer> &buffers);
 

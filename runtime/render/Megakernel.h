@@ -73,7 +73,8 @@ private:
   virtual Address allocate(std::uint64_t bytes, const char *what) = 0;
   virtual void upload(Address to, const void *from, std::uint64_t bytes) = 0;
   virtual void download(void *to, Address from, std::uint64_t bytes) = 0;
-  /// What builds trees where the scene is, and takes over memory that it allocated.
+  /// An object that builds trees in the memory of the device; memory that it has allocated is then
+  /// owned by the backend.
   virtual std::unique_ptr<BuildDevice> buildDevice() = 0;
   virtual void own(Address memory) = 0;
   /// The address of the pixels on the device, which are set to 0.

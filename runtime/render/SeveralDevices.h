@@ -49,7 +49,7 @@ public:
       std::function<std::unique_ptr<Megakernel>(std::size_t, const RenderOptions &optionsOfPart)>;
   SeveralDevices(std::size_t devices, const Make &make, const RenderOptions &options);
 
-  /// What device i has rendered in the last run.
+  /// The number of samples that device i has rendered in the last run.
   std::uint64_t samplesOf(std::size_t i) const { return devices[i].samples; }
 
 private:

@@ -97,7 +97,7 @@ static std::uint32_t linearNeeds(const MovingTransform &transform) {
          (square > 0 ? 0 : RTSL_HAS_STRETCH);
 }
 
-/// Its index; 0 for the identity.
+/// Adds a transform and returns its index; 0 for the identity.
 std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std::string &name,
                                      const std::optional<rtsl::Place> &where) {
   if (!transform.moves() && transform.still().isIdentity())
@@ -113,7 +113,7 @@ std::uint32_t Geometry::addTransform(const MovingTransform &transform, const std
   return index;
 }
 
-/// Its index.
+/// Adds the motion of a transform and returns its index.
 std::uint32_t Geometry::addMotion(const MovingTransform &transform) {
   motions.push_back(
       {std::uint32_t(motionFactors.size()), std::uint32_t(transform.factors().size())});

@@ -33,7 +33,7 @@ public:
   MeshValues(const Mesh &mesh, const Program &program, std::uint32_t wanted);
 
   std::uint32_t wanted() const { return bits; }
-  /// Null: there are none.
+  /// The values; null: there are none.
   const RtslMeshValues *table() const { return values.empty() ? nullptr : values.data(); }
   /// Is it one of those that are wanted?
   bool isRead(const NamedAttribute &attribute, const Program &program) const;

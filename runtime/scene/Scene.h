@@ -107,17 +107,19 @@ public:
   void setBackground(RtslRef miss);
   /// How `illuminate(P)` chooses one of the surfaces that shine.
   void setLampChoice(LampChoice choice);
-  /// What samples are that meet an exception, in programs with RTSL_FEATURE_EXCEPTIONS.
+  /// Sets the object that determines the color of samples that end with an exception, in programs
+  /// with RTSL_FEATURE_EXCEPTIONS.
   void setException(RtslRef exception);
-  /// As many numbers as the program's color has components, red, green and blue, or one for all.
-  /// Throws WrongType.
+  /// The color is given by as many numbers as the program's color has components, by red, green and
+  /// blue, or by one number for all components. Throws WrongType.
   void setBackgroundColor(const std::vector<float> &color);
   void setAmbient(const std::vector<float> &color);
 
   /// The record of an object.
   const std::uint8_t *record(RtslRef object) const;
   const ClassInfo &classOf(RtslRef object) const;
-  /// What a program can be bound to. Records stay where they are until something is added.
+  /// The facts to which a program can be bound. Records stay where they are until something is
+  /// added.
   SceneFacts facts() const;
   const std::string &nameOf(RtslRef object) const;
   /// The first object of this name; 0: there is none.

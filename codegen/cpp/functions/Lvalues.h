@@ -19,7 +19,7 @@ public:
   bool isSimple(const typed::Expr &expr) const;
   /// The components of a vector that an lvalue stands for, and the vector; empty: not a part.
   std::vector<std::uint8_t> components(const typed::Expr &lvalue, const typed::Expr *&vector) const;
-  /// What the evaluation of its indices does.
+  /// The effects of evaluating the indices of an lvalue.
   typed::Effects indexEffects(const typed::Expr &lvalue);
   /// Can a C++ reference to its type refer to it? Not to several components of a vector, and not
   /// to a bool that lies in memory as 32 bits.

@@ -21,7 +21,7 @@ Statements dispatch(const Names &names, const std::vector<const typed::Class *> 
 
 /// The object that the runtime names, as one of this class.
 Code objectOf(const Names &names, const typed::Class &definition);
-/// What the hit so far has stored for it.
+/// The scratch members of a class that the hit so far has stored.
 Code storedScratch(const Names &names, const typed::Class &definition);
 /// The ray's payload.
 Code payloadAt(const Names &names, const typed::Struct &payload);

@@ -18,7 +18,7 @@ public:
 
   /// The types that `context.required` has.
   Declarations types();
-  /// Their methods, which call those of the object's class.
+  /// The methods of these types, which call those of the object's class.
   Declarations methods();
 
 private:

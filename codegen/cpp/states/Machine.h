@@ -8,7 +8,7 @@
 
 namespace rtsl::cpp {
 
-/// What stays in the frame of a method while its rays are traced.
+/// A field of a method's frame, which keeps a value while the method's rays are traced.
 struct FrameField {
   std::string key; // as the IR names it
   std::string name;

@@ -13,8 +13,8 @@
 
 namespace rtsl::cpp {
 
-/// What traces, split: a module on level 1 in which a method is the functions `Class.method.state0`
-/// and so on.
+/// The methods that trace, split: a module on level 1 in which a method consists of the functions
+/// `Class.method.state0` and so on.
 struct StateProgram {
   mlir::ModuleOp ir;
   const SourceTable &source;

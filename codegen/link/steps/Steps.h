@@ -123,7 +123,7 @@ void placeAttributes(LinkContext &context);
 /// The classes of the program.
 using ClassesByName = std::map<std::string, const typed::Class *>;
 ClassesByName classesOf(const LinkContext &context);
-/// Null if there is none of this name.
+/// The class of this name; null if there is none.
 const typed::Class *findClass(const ClassesByName &classes, const std::string &name);
 
 /// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports their scratch members

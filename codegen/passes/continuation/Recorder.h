@@ -20,11 +20,11 @@ public:
   Recorder(FuncOp function, const WriteSummary &summary, bool explains, FunctionReport &report);
 
   void foundTailTraces(llvm::ArrayRef<mlir::Location> places);
-  /// All traces are at the ends of blocks. Fails, with a message, if a value can neither be saved
-  /// nor recomputed.
+  /// Called when all traces are at the ends of blocks. Fails, with a message, if a value can
+  /// neither be saved nor recomputed.
   mlir::LogicalResult suspended();
   mlir::LogicalResult trimmedVectors();
-  /// The plans are made; the IR is unchanged.
+  /// Called when the plans are made; the IR is unchanged.
   void planned(llvm::ArrayRef<SuspendPlan> plans);
   void laidOut(FrameLayout frame);
   void split(llvm::ArrayRef<FuncOp> states);

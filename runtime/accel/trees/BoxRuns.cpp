@@ -200,7 +200,7 @@ public:
   }
 
 private:
-  /// Its bits, with two zeros between them.
+  /// The bits of a number, with two zeros between them.
   static std::uint32_t spread(int number) {
     return std::uint32_t(_pdep_u32(unsigned(number), 0x1249));
   }

@@ -50,7 +50,7 @@ inline auto chancesOfEmitters(const RtslLaunch &launch) {
 inline auto chancesOfParts(const RtslLaunch &launch, const RtslEmitter &emitter) {
   return [chances = launch.partChances + emitter.firstPart](uint32_t i) { return chances[i]; };
 }
-/// Their number; 0: the instance is one primitive.
+/// The number of parts; 0: the instance is one primitive.
 inline uint32_t partsOf(const RtslLaunch &launch, const RtslInstance &instance) {
   return instance.primitive == 0       ? launch.meshes[instance.mesh].triangleCount
          : isCounted(launch, instance) ? instance.boxCount
@@ -69,7 +69,7 @@ inline TriangleVertices verticesInWorld(const RtslLaunch &launch, const RtslInst
   return p;
 }
 
-/// Its normal, of twice the length of its area.
+/// The normal of a triangle, with twice its area as its length.
 inline Vec3 doubleArea(const TriangleVertices &p) {
   return cross(p.v1 - p.v0, p.v2 - p.v0);
 }

@@ -40,7 +40,7 @@ public:
         waits(counts + 2 * size.steps), slotsInOrder(waits + size.slots),
         nextTask(slotsInOrder + size.slots), records(size.slots, shared, stacks, size.stackBytes) {}
 
-  /// All slots wait for a sample, in turn 0.
+  /// Makes all slots wait for a sample, in turn 0.
   void begin(uint32_t lane, uint32_t lanes) const {
     for (uint32_t i = lane; i < 2 * size.steps; i += lanes)
       counts[i] = i == placeOfStep(Step::sample) ? size.slots : 0;

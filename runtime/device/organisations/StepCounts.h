@@ -18,7 +18,7 @@ inline uint32_t placeOfStep(int32_t step) {
   return uint32_t(step - Step::trace);
 }
 
-/// All lanes of the warp call together.
+/// Counts a step. All lanes of the warp call together.
 inline void countStep(const RtslJob &job, int32_t step, bool takesPart) {
   if (!rtsl_counts_steps(job.launch))
     return;

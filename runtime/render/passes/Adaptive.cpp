@@ -13,7 +13,7 @@ namespace {
 /// pixel, decides when it is good enough.
 constexpr double reserve = 1.25;
 
-/// What the samples of one half say about the picture. All of it depends on this half alone.
+/// An estimate of the picture's error by the samples of one half. It depends on this half alone.
 struct Estimate {
   std::vector<double> variances;    // of samples, by pixel
   double mean = 0;                  // of the picture

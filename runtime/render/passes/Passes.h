@@ -23,12 +23,12 @@ struct PassState {
   double error = std::numeric_limits<double>::infinity();
 };
 
-/// All that a rendering needs to go on.
+/// All that a rendering needs to be continued.
 struct PartialRendering {
   PassState state;
   PixelSums sums;
-  /// What rays and samples have met, and the first samples that are not finite. What can be counted
-  /// in the sums is 0.
+  /// What rays and samples have met, and the first samples that are not finite. Counts that follow
+  /// from the sums are 0.
   RenderStatistics met;
 };
 

@@ -57,7 +57,7 @@ void forEachList(Visit visit, Sums &...sums) {
   visit(sums.closed...);
 }
 
-/// What has been taken of all samples.
+/// How many samples have been taken.
 struct SampleCounts {
   std::uint64_t samples = 0, notFinite = 0, pixelsWithoutSample = 0;
   // Of a pixel that takes samples; of any pixel, if none does.

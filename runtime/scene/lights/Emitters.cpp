@@ -71,7 +71,7 @@ struct Emission {
   std::vector<Vector> normals;
 };
 
-/// What instances of a scene send out, as far as it is seen.
+/// Estimates what instances of a scene send out by looking at points on them.
 class Finder {
 public:
   Finder(const Objects &objects, const RtslLaunch &launch) : objects(objects), launch(launch) {}
@@ -88,7 +88,7 @@ public:
   }
 
 private:
-  /// All instances of a mesh with one material shine alike.
+  /// The emission of an instance of a mesh. All instances of a mesh with one material shine alike.
   Emission ofMesh(std::uint32_t number, const RtslInstance &instance) {
     const auto [known, isNew] = looks.try_emplace({instance.mesh, instance.material});
     if (isNew)
@@ -237,7 +237,7 @@ Lamp partLamp(const RtslLaunch &launch, const RtslInstance &instance, std::uint3
   return lamp;
 }
 
-/// Where a lamp with this normal shines.
+/// Sets the sides on which a lamp with this normal shines.
 void setSides(Lamp &lamp, const Vector &normal, const Look &look) {
   const double length = lengthOf(normal);
   if (!(length > 0 && std::isfinite(length)))

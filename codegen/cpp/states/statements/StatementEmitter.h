@@ -14,7 +14,8 @@ class StatementEmitter : StatePart {
 public:
   StatementEmitter(StatePrinter &state, Context &context);
 
-  /// What follows is made of this operation; it stays on the line before if its own is unknown.
+  /// The following statements are made of this operation; they keep the line of those before if its
+  /// own is unknown.
   void moveTo(mlir::Operation &op);
   Statement &emit(Statements &out, Statement statement);
   Statement &emit(Statements &out, Code code) { return emit(out, statement(std::move(code))); }
