@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace rtsl::runtime {
 
@@ -102,6 +103,22 @@ std::string sizeText(double bytes) {
 }
 
 } // namespace
+
+std::string whyStartWrong(const std::array<unsigned char, startBytes> &start,
+                          std::uint64_t fileBytes) {
+  const bool isBigEndian = std::memcmp(start.data(), "SDPX", 4) == 0;
+  if (!isBigEndian && std::memcmp(start.data(), "XPDS", 4) != 0)
+    return "";
+  constexpr std::size_t userSize = 32; // SMPTE 268M
+  constexpr std::uint32_t undefined = 0xffffffff;
+  std::uint32_t size = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    size = size << 8 | start[userSize + (isBigEndian ? i : 3 - i)];
+  if (size == undefined || size <= fileBytes)
+    return "";
+  return fmt::format("it claims {} of user data, but the file has {} bytes", sizeText(size),
+                     fileBytes);
+}
 
 std::string whyFileTooSmall(const ImageClaim &claim, std::uint64_t fileBytes) {
   const std::uint64_t expansion = mostExpansion(claim);

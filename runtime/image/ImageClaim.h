@@ -6,6 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -21,6 +23,14 @@ struct ImageClaim {
   std::uint64_t bitsPerSample = 8;                            // in the file
   std::uint64_t tileWidth = 0, tileHeight = 0, tileDepth = 1; // 0: no tiles
 };
+
+/// How many bytes of a file whyStartWrong takes.
+constexpr std::size_t startBytes = 36;
+
+/// Why a file of this size cannot begin so; empty if it can. For what readers get memory before
+/// they give the size of the image: the user data of DPX.
+std::string whyStartWrong(const std::array<unsigned char, startBytes> &start,
+                          std::uint64_t fileBytes);
 
 /// Why a file of this size cannot hold what it claims; empty if it can.
 std::string whyFileTooSmall(const ImageClaim &claim, std::uint64_t fileBytes);

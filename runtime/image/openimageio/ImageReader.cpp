@@ -6,8 +6,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <new>
 #include <string>
 
@@ -23,6 +25,18 @@ void fail(ImageFile &file, ImageFile::Problem problem, const std::string &messag
   // One line is enough.
   if (char *end = std::strchr(file.message, '\n'))
     *end = '\0';
+}
+
+/// The first bytes of a file, or of these bytes of one; zeros after its end.
+std::array<unsigned char, startBytes> startOf(const char *path, const void *bytes,
+                                              std::uint64_t size) {
+  std::array<unsigned char, startBytes> start = {};
+  if (bytes)
+    std::memcpy(start.data(), bytes, std::min<std::uint64_t>(size, start.size()));
+  else
+    std::ifstream(path, std::ios::binary)
+        .read(reinterpret_cast<char *>(start.data()), std::streamsize(start.size()));
+  return start;
 }
 
 /// The type in which the channels are read: none is converted with loss.
@@ -146,14 +160,18 @@ rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::
   using rtsl::runtime::ImageFile;
   *file = {};
   try {
+    const std::uint64_t fileBytes = bytes ? size : OIIO::Filesystem::file_size(path);
+    const std::string why =
+        rtsl::runtime::whyStartWrong(rtsl::runtime::startOf(path, bytes, size), fileBytes);
+    if (!why.empty())
+      return rtsl::runtime::fail(*file, ImageFile::Problem::Bad, why);
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1); // colors as the file has them
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
     const auto input =
         bytes ? OIIO::ImageInput::open(rtsl::runtime::nameOf(bytes, size), &config, &memory)
               : OIIO::ImageInput::open(path, &config);
-    rtsl::runtime::read(input.get(), bytes ? size : OIIO::Filesystem::file_size(path), mostBytes,
-                        freeBytes, allocate, context, *file);
+    rtsl::runtime::read(input.get(), fileBytes, mostBytes, freeBytes, allocate, context, *file);
   } catch (const std::bad_alloc &) {
     if (file->width == 0)
       rtsl::runtime::fail(*file, ImageFile::Problem::Bad,

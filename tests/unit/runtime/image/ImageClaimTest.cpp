@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 using namespace rtsl;
 using namespace rtsl::runtime;
 using rtsl::test::errorOf;
@@ -94,6 +97,21 @@ TEST(ImageClaim, MemoryToRead) {
   EXPECT_EQ(memoryToRead(claim, 16), 100.0 * 50 * 16 + 100 * 40);
   claim.tileWidth = claim.tileHeight = 64;
   EXPECT_EQ(memoryToRead(claim, 16), 100.0 * 50 * 16 + 128 * 64 * 40);
+}
+
+TEST(ImageClaim, UserDataOfDpx) {
+  std::array<unsigned char, startBytes> start = {'S', 'D', 'P', 'X'};
+  start[33] = 1;
+  EXPECT_EQ(whyStartWrong(start, 65536), "");
+  EXPECT_EQ(whyStartWrong(start, 65535),
+            "it claims 64.0 KiB of user data, but the file has 65535 bytes");
+  std::copy_n("XPDS", 4, start.begin());
+  EXPECT_EQ(whyStartWrong(start, 256), "");
+  EXPECT_EQ(whyStartWrong(start, 255),
+            "it claims 256 bytes of user data, but the file has 255 bytes");
+  start[32] = start[33] = start[34] = start[35] = 0xff; // none
+  EXPECT_EQ(whyStartWrong(start, 100), "");
+  EXPECT_EQ(whyStartWrong({}, 0), "");
 }
 
 using Claims = Files;
