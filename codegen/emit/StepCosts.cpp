@@ -27,7 +27,7 @@ constexpr std::uint64_t ofDivision = 8, ofRuntimeFunction = 32, ofSample = 300, 
                         ofListedInstance = 40, ofTree = 4000;
 /// A factor for traversal and for new rays: the lanes of a warp diverge in these steps, so that the
 /// warp takes longer than a single lane would.
-constexpr std::uint64_t partings = 4;
+constexpr std::uint64_t divergence = 4;
 constexpr std::uint64_t unit = 16; // instructions of a step with the cost 1
 constexpr unsigned bitsOfStep = 4, mostSteps = 64 / bitsOfStep;
 
@@ -99,7 +99,7 @@ unsigned logarithm(std::uint64_t instructions) {
 std::uint64_t stepCosts(const llvm::Module &module) {
   const std::uint64_t listed = knownConstant(module, "rtsl_listed_instances").value_or(0);
   const std::uint64_t ofTraversal = ofRay + (listed ? listed * ofListedInstance : ofTree);
-  llvm::SmallVector<std::uint64_t> instructions = {partings * ofTraversal, partings * ofSample};
+  llvm::SmallVector<std::uint64_t> instructions = {divergence * ofTraversal, divergence * ofSample};
   Estimate estimate;
   if (const llvm::Function *runState = module.getFunction("rtsl_run_state"))
     for (const llvm::Function *state : statesOf(*runState))

@@ -199,7 +199,7 @@ Parts FunctionLowering::lowerVariable(const typed::Variable &variable) {
 
 Parts FunctionLowering::lowerIndex(const typed::IndexExpr &expr) {
   const Type *type = expr.base->type;
-  if (isPlace(expr) && !type->isVector())
+  if (isLvalue(expr) && !type->isVector())
     return load(lowerLvalue(expr));
   if (type->isVector()) {
     Value vector = value(*expr.base);

@@ -14,16 +14,16 @@ namespace rtsl {
 /// A token in the parse tree.
 class ParserToken final : public antlr4::Token {
 public:
-  ParserToken(const rtsl::Token &word, std::size_t index) : word(word), index(index) {}
+  ParserToken(const rtsl::Token &token, std::size_t index) : token(token), index(index) {}
 
-  const rtsl::Token word;
+  const rtsl::Token token;
 
   std::size_t getType() const override {
-    return word.type == rtsl::Token::endOfFile ? antlr4::Token::EOF : word.type;
+    return token.type == rtsl::Token::endOfFile ? antlr4::Token::EOF : token.type;
   }
   std::size_t getTokenIndex() const override { return index; }
-  std::size_t getStartIndex() const override { return word.begin; }
-  std::size_t getStopIndex() const override { return word.end - std::size_t{1}; }
+  std::size_t getStartIndex() const override { return token.begin; }
+  std::size_t getStopIndex() const override { return token.end - std::size_t{1}; }
   std::size_t getChannel() const override { return DEFAULT_CHANNEL; }
   // Messages are written from offsets; the parser library's own texts and lines are never used.
   std::string getText() const override { return {}; }
@@ -39,12 +39,12 @@ private:
 
 /// The tokens of a text, all in memory. The last one is the end of the file; reading never goes
 /// beyond it.
-class WordStream final : public antlr4::TokenStream {
+class TokenStream final : public antlr4::TokenStream {
 public:
-  explicit WordStream(const std::vector<rtsl::Token> &words) {
-    tokens.reserve(words.size());
-    for (const rtsl::Token &word : words)
-      tokens.emplace_back(word, tokens.size());
+  explicit TokenStream(const std::vector<rtsl::Token> &all) {
+    tokens.reserve(all.size());
+    for (const rtsl::Token &token : all)
+      tokens.emplace_back(token, tokens.size());
   }
 
   ParserToken *at(std::size_t index) {
@@ -63,7 +63,7 @@ public:
     return k == 0 || back > position ? nullptr : at(position - back);
   }
   antlr4::Token *get(std::size_t index) const override {
-    return const_cast<WordStream *>(this)->at(index);
+    return const_cast<TokenStream *>(this)->at(index);
   }
   ssize_t mark() override { return 0; }
   void release(ssize_t) override {}

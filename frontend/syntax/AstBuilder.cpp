@@ -6,9 +6,9 @@
 
 namespace rtsl {
 
-AstBuilder::AstBuilder(FileId file, const std::vector<Token> &words,
+AstBuilder::AstBuilder(FileId file, const std::vector<Token> &tokens,
                        const std::vector<Comment> &comments, Diagnostics &diagnostics)
-    : file(file), words(words), comments(comments), diagnostics(diagnostics),
+    : file(file), tokens(tokens), comments(comments), diagnostics(diagnostics),
       sources(diagnostics.sources()), unit(std::make_unique<ast::TranslationUnit>()) {
   unit->file = file;
 }
@@ -16,7 +16,7 @@ AstBuilder::AstBuilder(FileId file, const std::vector<Token> &words,
 std::unique_ptr<ast::TranslationUnit> AstBuilder::finish() {
   // The first comment is that of the file, unless it belongs to what is directly below it.
   std::size_t last = 0;
-  const std::uint32_t firstWord = words.front().begin;
+  const std::uint32_t firstWord = tokens.front().begin;
   const std::string_view text = sources.text(file);
   const auto linesBetween = [&](std::uint32_t begin, std::uint32_t end) {
     const std::string_view between = text.substr(begin, end - begin);
@@ -28,7 +28,7 @@ std::unique_ptr<ast::TranslationUnit> AstBuilder::finish() {
   const bool isSeparate =
       last > 0 && ((last < comments.size() && comments[last].end <= firstWord) ||
                    linesBetween(comments[last - 1].end, firstWord) != 1 ||
-                   words.front().type == Parser::IMPORT);
+                   tokens.front().type == Parser::IMPORT);
   if (isSeparate)
     unit->comment = commentText(0, last);
   return std::move(unit);
@@ -39,8 +39,8 @@ std::unique_ptr<ast::TranslationUnit> AstBuilder::finish() {
 //===----------------------------------------------------------------------===//
 
 SourceRange AstBuilder::range(const antlr4::Token *token) const {
-  const Token &word = static_cast<const ParserToken *>(token)->word;
-  return {file, word.begin, word.end};
+  const Token &found = static_cast<const ParserToken *>(token)->token;
+  return {file, found.begin, found.end};
 }
 
 SourceRange AstBuilder::range(const antlr4::ParserRuleContext *context) const {
@@ -86,8 +86,8 @@ std::string AstBuilder::commentText(std::size_t first, std::size_t last) const {
 /// comment after code, in its column, are not of what is below them.
 std::string AstBuilder::commentAbove(const antlr4::ParserRuleContext *context) const {
   const std::size_t index = context->start->getTokenIndex();
-  const std::uint32_t end = words[index].begin;
-  const std::uint32_t begin = index > 0 ? words[index - 1].end : 0;
+  const std::uint32_t end = tokens[index].begin;
+  const std::uint32_t begin = index > 0 ? tokens[index - 1].end : 0;
   const auto after = std::lower_bound(
       comments.begin(), comments.end(), end,
       [](const Comment &comment, std::uint32_t offset) { return comment.begin < offset; });

@@ -27,8 +27,8 @@ class AstBuilder {
 public:
   using Parser = generated::RtslParser;
 
-  /// `words` are the tokens that the parser read; `comments` those between them.
-  AstBuilder(FileId file, const std::vector<Token> &words, const std::vector<Comment> &comments,
+  /// `tokens` are the tokens that the parser read; `comments` those between them.
+  AstBuilder(FileId file, const std::vector<Token> &tokens, const std::vector<Comment> &comments,
              Diagnostics &diagnostics);
 
   void addItem(Parser::FileItemContext *item);
@@ -101,7 +101,7 @@ private:
   ast::ExprPtr error(SourceRange where) const;
 
   const FileId file;
-  const std::vector<Token> &words;
+  const std::vector<Token> &tokens;
   const std::vector<Comment> &comments;
   Diagnostics &diagnostics;
   const SourceManager &sources;

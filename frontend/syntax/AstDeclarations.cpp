@@ -50,7 +50,7 @@ void AstBuilder::addImport(Parser::ImportDeclarationContext *context) {
       import.path += (import.path.empty() ? "" : ".") + text(range(part));
   } else if (auto *quoted = context->STRING_LITERAL()) {
     const SourceRange where = range(quoted);
-    if (words[quoted->getSymbol()->getTokenIndex()].isBroken)
+    if (tokens[quoted->getSymbol()->getTokenIndex()].isBroken)
       return;
     import.path = text({file, where.begin + 1, where.end - 1});
     import.isFile = true;

@@ -262,7 +262,7 @@ ExprPtr AstBuilder::buildCall(Parser::CallContext *context) {
     result->receiver = buildExpr(method->expr());
     result->callee = name(method->IDENTIFIER());
   } else {
-    if (!words[callee->start->getTokenIndex()].isBroken)
+    if (!tokens[callee->start->getTokenIndex()].isBroken)
       diagnostics.report(Code::notCallable, range(callee));
     return error(range(context));
   }
@@ -312,7 +312,7 @@ ExprPtr AstBuilder::buildInitializer(Parser::InitializerContext *context) {
 ExprPtr AstBuilder::buildLiteral(Parser::LiteralContext *context) {
   const SourceRange where = range(context);
   std::string spelling = text(where);
-  if (words[context->start->getTokenIndex()].isBroken)
+  if (tokens[context->start->getTokenIndex()].isBroken)
     return error(where);
   switch (context->start->getType()) {
   case Parser::INT_LITERAL: {

@@ -57,9 +57,9 @@ std::unique_ptr<ast::TranslationUnit> parseText(FileId file, Diagnostics &diagno
     return unit;
   }
 
-  WordStream words(list.tokens);
-  RtslParser parser(&words);
-  const auto errors = std::make_shared<SyntaxErrors>(file, words, diagnostics);
+  TokenStream stream(list.tokens);
+  RtslParser parser(&stream);
+  const auto errors = std::make_shared<SyntaxErrors>(file, stream, diagnostics);
   parser.removeErrorListeners();
   parser.setErrorHandler(errors);
   AstBuilder builder(file, list.tokens, list.comments, diagnostics);

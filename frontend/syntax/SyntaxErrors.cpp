@@ -46,14 +46,14 @@ bool endsOperand(unsigned type) {
 //===----------------------------------------------------------------------===//
 
 SourceRange SyntaxErrors::rangeOf(std::size_t index) const {
-  const Token &token = word(index);
+  const Token &token = tokenAt(index);
   if (token.type == Token::endOfFile && index > 0) // after the last token, not after empty lines
-    return {file, word(index - 1).end, word(index - 1).end};
+    return {file, tokenAt(index - 1).end, tokenAt(index - 1).end};
   return {file, token.begin, token.end};
 }
 
 std::string SyntaxErrors::describe(std::size_t index) const {
-  if (word(index).type == Token::endOfFile)
+  if (tokenAt(index).type == Token::endOfFile)
     return "the end of the file";
   const std::string_view text = textOf(index);
   return text.size() > maxQuotedBytes ? fmt::format("`{}...`", text.substr(0, maxQuotedBytes))
@@ -62,16 +62,17 @@ std::string SyntaxErrors::describe(std::size_t index) const {
 
 /// True if an error at this token is a consequence of one that was reported before parsing.
 bool SyntaxErrors::isConsequence(std::size_t index) const {
-  const Token &token = word(index);
+  const Token &token = tokenAt(index);
   if (token.followsMistake || token.isBroken)
     return true;
   // A string without an end may have swallowed anything.
-  return index > 0 && word(index - 1).isBroken && word(index - 1).type == RtslLexer::STRING_LITERAL;
+  return index > 0 && tokenAt(index - 1).isBroken &&
+         tokenAt(index - 1).type == RtslLexer::STRING_LITERAL;
 }
 
 /// True if a statement without its semicolon ends before this token.
 bool SyntaxErrors::endsBefore(std::size_t index) const {
-  const Token &token = word(index);
+  const Token &token = tokenAt(index);
   return token.startsLine || token.type == RtslLexer::RIGHT_BRACE ||
          token.type == Token::endOfFile || isStatementKeyword(token.type);
 }
@@ -84,7 +85,7 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
   Diagnostic &diagnostic =
       diagnostics.report(Code::unexpectedToken, rangeOf(index), expected, describe(index));
   const auto type = [&](std::size_t back) {
-    return index >= back ? word(index - back).type : Token::endOfFile;
+    return index >= back ? tokenAt(index - back).type : Token::endOfFile;
   };
   // Habits from C.
   const bool followsName = type(1) == RtslLexer::IDENTIFIER && type(2) == RtslLexer::IDENTIFIER;
@@ -109,7 +110,7 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
 }
 
 void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t index) {
-  const Token &previous = word(index > 0 ? index - 1 : 0);
+  const Token &previous = tokenAt(index > 0 ? index - 1 : 0);
   std::string after = fmt::format("`{}`", textOf(index > 0 ? index - 1 : 0));
   if (previous.end == previous.begin || previous.end - previous.begin > maxQuotedBytes)
     after = "this";
@@ -131,11 +132,11 @@ void SyntaxErrors::reportMissingSemicolon(antlr4::Parser *parser, std::size_t in
 /// The tokens that may follow an operand inside the brackets around this token.
 std::string SyntaxErrors::closingAround(std::size_t index) const {
   std::size_t open = index;
-  while (open > 0 && word(open).depth >= word(index).depth)
+  while (open > 0 && tokenAt(open).depth >= tokenAt(index).depth)
     --open;
-  return word(open).type == RtslLexer::LEFT_BRACKET ? "`]`"
-         : word(open).type == RtslLexer::LEFT_PAREN ? "`,` or `)`"
-                                                    : "`;`";
+  return tokenAt(open).type == RtslLexer::LEFT_BRACKET ? "`]`"
+         : tokenAt(open).type == RtslLexer::LEFT_PAREN ? "`,` or `)`"
+                                                       : "`;`";
 }
 
 /// What a declaration lacks after its type: it has read the tokens from `start` on, up to the one
@@ -147,8 +148,8 @@ void SyntaxErrors::reportInDeclaration(antlr4::Parser *parser, std::size_t start
       reportMissingSemicolon(parser, index);
     else
       reportUnexpected(index, "`;`");
-  } else if (word(index).type == RtslLexer::LEFT_PAREN && index > 0 &&
-             word(index - 1).type == RtslLexer::IDENTIFIER) {
+  } else if (tokenAt(index).type == RtslLexer::LEFT_PAREN && index > 0 &&
+             tokenAt(index - 1).type == RtslLexer::IDENTIFIER) {
     const SourceRange name = rangeOf(index - 1);
     Diagnostic &diagnostic = diagnostics.report(Code::missingReturnType, name, textOf(index - 1));
     if (textOf(index - 1) == "rtDeclareVariable")
@@ -170,7 +171,7 @@ std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t inde
            : rule == RtslParser::RuleModulePath ? "the name of a module"
                                                 : "a name";
   if (expected.contains(std::size_t{RtslLexer::RIGHT_PAREN})) {
-    if (index > 0 && !endsOperand(word(index - 1).type))
+    if (index > 0 && !endsOperand(tokenAt(index - 1).type))
       return rule == RtslParser::RuleParameters ? "a parameter" : "an expression";
     return rule == RtslParser::RuleCondition || rule == RtslParser::RuleForStatement ? "`)`"
                                                                                      : "`,` or `)`";
@@ -212,10 +213,11 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
   case RtslParser::RuleFunctionBody: {
     // The tokens before it are the name and the parameters, whose brackets balance.
     std::size_t open = index - 1;
-    while (open > 0 &&
-           (word(open).type != RtslLexer::LEFT_PAREN || word(open).depth != word(index - 1).depth))
+    while (open > 0 && (tokenAt(open).type != RtslLexer::LEFT_PAREN ||
+                        tokenAt(open).depth != tokenAt(index - 1).depth))
       --open;
-    const bool isMissing = word(index).startsLine || word(index).type == RtslLexer::RIGHT_BRACE;
+    const bool isMissing =
+        tokenAt(index).startsLine || tokenAt(index).type == RtslLexer::RIGHT_BRACE;
     if (isMissing && open > 0)
       diagnostics.report(Code::missingFunctionBody, rangeOf(open - 1), textOf(open - 1));
     else
@@ -224,10 +226,10 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
   }
   case RtslParser::RuleSimpleStatement:
     // The parser has looked ahead, perhaps into brackets, but not consumed anything yet.
-    if (index == start || !endsOperand(word(index - 1).type))
+    if (index == start || !endsOperand(tokenAt(index - 1).type))
       reportUnexpected(index, "an expression");
-    else if (word(index).depth > word(start).depth ||
-             (isClosing(word(index).type) && word(index).type != RtslLexer::RIGHT_BRACE))
+    else if (tokenAt(index).depth > tokenAt(start).depth ||
+             (isClosing(tokenAt(index).type) && tokenAt(index).type != RtslLexer::RIGHT_BRACE))
       reportUnexpected(index, closingAround(index));
     else if (endsBefore(index))
       reportMissingSemicolon(parser, index);
@@ -235,7 +237,7 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
       reportUnexpected(index, "`;`");
     return;
   case RtslParser::RuleInitializer:
-    reportUnexpected(index, endsOperand(word(index - 1).type) ? "`,` or `}`" : "an expression");
+    reportUnexpected(index, endsOperand(tokenAt(index - 1).type) ? "`,` or `}`" : "an expression");
     return;
   case RtslParser::RuleStatement:
     reportUnexpected(index, "a statement");
@@ -262,9 +264,9 @@ void SyntaxErrors::reportError(antlr4::Parser *parser, const antlr4::Recognition
 /// brackets that open after `start` are skipped, and the brackets around `start` are not left.
 template <typename EndAt>
 std::size_t SyntaxErrors::findEnd(std::size_t start, std::size_t from, EndAt &&endAt) const {
-  const unsigned depth = word(start).depth;
+  const unsigned depth = tokenAt(start).depth;
   for (std::size_t index = from;; ++index) {
-    const Token &token = word(index);
+    const Token &token = tokenAt(index);
     if (token.type == Token::endOfFile)
       return index;
     if (token.depth > depth)
@@ -281,11 +283,11 @@ std::size_t SyntaxErrors::findEnd(std::size_t start, std::size_t from, EndAt &&e
 /// possible.
 std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) const {
   return findEnd(start, from, [&](std::size_t index) -> std::optional<std::size_t> {
-    const Token &token = word(index);
-    if (token.type == RtslLexer::SEMICOLON && word(index + 1).type != RtslLexer::ELSE)
+    const Token &token = tokenAt(index);
+    if (token.type == RtslLexer::SEMICOLON && tokenAt(index + 1).type != RtslLexer::ELSE)
       return index + 1;
     if (token.type == RtslLexer::RIGHT_BRACE && index > start) { // a block of the broken statement
-      const Token &next = word(index + 1);
+      const Token &next = tokenAt(index + 1);
       if (next.type == RtslLexer::SEMICOLON)
         return index + 2;
       if (next.type != RtslLexer::ELSE)
@@ -293,7 +295,7 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
     }
     if (index == start || !token.startsLine)
       return std::nullopt;
-    const unsigned next = word(index + 1).type;
+    const unsigned next = tokenAt(index + 1).type;
     if (isStatementKeyword(token.type) ||
         (token.type == RtslLexer::IDENTIFIER &&
          (next == RtslLexer::IDENTIFIER || next == RtslLexer::ASSIGN)))
@@ -307,7 +309,7 @@ std::size_t SyntaxErrors::endOfStatement(std::size_t start, std::size_t from) co
 std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
                                           bool endsAtComma) const {
   return findEnd(start, from, [&](std::size_t index) -> std::optional<std::size_t> {
-    const Token &token = word(index);
+    const Token &token = tokenAt(index);
     if (token.type == RtslLexer::SEMICOLON || (endsAtComma && token.type == RtslLexer::COMMA))
       return index;
     if (index > start && token.startsLine && isStatementKeyword(token.type))
@@ -318,20 +320,20 @@ std::size_t SyntaxErrors::endOfExpression(std::size_t start, std::size_t from,
 
 /// Index of the closing parenthesis of the arguments that begin at `start`.
 std::size_t SyntaxErrors::endOfArguments(std::size_t start, std::size_t from) const {
-  const unsigned depth = word(start).depth;
+  const unsigned depth = tokenAt(start).depth;
   std::size_t index = from;
-  while (word(index).type != Token::endOfFile && word(index).depth >= depth &&
-         !(index == start && isClosing(word(index).type)))
+  while (tokenAt(index).type != Token::endOfFile && tokenAt(index).depth >= depth &&
+         !(index == start && isClosing(tokenAt(index).type)))
     ++index;
   return index;
 }
 
 /// Index of the token after a pair of parentheses that opens at `start`.
 std::size_t SyntaxErrors::afterParentheses(std::size_t start, std::size_t from) const {
-  if (word(start).type != RtslLexer::LEFT_PAREN)
+  if (tokenAt(start).type != RtslLexer::LEFT_PAREN)
     return from;
   std::size_t index = std::max(from, start + 1);
-  while (word(index).type != Token::endOfFile && word(index).depth > word(start).depth)
+  while (tokenAt(index).type != Token::endOfFile && tokenAt(index).depth > tokenAt(start).depth)
     ++index;
   return index + 1;
 }
@@ -340,7 +342,7 @@ antlr4::Token *SyntaxErrors::recoverInline(antlr4::Parser *parser) {
   if (isQuiet)
     throw antlr4::ParseCancellationException();
   const antlr4::atn::ATN &atn = parser->getATN();
-  const std::size_t index = words.index();
+  const std::size_t index = stream.index();
   const bool needsSemicolon =
       atn.nextTokens(atn.states[parser->getState()]).contains(std::size_t{RtslLexer::SEMICOLON});
   if (!needsSemicolon || !endsBefore(index))
@@ -350,8 +352,8 @@ antlr4::Token *SyntaxErrors::recoverInline(antlr4::Parser *parser) {
     reportMissingSemicolon(parser, index);
   Token semicolon;
   semicolon.type = RtslLexer::SEMICOLON;
-  semicolon.begin = semicolon.end = index > 0 ? word(index - 1).end : 0;
-  semicolon.depth = word(index).depth;
+  semicolon.begin = semicolon.end = index > 0 ? tokenAt(index - 1).end : 0;
+  semicolon.depth = tokenAt(index).depth;
   inserted.push_back(std::make_unique<ParserToken>(semicolon, INVALID_INDEX));
   return inserted.back().get();
 }
@@ -383,42 +385,42 @@ void SyntaxErrors::sync(antlr4::Parser *parser) {
       state->getStateType() != antlr4::atn::ATNState::STAR_LOOP_BACK)
     return;
   const antlr4::misc::IntervalSet &next = atn.nextTokens(state);
-  while (!next.contains(words.LA(1))) {
+  while (!next.contains(stream.LA(1))) {
     if (isQuiet)
       throw antlr4::ParseCancellationException();
-    const std::size_t index = words.index();
+    const std::size_t index = stream.index();
     if (!isConsequence(index))
       reportUnexpected(index, expected);
     const std::size_t end = std::max(endOfStatement(index, index), index + 1);
-    if (word(index).type == Token::endOfFile)
+    if (tokenAt(index).type == Token::endOfFile)
       return;
-    words.seek(end);
+    stream.seek(end);
   }
 }
 
 void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
   const std::size_t start = startOf(parser);
-  const std::size_t from = std::max({words.index(), resumeAt, start});
+  const std::size_t from = std::max({stream.index(), resumeAt, start});
   switch (ruleOf(parser)) {
   case RtslParser::RuleExpression:
-    words.seek(endOfExpression(start, from, false));
+    stream.seek(endOfExpression(start, from, false));
     break;
   case RtslParser::RuleInitializer:
   case RtslParser::RuleParameter:
-    words.seek(endOfExpression(start, from, true));
+    stream.seek(endOfExpression(start, from, true));
     break;
   case RtslParser::RuleArguments:
-    words.seek(endOfArguments(start, from));
+    stream.seek(endOfArguments(start, from));
     break;
   case RtslParser::RuleParameters:
   case RtslParser::RuleCondition:
-    if (word(start).type != RtslLexer::LEFT_PAREN)
+    if (tokenAt(start).type != RtslLexer::LEFT_PAREN)
       std::rethrow_exception(error);
-    words.seek(afterParentheses(start, from));
+    stream.seek(afterParentheses(start, from));
     break;
   case RtslParser::RuleFunctionBody:
-    if (!word(from).startsLine && !isClosing(word(from).type))
-      words.seek(endOfStatement(start, from));
+    if (!tokenAt(from).startsLine && !isClosing(tokenAt(from).type))
+      stream.seek(endOfStatement(start, from));
     isRecovering = false;
     break;
   case RtslParser::RuleStatement:
@@ -428,10 +430,10 @@ void SyntaxErrors::recover(antlr4::Parser *parser, std::exception_ptr error) {
   case RtslParser::RuleClassDeclaration:
   case RtslParser::RuleFileItem: {
     // A new line after the error that begins like a statement is not part of the broken one.
-    const Token &at = word(from);
-    const bool isNext = from > start && at.startsLine && at.depth == word(start).depth &&
+    const Token &at = tokenAt(from);
+    const bool isNext = from > start && at.startsLine && at.depth == tokenAt(start).depth &&
                         (isStatementKeyword(at.type) || at.type == RtslLexer::IDENTIFIER);
-    words.seek(isNext ? from : endOfStatement(start, from));
+    stream.seek(isNext ? from : endOfStatement(start, from));
     isRecovering = false;
     break;
   }

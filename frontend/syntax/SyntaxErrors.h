@@ -14,8 +14,8 @@ namespace rtsl {
 /// error to the rule that called it, until one of those is reached.
 class SyntaxErrors final : public antlr4::ANTLRErrorStrategy {
 public:
-  SyntaxErrors(FileId file, WordStream &words, Diagnostics &diagnostics)
-      : file(file), words(words), diagnostics(diagnostics) {}
+  SyntaxErrors(FileId file, TokenStream &stream, Diagnostics &diagnostics)
+      : file(file), stream(stream), diagnostics(diagnostics) {}
 
   /// While true, the first error ends the parse with antlr4::ParseCancellationException, and
   /// nothing is reported.
@@ -31,7 +31,7 @@ public:
   void recover(antlr4::Parser *parser, std::exception_ptr error) override;
 
 private:
-  const Token &word(std::size_t index) const { return words.at(index)->word; }
+  const Token &tokenAt(std::size_t index) const { return stream.at(index)->token; }
   SourceRange rangeOf(std::size_t index) const;
   std::string_view textOf(std::size_t index) const {
     return diagnostics.sources().text(rangeOf(index));
@@ -54,7 +54,7 @@ private:
   std::size_t afterParentheses(std::size_t start, std::size_t from) const;
 
   const FileId file;
-  WordStream &words;
+  TokenStream &stream;
   Diagnostics &diagnostics;
   bool isRecovering = false; // after a reported error: what follows may be its consequence
   std::size_t resumeAt = 0;  // the position of that error; the parser may not have reached it

@@ -277,12 +277,12 @@ private:
   void reportCycle(const std::string &name, std::vector<std::string> path, const Place &place) {
     path.erase(path.begin(), std::find(path.begin(), path.end(), name));
     constexpr std::size_t shown = 6;
-    std::string way;
+    std::string cycle;
     for (std::size_t i = 0; i < std::min(path.size(), shown); ++i)
-      way += path[i] + " > ";
+      cycle += path[i] + " > ";
     if (path.size() > shown)
-      way += "... > ";
-    errors.add(Error(message::nodeCycle(name, way, name), place));
+      cycle += "... > ";
+    errors.add(Error(message::nodeCycle(name, cycle, name), place));
   }
 
   void countInstances() {
@@ -304,21 +304,21 @@ private:
 
   struct Step {
     std::size_t node, next;
-    InstanceDescription way; // to the node
+    InstanceDescription instance; // to the node
   };
 
   /// Adds an instance to the geometry at the end of each path from a root.
   void placeInstances(std::size_t number) {
     std::vector<Step> path;
-    const auto enter = [&](std::size_t node, InstanceDescription way) {
-      addToWay(nodes[node], way);
-      path.push_back({node, 0, way});
+    const auto enter = [&](std::size_t node, InstanceDescription instance) {
+      applyNode(nodes[node], instance);
+      path.push_back({node, 0, instance});
       if (nodes[node].light)
-        placeLight(*nodes[node].light, way.transform);
+        placeLight(*nodes[node].light, instance.transform);
       if (!nodes[node].geometry)
         return;
-      if (worstCondition(way.transform) <= runtime::largestCondition) {
-        place(*nodes[node].geometry, way);
+      if (worstCondition(instance.transform) <= runtime::largestCondition) {
+        place(*nodes[node].geometry, instance);
         return;
       }
       std::size_t worst = node;
@@ -337,37 +337,38 @@ private:
         path.pop_back();
         continue;
       }
-      InstanceDescription way = step.way;
+      InstanceDescription instance = step.instance;
       if (nodes[step.node].selector)
-        way.childOfSelector = std::uint32_t(step.next);
-      enter(nodes[step.node].children[step.next++].node, way);
+        instance.childOfSelector = std::uint32_t(step.next);
+      enter(nodes[step.node].children[step.next++].node, instance);
     }
   }
 
-  void placeLight(const ObjectDescription &light, const runtime::MovingTransform &way) {
-    errors.attempt([&] { scene.lights.push_back(placedLight(light, way, scene)); });
+  void placeLight(const ObjectDescription &light, const runtime::MovingTransform &toWorld) {
+    errors.attempt([&] { scene.lights.push_back(placedLight(light, toWorld, scene)); });
   }
 
   /// Applies the settings of the node to the instances below it.
-  void addToWay(const Node &node, InstanceDescription &way) {
-    way.transform = node.transform.then(way.transform);
-    if (way.inPart)
-      way.inPart = std::make_shared<const MovingTransform>(node.transform.then(*way.inPart));
+  void applyNode(const Node &node, InstanceDescription &instance) {
+    instance.transform = node.transform.then(instance.transform);
+    if (instance.inPart)
+      instance.inPart =
+          std::make_shared<const MovingTransform>(node.transform.then(*instance.inPart));
     if (node.id)
-      way.id = *node.id;
+      instance.id = *node.id;
     if (!node.variables.empty())
-      way.scope = addScope(scene, way.scope, node.variables);
+      instance.scope = addScope(scene, instance.scope, node.variables);
     if (node.selector) {
       SelectorDescription selector;
       selector.node = static_cast<std::size_t>(&node - nodes.data());
       selector.object = *node.selector;
       selector.children = std::uint32_t(node.children.size());
-      selector.toWorld = way.transform;
-      selector.above = way.selector;
-      selector.childOfAbove = way.childOfSelector;
-      selector.scope = way.scope;
+      selector.toWorld = instance.transform;
+      selector.above = instance.selector;
+      selector.childOfAbove = instance.childOfSelector;
+      selector.scope = instance.scope;
       scene.selectors.push_back(std::move(selector));
-      way.selector = scene.selectors.size();
+      instance.selector = scene.selectors.size();
     }
   }
 
@@ -386,22 +387,22 @@ private:
 
   /// What two roots lead to in the same place is one instance, unless it differs in something else.
   /// What one root leads to several times in the same place remains several.
-  void place(GeometryDescription &geometry, InstanceDescription way) {
-    way.mask = geometry.mask;
-    way.hasBackFaces = geometry.hasBackFaces;
+  void place(GeometryDescription &geometry, InstanceDescription instance) {
+    instance.mask = geometry.mask;
+    instance.hasBackFaces = geometry.hasBackFaces;
     if (geometry.id)
-      way.id = *geometry.id;
-    if (way.roots != 1 && way.selector == 0) {
-      Alike &alike = placementsLike(way, geometry);
-      if (std::exchange(alike.root, way.roots) != way.roots)
+      instance.id = *geometry.id;
+    if (instance.roots != 1 && instance.selector == 0) {
+      Alike &alike = placementsLike(instance, geometry);
+      if (std::exchange(alike.root, instance.roots) != instance.roots)
         alike.taken = 0;
       const std::size_t number = alike.taken++;
       if (number < alike.placements.size()) {
-        geometry.placements[alike.placements[number]].roots |= way.roots;
+        geometry.placements[alike.placements[number]].roots |= instance.roots;
         return;
       }
     }
-    geometry.placements.push_back(way);
+    geometry.placements.push_back(instance);
   }
 
   using Key = std::tuple<MovingTransform, std::int32_t, std::size_t, const VariableScope *>;
@@ -420,11 +421,11 @@ private:
     std::size_t listed = 0; // placements that are in `alike`
   };
 
-  Alike &placementsLike(const InstanceDescription &way, const GeometryDescription &geometry) {
+  Alike &placementsLike(const InstanceDescription &instance, const GeometryDescription &geometry) {
     Placed &known = placed[&geometry];
     for (; known.listed < geometry.placements.size(); ++known.listed)
       known.alike[keyOf(geometry.placements[known.listed])].placements.push_back(known.listed);
-    return known.alike[keyOf(way)];
+    return known.alike[keyOf(instance)];
   }
 
   /// The nodes that a root leads to.

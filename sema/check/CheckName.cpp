@@ -446,7 +446,7 @@ ExprPtr FunctionChecker::checkIndex(const ast::IndexExpr &expr, Access access) {
 
 /// Is the source text an lvalue? The typed tree of `+x` and `color(c)` may be just a variable, but
 /// they are no lvalues.
-static bool namesAPlace(const ast::Expr &expr) {
+static bool isLvalueAsWritten(const ast::Expr &expr) {
   const ast::Expr *at = &expr;
   for (;;) {
     if (const auto *paren = dynCast<ast::ParenExpr>(at))
@@ -478,7 +478,7 @@ bool FunctionChecker::requireTarget(const ast::Expr &source, const typed::Expr &
   const bool isStored = at->kind == typed::ExprKind::Variable ||
                         at->kind == typed::ExprKind::Member || at->kind == typed::ExprKind::State ||
                         at->type->isError();
-  if (!namesAPlace(source) || !isStored) {
+  if (!isLvalueAsWritten(source) || !isStored) {
     diagnostics.report(Code::notATarget, target.range, action);
     return false;
   }

@@ -133,7 +133,7 @@ bool mayBeOutOfRange(const IndexExpr &expr) {
   return expr.index->kind != ExprKind::Literal;
 }
 
-bool isPlace(const Expr &expr) {
+bool isLvalue(const Expr &expr) {
   switch (expr.kind) {
   case ExprKind::Variable:
   case ExprKind::State:
@@ -141,11 +141,11 @@ bool isPlace(const Expr &expr) {
   case ExprKind::Member:
     return !cast<MemberExpr>(expr).member->isConst;
   case ExprKind::Field:
-    return isPlace(*cast<FieldExpr>(expr).base);
+    return isLvalue(*cast<FieldExpr>(expr).base);
   case ExprKind::Swizzle:
-    return isPlace(*cast<SwizzleExpr>(expr).base);
+    return isLvalue(*cast<SwizzleExpr>(expr).base);
   case ExprKind::Index:
-    return isPlace(*cast<IndexExpr>(expr).base);
+    return isLvalue(*cast<IndexExpr>(expr).base);
   default:
     return false;
   }

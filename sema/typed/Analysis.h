@@ -112,6 +112,6 @@ bool mayReferToNothing(const Module &module);
 bool lookupsNest(const Module &module);
 
 /// Is the expression an lvalue, or a part of a member or buffer, and not a temporary value?
-bool isPlace(const Expr &expr);
+bool isLvalue(const Expr &expr);
 
 } // namespace rtsl::typed

@@ -93,7 +93,7 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
   }
   case ExprKind::Field: {
     const auto &field = cast<typed::FieldExpr>(expr);
-    const Code base = typed::isPlace(*field.base)
+    const Code base = typed::isLvalue(*field.base)
                           ? of(*field.base, storeIndices)
                           : printer.expressions.operand(*field.base, Binding::Primary);
     return member(base, context.names.of(&field.base->type->structure->fields[field.field]));
@@ -128,7 +128,7 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
     // The outer index is evaluated first.
     const bool changes = printer.isNested && conflicts(context.effects.expression(*index.base),
                                                        context.effects.expression(*index.index));
-    const Code base = typed::isPlace(*index.base) ? of(*index.base, storeIndices || changes)
+    const Code base = typed::isLvalue(*index.base) ? of(*index.base, storeIndices || changes)
                       : changes ? printer.hoist(index.base->type, "value",
                                                 printer.expressions.argument(*index.base))
                                 : printer.expressions.operand(*index.base, Binding::Primary);

@@ -25,7 +25,7 @@ inline namespace RTSL_ARITHMETIC {
 
 namespace detail {
 /// A frame begins at a multiple of eight bytes, because it may contain addresses.
-inline char *frameBehind(void *end) {
+inline char *frameAfter(void *end) {
   const auto at = reinterpret_cast<std::uintptr_t>(end);
   return static_cast<char *>(end) + (8 - at % 8) % 8;
 }
@@ -61,7 +61,7 @@ inline Frame &calledFrameAt(void *memory) {
 /// The arguments and result of the method that this frame's method has called.
 template <typename Call, typename Frame>
 inline const Call &callAbove(Frame &frame) {
-  return calledFrameAt<Call>(detail::frameBehind(&frame + 1));
+  return calledFrameAt<Call>(detail::frameAfter(&frame + 1));
 }
 /// The same where the caller has no frame.
 template <typename Call>
