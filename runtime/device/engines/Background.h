@@ -11,6 +11,7 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -66,6 +67,7 @@ inline bool isBehind(Vec3 normal, Vec3 direction) {
 __attribute__((noinline))
 #endif
 inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left, Vec3 side) {
+  const Together together;
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
   EmittedLight light;

@@ -19,6 +19,7 @@
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Sampler.h"
+#include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -246,6 +247,7 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
 __attribute__((noinline))
 #endif
 inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, EmitterChoice choice) {
+  const Together together;
   const RtslLaunch &launch = *ray.launch;
   EmittedLight light;
   light.density = 0;

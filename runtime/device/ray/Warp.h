@@ -40,6 +40,19 @@ inline int lanesHere() {
   return __builtin_popcount(__nvvm_activemask());
 }
 
+/// The lanes that begin the scope of a variable of this type together end it together: those that
+/// return early wait for the others. Without it a GPU lets them run ahead, and from then on the
+/// warp runs the rest of the code once for each of its parts.
+class Together {
+public:
+  Together() : lanes(__nvvm_activemask()) {}
+  Together(const Together &) = delete;
+  ~Together() { __nvvm_bar_warp_sync(lanes); }
+
+private:
+  const uint32_t lanes;
+};
+
 #else
 
 constexpr uint32_t lanesOfWarp = 1;
@@ -53,6 +66,8 @@ inline uint32_t lanesWhere(bool condition) {
 inline int lanesHere() {
   return 1;
 }
+
+struct [[maybe_unused]] Together {};
 
 #endif
 

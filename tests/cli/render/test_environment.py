@@ -71,7 +71,7 @@ class EnvironmentCase(PathCase):
         source = (
             pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
         ).read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint))", "if (false)").replace(
+        plain = source.replace("if (illuminate(rt_HitPoint, pathSide()))", "if (false)").replace(
             "pathShare(path, path.density, rt_PDF)", "1.0"
         )
         self.assertEqual(len(plain.split("if (false)")), 2)
