@@ -1,8 +1,11 @@
 #include "runtime/accel/DeviceTrees.h"
 
 #include "runtime/accel/BvhBuilder.h"
+#include "runtime/accel/TreeItems.h"
 #include "runtime/device/trees/Widen.h"
 #include "support/Clock.h"
+
+#include <utility>
 
 namespace rtsl::runtime {
 
@@ -26,37 +29,42 @@ struct Piece {
   float cost() const { return isHere ? here.cost : there.cost; }
 };
 
-class Trees {
-public:
-  Trees(BuildDevice &device, TreeKind kind, const RtslLaunch &here, BuildDevice::Address there,
-        unsigned threads)
-      : device(device), kind(kind), here(here), there(there), threads(threads) {
-    made.figures.kind = kind;
-  }
+/// What was built.
+struct Made {
+  TreesThere trees;
+  BuildDevice::Address meshTrees = 0;
+  float cost = 0; // of the tree of the world
+};
 
-  DeviceTrees build() {
-    const SceneTrees trees = treesOf(here);
-    std::vector<std::uint32_t> roots;
-    add(trees.world);
-    for (const auto &[number, items] : trees.ofMeshes) {
-      roots.resize(number + 1);
-      roots[number] = made.figures.nodes;
+class Builder {
+public:
+  Builder(BuildDevice &device, TreeKind kind, const RtslLaunch &here, BuildDevice::Address there,
+          unsigned threads)
+      : device(device), kind(kind), here(here), there(there), threads(threads) {}
+
+  Made build(const SceneTrees &contents) {
+    std::vector<std::uint32_t> meshTrees;
+    add(contents.world);
+    for (const auto &[number, items] : contents.ofMeshes) {
+      meshTrees.resize(number + 1);
+      meshTrees[number] = made.trees.nodeCount;
       add(items);
     }
-    made.figures.cost = pieces[0].cost();
+    made.cost = pieces[0].cost();
     if (pieces.size() == 1 && !pieces[0].isHere) {
-      made.nodes = pieces[0].there.nodes;
-      made.items = pieces[0].there.items;
+      made.trees.nodes = pieces[0].there.nodes;
+      made.trees.items = pieces[0].there.items;
     } else {
       join();
     }
-    if (!roots.empty())
-      made.meshTrees = copied(roots.data(), roots.size() * sizeof roots[0]);
-    return made;
+    if (!meshTrees.empty())
+      made.meshTrees = copied(meshTrees.data(), meshTrees.size() * sizeof meshTrees[0]);
+    return std::move(made);
   }
 
 private:
   void add(const TreeItems &items) {
+    made.trees.roots.push_back(made.trees.nodeCount);
     Piece piece;
     piece.isHere = kind == TreeKind::Good || items.count < fewItems;
     if (piece.isHere) {
@@ -70,19 +78,19 @@ private:
                                     std::uint32_t(items.ranges.size()), items.count});
       device.release(ranges);
     }
-    made.figures.nodes += piece.nodeCount();
-    made.figures.items += piece.itemCount();
+    made.trees.nodeCount += piece.nodeCount();
+    made.trees.itemCount += piece.itemCount();
     pieces.push_back(std::move(piece));
   }
 
   /// Makes one tree of all.
   void join() {
-    made.nodes = device.allocate(made.figures.nodes * sizeof(RtslBvhNode), "the tree");
-    made.items = device.allocate(made.figures.items * sizeof(RtslTreeItem), "the tree");
+    made.trees.nodes = device.allocate(made.trees.nodeCount * sizeof(RtslBvhNode), "the tree");
+    made.trees.items = device.allocate(made.trees.itemCount * sizeof(RtslTreeItem), "the tree");
     std::uint32_t nodes = 0, items = 0;
     for (Piece &piece : pieces) {
-      const BuildDevice::Address toNodes = made.nodes + nodes * sizeof(RtslBvhNode),
-                                 toItems = made.items + items * sizeof(RtslTreeItem);
+      const BuildDevice::Address toNodes = made.trees.nodes + nodes * sizeof(RtslBvhNode),
+                                 toItems = made.trees.items + items * sizeof(RtslTreeItem);
       if (piece.isHere) {
         for (RtslBvhNode &node : piece.here.nodes)
           device::build::moveNode(node, nodes, items);
@@ -112,25 +120,64 @@ private:
   const BuildDevice::Address there;
   const unsigned threads;
   std::vector<Piece> pieces; // of the world first
-  DeviceTrees made;
+  Made made;
 };
 
 } // namespace
 
-void DeviceTrees::install(RtslLaunch &launch) const {
-  launch.nodes = reinterpret_cast<const RtslBvhNode *>(nodes);
-  launch.treeItems = reinterpret_cast<const RtslTreeItem *>(items);
-  launch.meshTrees = reinterpret_cast<const std::uint32_t *>(meshTrees);
-  launch.nodeCount = figures.nodes;
+DeviceTrees::DeviceTrees(std::unique_ptr<BuildDevice> device) : device(std::move(device)) {}
+
+DeviceTrees::~DeviceTrees() {
+  release();
 }
 
-DeviceTrees buildTrees(BuildDevice &device, TreeKind kind, const RtslLaunch &here,
-                       BuildDevice::Address there, unsigned threads) {
+void DeviceTrees::release() {
+  refitted.reset();
+  costsWhenBuilt.clear();
+  contents.reset();
+  for (BuildDevice::Address *const address : {&trees.nodes, &trees.items, &meshTrees})
+    if (const BuildDevice::Address one = std::exchange(*address, 0))
+      device->release(one);
+}
+
+void DeviceTrees::build(const RtslLaunch &here, BuildDevice::Address there, unsigned threads,
+                        std::optional<TreeKind> wanted) {
+  release();
+  const SceneTrees ofScene = treesOf(here);
+  const TreeKind kind = treeKind(wanted, itemCount(ofScene));
+  Made made = Builder(*device, kind, here, there, threads).build(ofScene);
+  trees = std::move(made.trees);
+  meshTrees = made.meshTrees;
+  figures = {kind, trees.nodeCount, trees.itemCount, made.cost};
+}
+
+/// Returns whether the trees are good enough.
+bool DeviceTrees::refit(const RtslLaunch &here, BuildDevice::Address there) {
+  if (!refitted) {
+    refitted = std::make_unique<Refit>(*device, trees, treesOf(here));
+    costsWhenBuilt = refitted->costs();
+  }
+  figures.isRefitted = !areTooBad(refitted->follow(there), costsWhenBuilt);
+  return figures.isRefitted;
+}
+
+void DeviceTrees::follow(const RtslLaunch &here, BuildDevice::Address there, unsigned threads,
+                         std::optional<TreeKind> kind) {
   const Clock::time_point start = Clock::now();
-  DeviceTrees made = Trees(device, kind, here, there, threads).build();
-  device.wait();
-  made.figures.seconds = secondsSince(start);
-  return made;
+  std::vector<InstanceContents> ofScene = treeContents(here);
+  const bool isSame = std::exchange(contents, std::nullopt) == ofScene;
+  if (!isSame || !refit(here, there))
+    build(here, there, threads, kind);
+  device->wait();
+  contents = std::move(ofScene);
+  figures.seconds = secondsSince(start);
+}
+
+void DeviceTrees::install(RtslLaunch &launch) const {
+  launch.nodes = reinterpret_cast<const RtslBvhNode *>(trees.nodes);
+  launch.treeItems = reinterpret_cast<const RtslTreeItem *>(trees.items);
+  launch.meshTrees = reinterpret_cast<const std::uint32_t *>(meshTrees);
+  launch.nodeCount = trees.nodeCount;
 }
 
 } // namespace rtsl::runtime

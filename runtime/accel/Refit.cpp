@@ -1,171 +1,131 @@
 #include "runtime/accel/Refit.h"
 
-#include "runtime/device/ray/Box.h"
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/accel/trees/BuildMemory.h"
 #include "runtime/device/trees/Bounds.h"
-#include "runtime/device/trees/Children.h"
-#include "runtime/device/trees/Grid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numeric>
+#include <utility>
 
 namespace rtsl::runtime {
 
 using namespace device::build;
 
-namespace {
+//===----------------------------------------------------------------------===//
+// Trees that follow
+//===----------------------------------------------------------------------===//
 
-/// One of the trees of a Bvh: its nodes, of which the root is the first.
-struct Part {
-  std::uint32_t firstNode, endNode;
-  std::uint32_t number; // in RtslLaunch::meshTrees; `ofWorld`: the world
-};
-constexpr std::uint32_t ofWorld = ~0u;
-
-std::vector<Part> partsOf(const Bvh &bvh) {
-  std::vector<Part> parts = {{0, 0, ofWorld}};
-  for (std::uint32_t i = 0; i < bvh.meshTrees.size(); ++i)
-    if (bvh.meshTrees[i] != 0) // a mesh without a tree of its own
-      parts.push_back({bvh.meshTrees[i], 0, i});
-  std::sort(parts.begin(), parts.end(),
-            [](const Part &a, const Part &b) { return a.firstNode < b.firstNode; });
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    parts[i].endNode =
-        i + 1 < parts.size() ? parts[i + 1].firstNode : std::uint32_t(bvh.nodes.size());
-  return parts;
-}
-
-bool isInner(const RtslBvhNode &node, unsigned slot) {
-  return node.inner >> slot & 1;
-}
-std::uint32_t childNode(const RtslBvhNode &node, unsigned slot) {
-  return node.firstNode + std::uint32_t(__builtin_popcount(node.inner & ((1u << slot) - 1)));
-}
-std::uint32_t itemCount(const RtslBvhNode &node, unsigned slot) {
-  return isInner(node, slot) ? 0 : std::uint32_t(__builtin_popcount(node.child[slot] >> 5));
-}
-std::uint32_t firstItem(const RtslBvhNode &node, unsigned slot) {
-  return node.firstItem + (node.child[slot] & 31u);
-}
-
-/// The box of a slot, as it is on the grid.
-RtslBox boxOfSlot(const RtslBvhNode &node, unsigned slot) {
-  RtslBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double step = GridStep(node.exponent[axis]).size;
-    box.lower[axis] = float(double(node.origin[axis]) + node.lower[axis][slot] * step);
-    box.upper[axis] = float(double(node.origin[axis]) + node.upper[axis][slot] * step);
+/// For each tree its first item, and an instance that has it.
+static std::vector<ItemRange> rangesOf(const SceneTrees &contents) {
+  std::vector<ItemRange> ranges = {{}};
+  std::uint32_t first = contents.world.count;
+  for (const auto &[number, items] : contents.ofMeshes) {
+    if (items.count != 0)
+      ranges.push_back({first, items.ranges.front().instance, RTSL_NO_HIT, false});
+    first += items.count;
   }
-  return box;
+  return ranges;
 }
 
-double costOf(const Bvh &bvh, const Part &part) {
-  double sum = 0;
-  RtslBox all = emptyBox();
-  for (std::uint32_t i = part.firstNode; i < part.endNode; ++i) {
-    const RtslBvhNode &node = bvh.nodes[i];
-    for (unsigned slot = 0; slot < width; ++slot) {
-      if (node.child[slot] == 0)
-        continue;
-      const RtslBox box = boxOfSlot(node, slot);
-      sum += double(halfArea(box)) *
-             (isInner(node, slot) ? costOfNode : costOfItem * float(itemCount(node, slot)));
-      if (i == part.firstNode)
-        extend(all, box);
-    }
-  }
-  const double whole = double(halfArea(all));
-  return whole > 0 && std::isfinite(sum / whole) ? sum / whole : 0;
-}
-
-/// The first of RtslLaunch::boxes of each object with several primitives.
-using FirstBoxes = std::map<std::uint32_t, std::uint32_t>; // by number in RtslLaunch::meshTrees
-
-FirstBoxes firstBoxesOf(const RtslLaunch &launch) {
-  FirstBoxes first;
-  for (std::uint32_t i = 0; i < launch.instanceCount; ++i)
-    if (const RtslInstance &instance = launch.instances[i]; instance.boxCount != 0)
-      first.emplace(device::treeNumber(launch, instance), instance.firstBox);
-  return first;
-}
-
-/// Updates an item, and returns its box.
-RtslBox refitItem(RtslTreeItem &item, const RtslLaunch &launch, std::uint32_t tree,
-                  const FirstBoxes &firstBoxes) {
-  const RtslInstance *instance = tree == ofWorld ? &launch.instances[item.instance] : nullptr;
-  if (instance && (instance->transform != 0 || (instance->primitive && !instance->boxCount))) {
-    RtslBox box;
-    std::copy_n(instance->lower, 3, box.lower);
-    std::copy_n(instance->upper, 3, box.upper);
-    return box;
-  }
-  if (instance && instance->primitive)
-    return device::enlarged(launch.boxes[instance->firstBox + item.primitive]);
-  if (!instance && tree >= launch.meshCount)
-    return device::enlarged(launch.boxes[firstBoxes.at(tree) + item.primitive]);
-  const RtslMesh &mesh = launch.meshes[instance ? instance->mesh : tree];
-  if (item.hasVertices) {
-    const device::TriangleVertices p = device::triangleVertices(mesh, item.primitive);
-    device::store(item.vertices, p.v0);
-    device::store(item.vertices + 3, p.v1);
-    device::store(item.vertices + 6, p.v2);
-  }
-  return device::boxOfTriangle(launch, mesh, item.primitive);
-}
-
-/// Updates a tree from the leaves to the root: a child comes after its parent.
-void refitPart(Bvh &bvh, const Part &part, const RtslLaunch &launch, const FirstBoxes &firstBoxes) {
-  std::vector<RtslBox> boxes(part.endNode - part.firstNode); // of nodes
-  for (std::uint32_t i = part.endNode; i-- > part.firstNode;) {
-    RtslBvhNode &node = bvh.nodes[i];
-    std::array<RtslBox, width> ofSlots;
-    RtslBox all = emptyBox();
-    for (unsigned slot = 0; slot < width; ++slot) {
-      if (node.child[slot] == 0)
-        continue;
-      RtslBox &box = ofSlots[slot] = emptyBox();
-      if (isInner(node, slot))
-        box = boxes[childNode(node, slot) - part.firstNode];
-      for (std::uint32_t k = 0; k < itemCount(node, slot); ++k)
-        extend(box,
-               refitItem(bvh.items[firstItem(node, slot) + k], launch, part.number, firstBoxes));
-      extend(all, box);
-    }
-    boxes[i - part.firstNode] = all;
-    if (!(all.lower[0] <= all.upper[0])) // an empty tree
-      continue;
-    setGrid(node, all);
-    for (unsigned slot = 0; slot < width; ++slot)
-      if (node.child[slot] != 0)
-        setBox(node, slot, ofSlots[slot]);
+Refit::Refit(BuildDevice &device, TreesThere there, const SceneTrees &contents)
+    : device(device), trees(std::move(there)) {
+  const std::vector<ItemRange> ofTrees = rangesOf(contents);
+  rangeCount = std::uint32_t(ofTrees.size());
+  try {
+    ranges = device.allocate(ofTrees.size() * sizeof ofTrees[0], "the tree");
+    device.upload(ranges, ofTrees.data(), ofTrees.size() * sizeof ofTrees[0]);
+    levels = device.allocate(trees.nodeCount * sizeof(std::uint32_t), "the tree");
+    findLevels();
+  } catch (...) {
+    release();
+    throw;
   }
 }
+
+Refit::~Refit() {
+  release();
+}
+
+void Refit::release() {
+  for (const BuildDevice::Address address : {ranges, levels})
+    if (address)
+      device.release(address);
+}
+
+TreeBuild Refit::begin() const {
+  TreeBuild build{};
+  build.nodes = reinterpret_cast<RtslBvhNode *>(trees.nodes);
+  build.treeItems = reinterpret_cast<RtslTreeItem *>(trees.items);
+  build.refit.trees = std::uint32_t(trees.roots.size());
+  build.refit.levels = reinterpret_cast<std::uint32_t *>(levels);
+  return build;
+}
+
+void Refit::findLevels() {
+  device.upload(levels, trees.roots.data(), trees.roots.size() * sizeof trees.roots[0]);
+  BuildMemory memory(device, begin(), [&](TreeBuild &build, Block &block) {
+    placeSums(build, block, trees.nodeCount);
+  });
+  std::uint32_t first = 0, end = std::uint32_t(trees.roots.size());
+  while (first != end) {
+    starts.push_back(first);
+    memory.run(BuildStep::CountInner, end - first, first);
+    memory.sumBefore(end - first);
+    memory.run(BuildStep::PlaceInner, end - first, first, end);
+    first = std::exchange(end, end + std::uint32_t(memory.sumOfAll()));
+  }
+  starts.push_back(end);
+}
+
+/// `launch` 0: nothing has moved.
+std::vector<double> Refit::run(BuildDevice::Address launch) {
+  TreeBuild begun = begin();
+  begun.items = {reinterpret_cast<const RtslLaunch *>(launch),
+                 reinterpret_cast<const ItemRange *>(ranges), rangeCount, trees.itemCount};
+  BuildMemory memory(device, begun, [&](TreeBuild &build, Block &block) {
+    block.place(build.refit.costsOfTrees, build.refit.trees);
+    block.place(build.refit.costs, trees.nodeCount);
+    block.place(build.refit.nodeBoxes, launch ? trees.nodeCount : 0);
+    block.place(build.refit.itemBoxes, launch ? trees.itemCount : 0);
+  });
+  if (launch)
+    memory.run(BuildStep::FollowItem, trees.itemCount);
+  for (std::size_t level = starts.size() - 1; level-- > 0;) {
+    const std::uint32_t first = starts[level], count = starts[level + 1] - first;
+    if (launch)
+      memory.run(BuildStep::FollowNode, count, first);
+    memory.run(BuildStep::SumCosts, count, first);
+  }
+  std::vector<double> costs(trees.roots.size());
+  device.download(costs.data(), addressOf(memory.build.refit.costsOfTrees),
+                  costs.size() * sizeof costs[0]);
+  return costs;
+}
+
+std::vector<double> Refit::costs() {
+  return run(0);
+}
+
+std::vector<double> Refit::follow(BuildDevice::Address launch) {
+  return run(launch);
+}
+
+bool areTooBad(const std::vector<double> &costs, const std::vector<double> &costsWhenBuilt) {
+  return !std::equal(costs.begin(), costs.end(), costsWhenBuilt.begin(),
+                     [](double now, double before) { return now <= largestDegradation * before; });
+}
+
+//===----------------------------------------------------------------------===//
+// Trees whose nodes cannot be read
+//===----------------------------------------------------------------------===//
 
 /// The bits of a number below 2^10, two zeros between each.
-std::uint32_t spread(std::uint32_t bits) {
+static std::uint32_t spread(std::uint32_t bits) {
   bits = (bits | bits << 16) & 0x030000ffu;
   bits = (bits | bits << 8) & 0x0300f00fu;
   bits = (bits | bits << 4) & 0x030c30c3u;
   return (bits | bits << 2) & 0x09249249u;
-}
-
-} // namespace
-
-std::vector<double> costsOfTrees(const Bvh &bvh) {
-  std::vector<double> costs;
-  for (const Part &part : partsOf(bvh))
-    costs.push_back(costOf(bvh, part));
-  return costs;
-}
-
-void refit(Bvh &bvh, const RtslLaunch &launch) {
-  const FirstBoxes firstBoxes = firstBoxesOf(launch);
-  for (const Part &part : partsOf(bvh))
-    refitPart(bvh, part, launch, firstBoxes);
 }
 
 BoxOrder::BoxOrder(const std::vector<RtslBox> &boxes) : order(boxes.size()) {

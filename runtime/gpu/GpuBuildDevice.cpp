@@ -9,6 +9,7 @@ namespace rtsl::runtime {
 
 GpuBuildDevice::~GpuBuildDevice() {
   try {
+    device.use();
     if (code)
       device.unload(*code);
   } catch (const Error &) { // after a failure of the device
@@ -30,6 +31,7 @@ BuildDevice::Address GpuBuildDevice::allocate(std::size_t bytes, const char *wha
 
 void GpuBuildDevice::release(Address address) {
   try {
+    device.use(); // the thread may be another one than that which has built the trees
     device.release(address);
   } catch (const Error &) { // likewise
   }

@@ -35,8 +35,8 @@ unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel,
 } // namespace
 
 GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scene,
-                         const RenderOptions &options)
-    : Megakernel(std::move(scene), options), device(device) {
+                         const RenderOptions &options, std::shared_ptr<DeviceTrees> kept)
+    : Megakernel(std::move(scene), options, std::move(kept)), device(device) {
   const Clock::time_point start = Clock::now();
   program = device.compile(code.ptx.c_str(), code.maxRegisters);
   loadKernels(code);

@@ -37,9 +37,10 @@ struct GpuStatistics {
 class GpuRenderer final : public Megakernel {
 public:
   /// Loads the program and copies the scene, which is not relocated, to the device, which must
-  /// outlive the renderer. Throws NoDevice, OutOfMemory, OutOfRange.
+  /// outlive the renderer and its trees. `kept`: trees of another scene's renderer on this device,
+  /// or null. Throws NoDevice, OutOfMemory, OutOfRange.
   GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scene,
-              const RenderOptions &options);
+              const RenderOptions &options, std::shared_ptr<DeviceTrees> kept = nullptr);
   ~GpuRenderer() override;
 
   const GpuStatistics &gpu() const { return figures; }
@@ -53,7 +54,6 @@ private:
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
   std::unique_ptr<BuildDevice> buildDevice() override;
-  void own(Address address) override { memory.push_back(address); }
   Address clearedPixels() override;
   void fetchPixels() override;
   std::uint64_t samplesInFlight() const override {

@@ -24,13 +24,14 @@ int Gpus::capability() const {
 }
 
 std::unique_ptr<Backend> Gpus::prepare(const GpuCode &code, FlatScene scene,
-                                       const RenderOptions &options) {
+                                       const RenderOptions &options, KeptDeviceTrees kept) {
+  kept.resize(devices.size());
   renderers.assign(devices.size(), nullptr);
   several = nullptr;
   if (devices.size() == 1 && (!scene.outputs.empty() || !options.wantsPicture)) {
     devices.front()->use();
     auto renderer =
-        std::make_unique<GpuRenderer>(*devices.front(), code, std::move(scene), options);
+        std::make_unique<GpuRenderer>(*devices.front(), code, std::move(scene), options, kept[0]);
     renderers.front() = renderer.get();
     return renderer;
   }
@@ -40,13 +41,20 @@ std::unique_ptr<Backend> Gpus::prepare(const GpuCode &code, FlatScene scene,
       devices.size(),
       [&](std::size_t i, const RenderOptions &ofPart) -> std::unique_ptr<Megakernel> {
         devices[i]->use();
-        auto renderer = std::make_unique<GpuRenderer>(*devices[i], code, scene, ofPart);
+        auto renderer = std::make_unique<GpuRenderer>(*devices[i], code, scene, ofPart, kept[i]);
         renderers[i] = renderer.get();
         return renderer;
       },
       options);
   several = backend.get();
   return backend;
+}
+
+KeptDeviceTrees Gpus::trees() const {
+  KeptDeviceTrees trees;
+  for (const GpuRenderer *renderer : renderers)
+    trees.push_back(renderer->treesOnDevice());
+  return trees;
 }
 
 std::vector<GpuStatistics> Gpus::statistics() const {

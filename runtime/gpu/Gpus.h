@@ -18,10 +18,13 @@ public:
   /// The oldest of their capabilities: what code for all of them is compiled for.
   int capability() const;
 
-  /// A backend for the scene, which is not relocated; this object must outlive it. Throws NoDevice,
-  /// OutOfMemory, OutOfRange; with several devices, NoDevice also for a scene that writes buffers.
+  /// A backend for the scene, which is not relocated; this object must outlive it. `kept`: trees
+  /// that may follow to this scene. Throws NoDevice, OutOfMemory, OutOfRange; with several devices,
+  /// NoDevice also for a scene that writes buffers.
   std::unique_ptr<Backend> prepare(const GpuCode &code, FlatScene scene,
-                                   const RenderOptions &options);
+                                   const RenderOptions &options, KeptDeviceTrees kept = {});
+  /// Those of the last backend, while it exists. This object must outlive them.
+  KeptDeviceTrees trees() const;
 
   /// The statistics of each device, while the last backend exists.
   std::vector<GpuStatistics> statistics() const;

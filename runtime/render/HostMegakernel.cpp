@@ -25,18 +25,11 @@ std::uint64_t inLines(std::uint64_t bytes) {
 } // namespace
 
 HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
-                               const RenderOptions &options)
-    : Megakernel(std::move(scene), options), code(code),
+                               const RenderOptions &options, std::shared_ptr<DeviceTrees> kept)
+    : Megakernel(std::move(scene), options, std::move(kept)), code(code),
       threads(options, pixelCount(), code.stackBytes) {
   makePicture(channels());
   prepare();
-}
-
-HostMegakernel::HostMegakernel(const MegakernelCode &code, FlatScene scene,
-                               const TreeFigures &figures, const RenderOptions &options)
-    : HostMegakernel(code, std::move(scene), options) {
-  trees = figures;
-  isRefitted = figures.isRefitted;
 }
 
 std::uint64_t HostMegakernel::laneBytes(const RtslLaunch &launch) {
@@ -67,12 +60,6 @@ void HostMegakernel::download(void *to, Address from, std::uint64_t bytes) {
 
 std::unique_ptr<BuildDevice> HostMegakernel::buildDevice() {
   return std::make_unique<HostBuildDevice>(options.threads);
-}
-
-void HostMegakernel::own(Address address) {
-  Allocation allocation; // which was counted when it was made
-  allocation.bytes.reset(reinterpret_cast<std::uint8_t *>(address));
-  memory.push_back(std::move(allocation));
 }
 
 Megakernel::Address HostMegakernel::clearedPixels() {

@@ -20,12 +20,10 @@ namespace rtsl::runtime {
 
 class HostMegakernel final : public Megakernel {
 public:
-  /// `scene` is not relocated; the code at `code` must stay loaded. Throws OutOfRange,
-  /// OutOfMemory.
-  HostMegakernel(const MegakernelCode &code, FlatScene scene, const RenderOptions &options);
-  /// The same for a scene with trees, of which these are the figures.
-  HostMegakernel(const MegakernelCode &code, FlatScene scene, const TreeFigures &figures,
-                 const RenderOptions &options);
+  /// `scene` is not relocated; the code at `code` must stay loaded. `kept`: of another scene's
+  /// HostMegakernel, or null. Throws OutOfRange, OutOfMemory.
+  HostMegakernel(const MegakernelCode &code, FlatScene scene, const RenderOptions &options,
+                 std::shared_ptr<DeviceTrees> kept = nullptr);
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &launch) override;
@@ -34,7 +32,6 @@ private:
   void upload(Address to, const void *from, std::uint64_t bytes) override;
   void download(void *to, Address from, std::uint64_t bytes) override;
   std::unique_ptr<BuildDevice> buildDevice() override;
-  void own(Address address) override;
   Address clearedPixels() override;
   void fetchPixels() override {} // they are there
   std::uint64_t samplesInFlight() const override { return threads.count(); }

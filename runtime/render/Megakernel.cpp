@@ -45,8 +45,9 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
   return statistics;
 }
 
-Megakernel::Megakernel(FlatScene scene, const RenderOptions &options)
-    : Backend(options), scene(std::move(scene)),
+Megakernel::Megakernel(FlatScene scene, const RenderOptions &options,
+                       std::shared_ptr<DeviceTrees> kept)
+    : Backend(options), scene(std::move(scene)), deviceTrees(std::move(kept)),
       colorComponents(this->scene.launch().colorComponents) {}
 
 void Megakernel::prepare() {
@@ -58,7 +59,7 @@ void Megakernel::prepare() {
   scene.relocate(sceneAddress);
   upload(sceneAddress, scene.bytes.data(), scene.bytes.size());
   if (!scene.hasTrees())
-    buildTreesAt(sceneAddress);
+    followTreesTo(sceneAddress);
   outputs = std::move(scene.outputs);
   scene = {};
   buildSeconds += secondsSince(start);
@@ -136,21 +137,18 @@ RenderStatistics Megakernel::renderPart(const Window &part, std::uint32_t sample
   return statistics;
 }
 
-/// Builds trees for a scene without trees that was copied there.
-void Megakernel::buildTreesAt(Address sceneAddress) {
+/// Makes the trees those of a scene without trees that was copied there.
+void Megakernel::followTreesTo(Address sceneAddress) {
   RtslLaunch launch = scene.launch();
   // The small ones are built of the scene's copy here, whose pointers must all lead there.
   scene.relocate(reinterpret_cast<Address>(scene.bytes.data()) - sceneAddress);
-  const RtslLaunch here = scene.launch();
-  const TreeKind kind = treeKind(options.tree, itemCount(treesOf(here)));
-  const std::unique_ptr<BuildDevice> device = buildDevice();
-  const DeviceTrees made = buildTrees(*device, kind, here, sceneAddress, options.threads);
-  for (const Address address : {made.nodes, made.items, made.meshTrees})
-    if (address)
-      own(address);
-  made.install(launch);
+  if (!deviceTrees)
+    deviceTrees = std::make_shared<DeviceTrees>(buildDevice());
+  deviceTrees->follow(scene.launch(), sceneAddress, options.threads, options.tree);
+  deviceTrees->install(launch);
   upload(sceneAddress, &launch, sizeof launch);
-  trees = made.figures;
+  trees = deviceTrees->treeFigures();
+  isRefitted = trees->isRefitted;
 }
 
 void Megakernel::begin() {

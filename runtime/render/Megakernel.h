@@ -43,14 +43,17 @@ public:
   std::uint32_t channels() const final { return colorComponents; }
   double secondsToPrepare() const { return buildSeconds; }
   const std::optional<TreeFigures> &builtTrees() const { return trees; }
+  /// For the next picture's backend on the same device, which may follow to its scene. Null: the
+  /// scene came with trees.
+  const std::shared_ptr<DeviceTrees> &treesOnDevice() const { return deviceTrees; }
 
 protected:
   /// An address in the device's memory.
   using Address = std::uint64_t;
 
-  /// Takes a scene that is not relocated. Constructors of devices call prepare() once their memory
-  /// and program are available.
-  Megakernel(FlatScene scene, const RenderOptions &options);
+  /// Takes a scene that is not relocated, and trees of another one on the same device, or null.
+  /// Constructors of devices call prepare() once their memory and program are available.
+  Megakernel(FlatScene scene, const RenderOptions &options, std::shared_ptr<DeviceTrees> kept);
 
   /// The scene's launch, before prepare().
   RtslLaunch launch() const { return scene.launch(); }
@@ -73,10 +76,8 @@ private:
   virtual Address allocate(std::uint64_t bytes, const char *what) = 0;
   virtual void upload(Address to, const void *from, std::uint64_t bytes) = 0;
   virtual void download(void *to, Address from, std::uint64_t bytes) = 0;
-  /// An object that builds trees in the memory of the device; memory that it has allocated is then
-  /// owned by the backend.
+  /// Builds trees in the memory of the device, and may outlive the backend.
   virtual std::unique_ptr<BuildDevice> buildDevice() = 0;
-  virtual void own(Address memory) = 0;
   /// The address of the pixels on the device, which are set to 0.
   virtual Address clearedPixels() = 0;
   /// Copies them to `pixels`.
@@ -112,9 +113,10 @@ private:
   void allocatePrinted();
   void takePrinted();
   std::uint32_t samplesAtOnce(std::uint64_t pixels) const;
-  void buildTreesAt(Address sceneAddress);
+  void followTreesTo(Address sceneAddress);
 
   FlatScene scene; // empty after prepare()
+  std::shared_ptr<DeviceTrees> deviceTrees;
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
   Address statusAddress = 0, jobAddress = 0, placesAddress = 0;

@@ -55,6 +55,7 @@ SeveralDevices::SeveralDevices(std::size_t count, const Make &make, const Render
   for (const Device &device : devices)
     buildSeconds = std::max(buildSeconds, device.backend->secondsToPrepare());
   trees = devices.front().backend->builtTrees();
+  isRefitted = trees && trees->isRefitted;
   makePicture(channels());
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/trees/Clusters.h"
+#include "runtime/device/trees/Refit.h"
 #include "runtime/device/trees/Sort.h"
 #include "runtime/device/trees/Widen.h"
 

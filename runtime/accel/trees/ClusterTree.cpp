@@ -1,5 +1,6 @@
 #include "runtime/accel/trees/ClusterTree.h"
 
+#include "runtime/accel/trees/BuildMemory.h"
 #include "runtime/device/trees/Clusters.h"
 #include "runtime/device/trees/Sort.h"
 
@@ -11,28 +12,10 @@ using namespace device::build;
 
 namespace {
 
-/// Arrays in one block of memory.
-class Block {
-public:
-  explicit Block(BuildDevice::Address start = 0) : start(start) {}
-
-  template <typename Element>
-  void place(Element *&array, std::size_t count) {
-    array = reinterpret_cast<Element *>(start + bytes);
-    bytes += (count * sizeof(Element) + 255) / 256 * 256;
-  }
-  std::size_t size() const { return bytes; }
-
-private:
-  BuildDevice::Address start;
-  std::size_t bytes = 0;
-};
-
-/// The arrays of a build, but for those of the tree. Returns their size.
-std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
+/// The arrays of a build, but for those of the tree.
+void placeArrays(TreeBuild &build, Block &block) {
   const std::size_t n = build.count;
   const std::size_t sums = std::max<std::size_t>(n, std::size_t(digits) * tileCount(build.count));
-  Block block(start);
   block.place(build.boxes, 2 * n);
   block.place(build.heights, 2 * n);
   block.place(build.children, n);
@@ -43,8 +26,7 @@ std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
   block.place(build.keys[1], n);
   block.place(build.order[0], n);
   block.place(build.order[1], n);
-  block.place(build.sums, sums);
-  block.place(build.sumsOfTiles, tileCount(std::uint32_t(sums)) + 1);
+  placeSums(build, block, sums);
   block.place(build.clusters[0], n);
   block.place(build.clusters[1], n);
   block.place(build.nearest, n);
@@ -52,7 +34,6 @@ std::size_t placeArrays(TreeBuild &build, BuildDevice::Address start) {
   // Keys are no longer needed then.
   static_assert(sizeof(WideNode) <= 2 * sizeof(std::uint64_t));
   build.wide = reinterpret_cast<WideNode *>(build.keys[0]);
-  return block.size();
 }
 
 /// Usual are 20 to 70.
@@ -60,18 +41,8 @@ constexpr std::uint32_t manyRounds = 150;
 
 class ClusterBuilder {
 public:
-  ClusterBuilder(BuildDevice &device, const Items &items) : device(device) {
-    build.items = items;
-    build.count = items.count;
-    const std::size_t bytes = placeArrays(build, 0);
-    scratch = device.allocate(bytes + sizeof build, "building the tree");
-    placeArrays(build, scratch);
-    address = scratch + bytes;
-    device.upload(address, &build, sizeof build);
-  }
-  ~ClusterBuilder() { device.release(scratch); }
-  ClusterBuilder(const ClusterBuilder &) = delete;
-  ClusterBuilder &operator=(const ClusterBuilder &) = delete;
+  ClusterBuilder(BuildDevice &device, const Items &items)
+      : device(device), memory(device, buildOf(items), placeArrays) {}
 
   void setBoxes(const RtslBox *boxes) {
     device.upload(addressOf(build.boxes + build.count), boxes, build.count * sizeof *boxes);
@@ -92,7 +63,7 @@ public:
     const std::uint32_t tiles = tileCount(build.count);
     for (std::uint32_t pass = 0; pass < sortPasses; ++pass) {
       run(BuildStep::CountDigits, tiles * device.lanes(), pass);
-      sumBefore(digits * tiles);
+      memory.sumBefore(digits * tiles);
       run(BuildStep::MoveByDigit, tiles * device.lanes(), pass);
     }
   }
@@ -103,9 +74,9 @@ public:
     while (round.clusters > 1) {
       run(BuildStep::FindNearest, round.clusters, round.number, round.isInPairs);
       run(BuildStep::CountCluster, round.clusters);
-      sumBefore(round.clusters);
+      memory.sumBefore(round.clusters);
       run(BuildStep::MoveCluster, round.clusters, round.number, round.isInPairs);
-      const auto left = std::uint32_t(sumOfAll());
+      const auto left = std::uint32_t(memory.sumOfAll());
       const bool isInPairs =
           round.isInPairs || left == round.clusters || round.number == manyRounds;
       round = {round.number + 1, left, isInPairs};
@@ -121,9 +92,9 @@ public:
     while (size != 0) {
       tree.nodeCount = first + size;
       run(BuildStep::CountChildren, size, first);
-      sumBefore(size);
+      memory.sumBefore(size);
       run(BuildStep::PlaceChildren, size, first, tree.nodeCount, items);
-      const std::uint64_t ofLevel = sumOfAll();
+      const std::uint64_t ofLevel = memory.sumOfAll();
       first += size;
       size = std::uint32_t(ofLevel);
       items += std::uint32_t(ofLevel >> 32);
@@ -137,7 +108,7 @@ public:
     build.treeItems = reinterpret_cast<RtslTreeItem *>(tree.items);
     if (tree.contents)
       build.contents = reinterpret_cast<std::uint32_t *>(tree.contents);
-    device.upload(address, &build, sizeof build);
+    memory.upload();
     run(BuildStep::WriteNode, tree.nodeCount);
     if (build.items.launch)
       run(BuildStep::WriteItem, tree.itemCount);
@@ -145,28 +116,16 @@ public:
   }
 
 private:
-  template <typename Element>
-  static BuildDevice::Address addressOf(Element *element) {
-    return reinterpret_cast<BuildDevice::Address>(element);
+  static TreeBuild buildOf(const Items &items) {
+    TreeBuild build{};
+    build.items = items;
+    build.count = items.count;
+    return build;
   }
 
   void run(BuildStep step, std::uint32_t count, std::uint32_t a = 0, std::uint32_t b = 0,
            std::uint32_t c = 0) {
-    device.run(step, address, count, a, b, c);
-  }
-
-  /// Replaces each of so many numbers by the sum of all before it.
-  void sumBefore(std::uint32_t elements) {
-    const std::uint32_t tiles = tileCount(elements), lanes = device.lanes();
-    run(BuildStep::SumTile, tiles * lanes, elements);
-    run(BuildStep::SumTilesBefore, lanes, tiles);
-    run(BuildStep::SumElementsBefore, tiles * lanes, elements);
-    total = addressOf(build.sumsOfTiles + tiles);
-  }
-  std::uint64_t sumOfAll() {
-    std::uint64_t sum = 0;
-    device.download(&sum, total, sizeof sum);
-    return sum;
+    memory.run(step, count, a, b, c);
   }
 
   /// The cost by the surface area heuristic.
@@ -183,9 +142,8 @@ private:
   }
 
   BuildDevice &device;
-  TreeBuild build{};
-  BuildDevice::Address scratch = 0, address = 0;
-  BuildDevice::Address total = 0; // of the last sums
+  BuildMemory memory;
+  TreeBuild &build = memory.build;
 };
 
 } // namespace
@@ -214,7 +172,9 @@ void moveNodes(BuildDevice &device, BuildDevice::Address nodes, std::uint32_t co
 std::size_t clusterTreeScratch(std::uint32_t items) {
   TreeBuild build{};
   build.count = items;
-  return placeArrays(build, 0);
+  Block block;
+  placeArrays(build, block);
+  return block.size();
 }
 
 } // namespace rtsl::runtime

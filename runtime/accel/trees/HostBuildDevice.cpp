@@ -1,6 +1,7 @@
 #include "runtime/accel/trees/HostBuildDevice.h"
 
 #include "runtime/device/trees/Clusters.h"
+#include "runtime/device/trees/Refit.h"
 #include "runtime/device/trees/Sort.h"
 #include "runtime/device/trees/Widen.h"
 #include "support/Error.h"

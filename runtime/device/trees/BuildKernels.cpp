@@ -1,5 +1,6 @@
 //===- BuildKernels.cpp - the kernels that build trees ---------------------===//
 #include "runtime/device/trees/Clusters.h"
+#include "runtime/device/trees/Refit.h"
 #include "runtime/device/trees/Sort.h"
 #include "runtime/device/trees/Widen.h"
 

@@ -33,12 +33,10 @@ inline const ItemRange &rangeOf(const Items &items, uint32_t item) {
   return items.ranges[low];
 }
 
-/// The box of an item; finite.
-inline RtslBox boxOfItem(const Items &items, uint32_t item) {
-  const RtslLaunch &launch = *items.launch;
-  const ItemRange &range = rangeOf(items, item);
-  const RtslInstance &instance = launch.instances[range.instance];
-  if (range.isWhole) {
+/// The box of an instance as a whole, or else of one of its triangles or primitives; finite.
+inline RtslBox boxOfPart(const RtslLaunch &launch, const RtslInstance &instance, bool isWhole,
+                         uint32_t part) {
+  if (isWhole) {
     RtslBox box;
     for (int axis = 0; axis < 3; ++axis) {
       box.lower[axis] = instance.lower[axis];
@@ -46,9 +44,22 @@ inline RtslBox boxOfItem(const Items &items, uint32_t item) {
     }
     return box;
   }
-  const uint32_t part = item - range.first;
   return instance.primitive == 0 ? boxOfTriangle(launch, launch.meshes[instance.mesh], part)
                                  : enlarged(launch.boxes[instance.firstBox + part]);
+}
+
+inline RtslBox boxOfItem(const Items &items, uint32_t item) {
+  const RtslLaunch &launch = *items.launch;
+  const ItemRange &range = rangeOf(items, item);
+  return boxOfPart(launch, launch.instances[range.instance], range.isWhole, item - range.first);
+}
+
+/// Sets the vertices of an item that has them.
+inline void storeVertices(RtslTreeItem &item, const RtslMesh &mesh) {
+  const TriangleVertices p = triangleVertices(mesh, item.primitive);
+  store(item.vertices, p.v0);
+  store(item.vertices + 3, p.v1);
+  store(item.vertices + 6, p.v2);
 }
 
 inline RtslTreeItem treeItem(const Items &items, uint32_t item) {
@@ -63,12 +74,8 @@ inline RtslTreeItem treeItem(const Items &items, uint32_t item) {
     return made;
   const RtslMesh &mesh = launch.meshes[instance.mesh];
   made.hasVertices = !moves(launch, mesh);
-  if (made.hasVertices) {
-    const TriangleVertices p = triangleVertices(mesh, made.primitive);
-    store(made.vertices, p.v0);
-    store(made.vertices + 3, p.v1);
-    store(made.vertices + 6, p.v2);
-  }
+  if (made.hasVertices)
+    storeVertices(made, mesh);
   return made;
 }
 

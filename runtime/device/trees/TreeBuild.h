@@ -25,6 +25,17 @@ struct Pair {
   uint32_t left, right;
 };
 
+/// What the steps of a refit share, beside the nodes, the items and the sums.
+struct TreeRefit {
+  uint32_t trees;     // their roots are the first level
+  uint32_t *levels;   // the numbers of the nodes, level by level
+  RtslBox *itemBoxes; // by item
+  RtslBox *nodeBoxes; // by node
+  double *costs;      // by node: of all below it, times the area of the tree
+  double
+      *costsOfTrees; // by number in `levels`: what a ray that enters the root is expected to cost
+};
+
 /// What all steps of a build share. n is the number of items, at least 1.
 struct TreeBuild {
   Items items; // `launch` null: the boxes are given
@@ -51,6 +62,8 @@ struct TreeBuild {
   uint32_t *contents; // the items in the order of the wide tree
   RtslBvhNode *nodes;
   RtslTreeItem *treeItems;
+
+  TreeRefit refit; // of trees that are there; `items` has a range for each with items
 
   // Not by an index, which would put a kernel's copy of this into memory.
   uint64_t *keysOf(uint32_t which) const { return which ? keys[1] : keys[0]; }

@@ -105,6 +105,20 @@ class Gpu(Case):
             r"good tree: \d+ nodes for \d+ items, cost [\d.]+, built in \d+ ms\n$",
         )
 
+    def test_trees_on_the_device_follow_from_frame_to_frame(self):
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["objects"][0]["transform"] = {
+            "translate": {"frames": {"0": [0.1, 0, 0], "4": [1, 0.5, 0]}}
+        }
+        self.write("scene.json", json.dumps(scene))
+        frames = (RTSLC, "render", "scene.json", "-o", "a%d.exr", "--frames=0..2", "--target=gpu")
+        for devices in (1, 2):
+            for tree in ("good", "fast"):
+                command = self.with_level([*frames, *SMALL, f"--tree={tree}", f"--gpus={devices}"])
+                _, said = self.run_with_fake_driver(command, devices=devices)
+                self.assertEqual(said.count("trees of the picture before: refitted"), 2, said)
+                self.assertEqual(said.count(", refitted in "), 2, said)
+
     def test_several_gpus_render_the_picture_of_one(self):
         """The second one is slower than the others, and gets less of it."""
         arguments = ("--size=64x200", "--spp=2", "-Wno-depth-limit")

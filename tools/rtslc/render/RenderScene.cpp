@@ -198,7 +198,8 @@ private:
     input->description.keptFiles = options.keptFiles;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
-    target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu);
+    target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu,
+                              options.keptTrees.get());
     start = Clock::now();
     std::vector<std::string> filesRead;
     module =
@@ -288,7 +289,7 @@ private:
       summary.unfinished = unfinishedText(summary.statistics, render);
     summary.statistics.buildSeconds = seconds;
     if (options.keptTrees)
-      options.keptTrees->ofHost = backend->takeTrees();
+      target->keepTrees(*backend, *options.keptTrees);
     summary.gpus = target->gpus();
     return image;
   }

@@ -15,6 +15,14 @@ namespace rtsl::tool {
 
 namespace {
 
+runtime::KeptDeviceTrees takenFrom(KeptTrees *kept) {
+  if (!kept)
+    return {};
+  runtime::KeptDeviceTrees trees = std::exchange(kept->ofDevices, {});
+  kept->gpus.reset(); // after a failure they begin anew
+  return trees;
+}
+
 /// The fastest code for this machine.
 class Host : public RenderTarget {
 public:
@@ -30,6 +38,10 @@ public:
     return std::make_unique<runtime::Renderer>(
         scene, options, kept ? std::exchange(kept->ofHost, nullptr) : nullptr);
   }
+
+  void keepTrees(runtime::Backend &backend, KeptTrees &kept) override {
+    kept.ofHost = backend.takeTrees();
+  }
 };
 
 /// The GPU's whole program on the CPU.
@@ -38,49 +50,61 @@ public:
   std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
                                             const runtime::RenderOptions &options,
                                             KeptTrees *kept) override {
-    const runtime::MegakernelCode &code = scene.program().megakernel;
-    if (!kept)
-      return std::make_unique<runtime::HostMegakernel>(code, runtime::flatten(scene), options);
-    runtime::OwnTrees &trees = kept->ofMegakernel;
-    trees.follow(scene.launch(), options.threads, options.tree);
-    return std::make_unique<runtime::HostMegakernel>(code, runtime::flatten(scene, trees.trees()),
-                                                     *trees.treeFigures(), options);
+    runtime::KeptDeviceTrees trees = takenFrom(kept);
+    trees.resize(1);
+    auto made = std::make_unique<runtime::HostMegakernel>(
+        scene.program().megakernel, runtime::flatten(scene), options, trees[0]);
+    backend = made.get();
+    return made;
   }
+
+  void keepTrees(runtime::Backend &, KeptTrees &kept) override {
+    kept.ofDevices = {backend->treesOnDevice()};
+  }
+
+private:
+  const runtime::HostMegakernel *backend = nullptr; // the last one
 };
 
 class Gpu : public RenderTarget {
 public:
-  Gpu(bool hasArchitecture, const GpuOptions &options)
-      : hasArchitecture(hasArchitecture), options(options), devices(options.count) {}
+  Gpu(bool hasArchitecture, const GpuOptions &options, std::shared_ptr<runtime::Gpus> devices)
+      : hasArchitecture(hasArchitecture), options(options), devices(std::move(devices)) {}
 
   std::optional<runtime::Scene> compile(const typed::Module &module, const LinkRequest &request,
                                         const CompileOptions &options, Diagnostics &diagnostics,
                                         const BuildScene &build) override {
     CompileOptions compile = options;
     if (!hasArchitecture)
-      compile.gpu = gpuArchitecture(devices.capability());
+      compile.gpu = gpuArchitecture(devices->capability());
     return compileScenePackage(module, request, compile, diagnostics, build, package);
   }
 
-  std::unique_ptr<runtime::Backend>
-  prepare(const runtime::Scene &scene, const runtime::RenderOptions &render, KeptTrees *) override {
+  std::unique_ptr<runtime::Backend> prepare(const runtime::Scene &scene,
+                                            const runtime::RenderOptions &render,
+                                            KeptTrees *kept) override {
     const runtime::NativeCode host(package.host); // to compute the size of a lane's stack
     const std::uint64_t laneBytes =
         host.entries().laneBytes(render.maxDepth, scene.launch().referenceChain);
     const unsigned registers = options.maxRegisters ? options.maxRegisters : package.registers;
-    return devices.prepare({package.ptx, laneBytes, registers, package.wave},
-                           runtime::flatten(scene), render);
+    return devices->prepare({package.ptx, laneBytes, registers, package.wave},
+                            runtime::flatten(scene), render, takenFrom(kept));
+  }
+
+  void keepTrees(runtime::Backend &, KeptTrees &kept) override {
+    kept.gpus = devices;
+    kept.ofDevices = devices->trees();
   }
 
   std::vector<std::string> stateNames(const runtime::Scene &) const override {
     return package.stateNames;
   }
-  std::vector<runtime::GpuStatistics> gpus() const override { return devices.statistics(); }
+  std::vector<runtime::GpuStatistics> gpus() const override { return devices->statistics(); }
 
 private:
   const bool hasArchitecture;
   const GpuOptions options;
-  runtime::Gpus devices;
+  const std::shared_ptr<runtime::Gpus> devices;
   runtime::Package package; // only its code
 };
 
@@ -134,7 +158,7 @@ void addTraversalOption(CLI::App &command, runtime::Traversal &traversal) {
 }
 
 std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture,
-                                               const GpuOptions &gpu) {
+                                               const GpuOptions &gpu, KeptTrees *kept) {
   switch (name) {
   case TargetName::Host:
     return std::make_unique<Host>();
@@ -143,7 +167,10 @@ std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitec
   case TargetName::Gpu:
     break;
   }
-  return std::make_unique<Gpu>(hasArchitecture, gpu);
+  std::shared_ptr<runtime::Gpus> devices = kept ? kept->gpus : nullptr;
+  if (!devices)
+    devices = std::make_shared<runtime::Gpus>(gpu.count);
+  return std::make_unique<Gpu>(hasArchitecture, gpu, std::move(devices));
 }
 
 } // namespace rtsl::tool

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "codegen/driver/SceneProgram.h"
-#include "runtime/accel/OwnTrees.h"
+#include "runtime/accel/DeviceTrees.h"
 #include "runtime/gpu/Gpus.h"
 #include "runtime/render/Backend.h"
 #include "tools/common/GpuOptions.h"
@@ -24,8 +24,9 @@ namespace rtsl::tool {
 
 /// The trees of a picture, for the next one of the same command.
 struct KeptTrees {
-  std::shared_ptr<runtime::KeptTrees> ofHost;                // null: there are none
-  runtime::OwnTrees ofMegakernel;                            // of the host
+  std::shared_ptr<runtime::KeptTrees> ofHost; // null: there are none
+  std::shared_ptr<runtime::Gpus> gpus;        // on which `ofDevices` are, and then outlives them
+  runtime::KeptDeviceTrees ofDevices;
   std::map<std::string, std::shared_ptr<KeptTrees>> ofViews; // by name
 };
 
@@ -40,10 +41,12 @@ public:
           Diagnostics &diagnostics, const BuildScene &build) = 0;
 
   /// The backend for the scene that compile() returned. The target must outlive it, and the scene
-  /// must not change during its lifetime. `kept`: trees that may follow to this scene; null: there
-  /// are no other pictures.
+  /// must not change during its lifetime. `kept`: trees that may follow to this scene, and are
+  /// taken; null: there are no other pictures.
   virtual std::unique_ptr<runtime::Backend>
   prepare(const runtime::Scene &scene, const runtime::RenderOptions &options, KeptTrees *kept) = 0;
+  /// Gives the trees of the last backend, which has rendered its picture.
+  virtual void keepTrees(runtime::Backend &backend, KeptTrees &kept) = 0;
 
   /// Program::stateNames of what compile() has compiled.
   virtual std::vector<std::string> stateNames(const runtime::Scene &scene) const {
@@ -66,8 +69,9 @@ void addTargetOption(CLI::App &command, TargetName &target);
 void addTraversalOption(CLI::App &command, runtime::Traversal &traversal);
 
 /// `hasArchitecture`: CompileOptions::gpu was set by the user; otherwise code for a GPU is compiled
-/// for the installed one. Throws NoDevice if the target is a GPU and there is none.
+/// for the installed one. `kept` as for prepare(). Throws NoDevice if the target is a GPU and there
+/// is none.
 std::unique_ptr<RenderTarget> makeRenderTarget(TargetName name, bool hasArchitecture,
-                                               const GpuOptions &gpu);
+                                               const GpuOptions &gpu, KeptTrees *kept = nullptr);
 
 } // namespace rtsl::tool

@@ -3,7 +3,9 @@
 #include "tests/unit/runtime/InstanceScenes.h"
 #include "tests/unit/runtime/TraversalRays.h"
 
-#include "runtime/accel/Refit.h"
+#include "runtime/accel/BvhBuilder.h"
+#include "runtime/accel/DeviceTrees.h"
+#include "runtime/accel/trees/HostBuildDevice.h"
 #include "runtime/device/traverse/Surface.h"
 #include "runtime/embree/HostScene.h"
 #include "runtime/scene/Scene.h"
@@ -73,6 +75,29 @@ void expectSameAsNew(const Scene &scene, const HostScene &embree, const HostScen
     ASSERT_NO_FATAL_FAILURE(expectSame(c, expected, i));
     hits += answer == RTSL_HIT;
   }
+}
+
+/// The trees of this process.
+TreesThere treesIn(Bvh &bvh) {
+  TreesThere trees = {BuildDevice::Address(bvh.nodes.data()),
+                      BuildDevice::Address(bvh.items.data()),
+                      std::uint32_t(bvh.nodes.size()),
+                      std::uint32_t(bvh.items.size()),
+                      {0}};
+  for (const std::uint32_t root : bvh.meshTrees)
+    if (root != 0)
+      trees.roots.push_back(root);
+  return trees;
+}
+
+template <typename Element>
+std::string bytesOf(const std::vector<Element> &elements) {
+  return {reinterpret_cast<const char *>(elements.data()), elements.size() * sizeof(Element)};
+}
+
+std::vector<double> follow(Refit &refit, const Scene &scene) {
+  const RtslLaunch launch = scene.launch();
+  return refit.follow(reinterpret_cast<BuildDevice::Address>(&launch));
 }
 
 std::vector<RtslBox> row(int count, float step) {
@@ -148,18 +173,79 @@ TEST(Refit, KeepsTheShapeOfATreeUntilItHasBecomeBad) {
   const RtslRef material = begin(scene);
   const std::uint32_t mesh = scene.addMesh(clump(random, 500));
   scene.addMeshInstance(mesh, material);
-  const HostScene old(scene, false, 1);
-  Bvh followed = buildBvh(scene, 1);
-  const double cost = costsOfTrees(followed).at(0);
-  EXPECT_GT(cost, 2);
+  Bvh tree = buildBvh(scene, 1), oldTree = tree;
+  HostBuildDevice device(1);
+  const SceneTrees contents = treesOf(scene.launch());
+  Refit refit(device, treesIn(tree), contents);
+  const std::vector<double> cost = refit.costs();
+  EXPECT_GT(cost.at(0), 2);
   scene.moveMesh(mesh, shaken(scene, mesh, 0.01f, random));
-  refit(followed, scene.launch());
-  EXPECT_NEAR(costsOfTrees(followed).at(0), cost, 0.1 * cost);
+  const std::vector<double> nearly = follow(refit, scene);
+  EXPECT_NEAR(nearly.at(0), cost.at(0), 0.1 * cost.at(0));
+  EXPECT_FALSE(areTooBad(nearly, cost));
   scene.moveMesh(mesh, shaken(scene, mesh, 2.0f, random)); // anywhere
-  refit(followed, scene.launch());
-  const double bad = costsOfTrees(followed).at(0), good = costsOfTrees(buildBvh(scene, 1)).at(0);
-  EXPECT_GT(bad, largestDegradation * cost);
-  EXPECT_LT(good, bad);
+  const std::vector<double> bad = follow(refit, scene);
+  EXPECT_TRUE(areTooBad(bad, cost));
+  Bvh newTree = buildBvh(scene, 1);
+  EXPECT_LT(Refit(device, treesIn(newTree), contents).costs().at(0), bad.at(0));
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    EXPECT_EQ(tree.nodes[i].firstNode, oldTree.nodes[i].firstNode);
+    EXPECT_EQ(tree.nodes[i].firstItem, oldTree.nodes[i].firstItem);
+  }
+}
+
+// Whatever built the tree: level by level, or subtree by subtree.
+TEST(Refit, ToTheSamePlaceChangesNothing) {
+  Scene scene = randomScene(3, 60);
+  std::mt19937 random(3);
+  for (const TreeKind kind : {TreeKind::Good, TreeKind::Fast}) {
+    Bvh tree = buildBvh(scene, 1, kind);
+    const Bvh old = tree;
+    HostBuildDevice device(3);
+    Refit refit(device, treesIn(tree), treesOf(scene.launch()));
+    const std::vector<double> costs = refit.costs();
+    EXPECT_EQ(costs.size(), treesIn(tree).roots.size());
+    EXPECT_EQ(follow(refit, scene), costs);
+    ASSERT_GT(tree.nodes.size(), 3u);
+    EXPECT_EQ(bytesOf(tree.nodes), bytesOf(old.nodes));
+    EXPECT_EQ(bytesOf(tree.items), bytesOf(old.items));
+  }
+}
+
+// The trees of a device follow from scene to scene, and are those that its traversal searches.
+TEST(Refit, TreesOfADeviceFollow) {
+  int hits = 0;
+  std::mt19937 random(26);
+  DeviceTrees trees(std::make_unique<HostBuildDevice>(2));
+  int refitted = 0;
+  for (int frame = 0; frame < 8; ++frame) {
+    const bool isOther = frame == 6; // of other contents
+    Scene scene = randomScene(26, isOther ? 61 : 60);
+    if (frame > 1 && !isOther)
+      moveSome(scene, frame == 4 ? 50.0f : 0.2f, random);
+    RtslLaunch launch = scene.launch();
+    trees.follow(launch, reinterpret_cast<BuildDevice::Address>(&launch), 2, std::nullopt);
+    const bool follows = trees.treeFigures().isRefitted;
+    EXPECT_TRUE(follows || frame != 1);
+    EXPECT_FALSE(follows && (frame == 0 || frame >= 6)) << frame;
+    refitted += follows;
+    trees.install(launch);
+    const FilledSlots slots{scene.program().slots};
+    const HostScene newTrees(scene, false, 1);
+    for (int i = 0; i < 1500; ++i) {
+      const Ray ray = randomRay(random, i % 50 ? 1 : 1000);
+      RtslState expected = makeState(newTrees.deviceLaunch(), ray.o, ray.d);
+      expected.Time = float(random()) * 0x1p-32f;
+      RtslState found = expected;
+      found.launch = &launch;
+      const std::uint32_t answer = newTrees.traverse(expected, 0);
+      EXPECT_EQ(device::findHit(found, 0, slots, device::LaunchTree{true}), answer);
+      ASSERT_NO_FATAL_FAILURE(expectSame(found, expected, i));
+      hits += answer == RTSL_HIT;
+    }
+  }
+  EXPECT_GT(refitted, 2);
+  EXPECT_GT(hits, 3000);
 }
 
 TEST(Refit, MeasuresBoxesInTheOrderThatTheyHad) {
