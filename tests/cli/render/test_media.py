@@ -233,6 +233,42 @@ class ClosedForms(MediaCase):
             self.assertLess(math.hypot(*both), 0.12 * other)
 
 
+class ImpossibleMedia(MediaCase):
+    def reported(self):
+        """The samples that are not finite, and how many of all they are."""
+        out, _ = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json", "--size", "4x4")
+        document = json.loads(out)
+        return document["samplesNotFinite"], document["samples"]
+
+    def test_a_line_of_too_many_steps_ends(self):
+        """A step of 1e-30 through a grid that is empty where the ray begins: the ray would never
+        leave."""
+        self.scene(self.grid([1, 1, 0, 0], [1, 1, 4], scattering=1e30), spp=1, background=SKY)
+        bad, all_of_them = self.reported()
+        self.assertEqual(bad, all_of_them)
+
+    def test_impossible_coefficients_are_reported(self):
+        for medium in (
+            {"scattering": -1},
+            {"absorption": -1},
+            {"scattering": -1, "absorption": 3},
+            {"scattering": 3e38, "absorption": 3e38},
+        ):
+            self.scene({"class": "HomogeneousMedium", **medium}, spp=1, background=SKY)
+            bad, all_of_them = self.reported()
+            self.assertGreater(bad, all_of_them / 2, medium)
+
+    def test_any_anisotropy_is_one_of_the_range(self):
+        """All light that goes in comes out."""
+        for anisotropy in (-1, 1, 1e30):
+            self.scene(
+                {"class": "HomogeneousMedium", "scattering": 2, "anisotropy": anisotropy},
+                depth=200,
+                background=SKY,
+            )
+            self.assert_color([1, 1, 1], 0.01)
+
+
 class Scenes(MediaCase):
     def test_every_path_gives_the_same_bits(self):
         glass = {
