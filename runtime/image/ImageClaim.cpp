@@ -94,6 +94,16 @@ double rowOfTiles(const ImageClaim &claim) {
          double(claim.tileDepth) * double(claim.pixelBytes);
 }
 
+/// Bytes that OpenImageIO decodes at once before it converts them or takes some of the channels: a
+/// row of tiles; of an image without tiles 64 MiB, or 256 rows if that is more.
+double decodedAtOnce(const ImageClaim &claim) {
+  const double row = rowOfTiles(claim);
+  if (claim.tileWidth != 0)
+    return row;
+  constexpr double usual = 1 << 26, leastRows = 256;
+  return std::min(double(claim.height) * row, std::max(usual, leastRows * row));
+}
+
 std::string sizeText(double bytes) {
   constexpr const char *units[] = {"bytes", "KiB", "MiB", "GiB"};
   std::size_t unit = 0;
@@ -145,7 +155,7 @@ std::string whyFileTooSmall(const ImageClaim &claim, std::uint64_t fileBytes) {
 }
 
 double memoryToRead(const ImageClaim &claim, std::uint64_t keptBytes) {
-  return double(claim.width) * double(claim.height) * double(keptBytes) + rowOfTiles(claim);
+  return double(claim.width) * double(claim.height) * double(keptBytes) + decodedAtOnce(claim);
 }
 
 } // namespace rtsl::runtime

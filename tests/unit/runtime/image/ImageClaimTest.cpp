@@ -94,9 +94,13 @@ TEST(ImageClaim, BitsAndIndicesBecomeMoreBytes) {
 
 TEST(ImageClaim, MemoryToRead) {
   ImageClaim claim = claimOf("openexr", "zip", 100, 50, 10, 4);
-  EXPECT_EQ(memoryToRead(claim, 16), 100.0 * 50 * 16 + 100 * 40);
+  EXPECT_EQ(memoryToRead(claim, 16), 100.0 * 50 * 16 + 100.0 * 50 * 40);
   claim.tileWidth = claim.tileHeight = 64;
   EXPECT_EQ(memoryToRead(claim, 16), 100.0 * 50 * 16 + 128 * 64 * 40);
+  claim = claimOf("tiff", "none", 10000, 10000, 4, 2);
+  EXPECT_EQ(memoryToRead(claim, 8), 1e8 * 8 + (1 << 26));
+  claim = claimOf("tiff", "none", 1000000, 1000, 4, 2); // very wide
+  EXPECT_EQ(memoryToRead(claim, 8), 1e9 * 8 + 1e6 * 256 * 8);
 }
 
 TEST(ImageClaim, UserDataOfDpx) {
