@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -83,6 +84,11 @@ std::string attributeOf(const std::string &property) {
       std::string_view("xyzwuv").find(property.back()) != std::string_view::npos)
     return property.substr(0, length - 2);
   return property;
+}
+
+/// Is it a face's list of vertices?
+bool isCorners(const Property &property) {
+  return property.isList && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
 /// Numbers of 8 and 16 bits that are colors count from 0 to 1.
@@ -302,10 +308,6 @@ private:
   bool readFaces(const Element &element) {
     if (mesh.positions.empty() || !mesh.indices.empty())
       return false;
-    auto isCorners = [](const Property &property) {
-      return property.isList &&
-             (property.name == "vertex_indices" || property.name == "vertex_index");
-    };
     const auto lists = std::count_if(element.properties.begin(), element.properties.end(),
                                      [](const Property &property) { return property.isList; });
     if (lists != 1 || std::none_of(element.properties.begin(), element.properties.end(), isCorners))
@@ -408,6 +410,63 @@ std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &requ
   return std::move(reader.mesh);
 }
 
+namespace {
+
+/// Reads the values of all elements, and finds the first that is not valid.
+class DamageFinder {
+public:
+  DamageFinder(std::string_view bytes, const Header &header, const std::string &path)
+      : body(bytes, header), header(header), path(path) {
+    for (const Element &element : header.elements)
+      if (element.name == "vertex")
+        vertexCount += element.count;
+  }
+
+  std::optional<Message> find() {
+    for (const Element &element : header.elements)
+      for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
+        for (const Property &property : element.properties)
+          if (std::optional<Message> damage = readNext(element, i, property))
+            return damage;
+    return std::nullopt;
+  }
+
+private:
+  std::optional<Message> readNext(const Element &element, std::uint64_t row,
+                                  const Property &property) {
+    const bool areCorners = element.name == "face" && isCorners(property);
+    std::uint64_t count = 1;
+    if (property.isList && !body.readCount(property.countType, count))
+      return unreadable(element, row);
+    if (areCorners && count == 0)
+      return message::meshFaceEmpty(path, row + 1, element.count);
+    for (; count > 0; --count) {
+      double number;
+      if (!body.readNumber(property.type, number))
+        return unreadable(element, row);
+      if (areCorners &&
+          !(number >= 0 && number < double(vertexCount) && number == std::floor(number)))
+        return message::meshFaceCorner(path, row + 1, element.count, number, vertexCount);
+    }
+    return std::nullopt;
+  }
+
+  /// The value after the last one that could be read.
+  Message unreadable(const Element &element, std::uint64_t row) const {
+    if (body.lastWord().empty())
+      return message::meshTruncated(path, row + 1, element.count, element.name);
+    return message::meshElementNotNumber(path, row + 1, element.count, element.name,
+                                         body.lastWord());
+  }
+
+  Body body;
+  const Header &header;
+  const std::string &path;
+  std::uint64_t vertexCount = 0;
+};
+
+} // namespace
+
 std::optional<Message> findPlyDamage(std::string_view bytes, const std::string &path) {
   if (!isPly(bytes))
     return message::meshIsNoPly(path);
@@ -415,16 +474,7 @@ std::optional<Message> findPlyDamage(std::string_view bytes, const std::string &
   const std::optional<Header> header = readHeader(bytes, &line);
   if (!header)
     return message::meshHeaderDamaged(path, line);
-  Body body(bytes, *header);
-  for (const Element &element : header->elements) {
-    if (element.properties.empty())
-      continue;
-    for (std::uint64_t i = 0; i < element.count; ++i)
-      for (const Property &property : element.properties)
-        if (!body.skip(property))
-          return message::meshTruncated(path, i + 1, element.count, element.name);
-  }
-  return std::nullopt;
+  return DamageFinder(bytes, *header, path).find();
 }
 
 } // namespace rtsl::runtime

@@ -18,8 +18,9 @@ namespace rtsl::runtime {
 std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &request = {});
 
 /// Why the file at `path`, which consists of `bytes`, is not a valid PLY file; nothing if its
-/// header is valid and all elements that the header declares are there. The general reader must not
-/// read invalid files: it reads zeros, does not terminate, or crashes.
+/// header is valid, all elements that the header declares are there, with numbers of the declared
+/// types, and the corners of faces are vertices. The general reader must not read invalid files: it
+/// reads zeros, does not terminate, or crashes.
 std::optional<Message> findPlyDamage(std::string_view bytes, const std::string &path);
 
 } // namespace rtsl::runtime

@@ -79,6 +79,8 @@ std::optional<Header> readHeader(std::string_view bytes, std::size_t *lines) {
           (property.isList && (property.countType == Type::None || isFloating(property.countType))))
         return std::nullopt;
       header.elements.back().properties.push_back(property);
+    } else if (!word.empty() && word != "ply" && word != "comment" && word != "obj_info") {
+      return std::nullopt;
     }
   }
   return std::nullopt;

@@ -164,8 +164,9 @@ private:
   template <typename Number>
   bool readWord(Number &number) {
     nextWord();
+    const bool hasPlus = word.size() > 1 && word[0] == '+' && word[1] != '-';
     const char *last = word.data() + word.size();
-    const auto [after, error] = std::from_chars(word.data(), last, number);
+    const auto [after, error] = std::from_chars(word.data() + hasPlus, last, number);
     return error == std::errc() && after == last;
   }
 

@@ -137,6 +137,39 @@ TEST_F(Meshes, BadFilesAreRefusedByName) {
             "fileUnreadable: cannot read mesh `" + folder.string() + "`: it is a folder");
 }
 
+/// assimp crashes, renders another mesh or aborts.
+TEST_F(Meshes, DamageOfPlyIsFoundBeforeAssimpReadsIt) {
+  auto damage = [](std::string text, const std::string &what = "",
+                   const std::string &instead = "") {
+    text.replace(text.find(what), what.size(), instead);
+    const std::optional<Message> found = findPlyDamage(text, "a.ply");
+    return found ? found->text : "";
+  };
+  const std::string header = plyHeader;
+  const std::string good = header + "3 0 1 +2\n5 0 1 2 3 0\n";
+  EXPECT_EQ(damage(good), "");
+  EXPECT_EQ(damage(header + "3 0 1 2\n5 0 1 2 3 4\n"),
+            "mesh `a.ply` is damaged: face 2 of 2 has the corner 4, and there are 4 vertices");
+  EXPECT_EQ(damage(header + "3 0 1 2\n5 0 1 2 3 -1\n"),
+            "mesh `a.ply` is damaged: face 2 of 2 has the corner -1, and there are 4 vertices");
+  EXPECT_EQ(damage(header + "3 0 1 2\n0\n"), "mesh `a.ply` is damaged: face 2 of 2 has no corners");
+  EXPECT_EQ(damage(header + "3 0 1 2\n5 0 1 2 3 x\n"),
+            "mesh `a.ply` is damaged in element 2 of 2 of `face`: `x` is not a number of its type");
+  EXPECT_EQ(damage(good, "1 0 0", "1 0.5x 0"), "mesh `a.ply` is damaged in element 2 of 4 of "
+                                               "`vertex`: `0.5x` is not a number of its type");
+  EXPECT_EQ(damage(good, "property float z", "propperty float z"),
+            "mesh `a.ply` is damaged or truncated in line 6 of its header");
+  EXPECT_EQ(damage(good, "element face", "obj_info x\ncomment y\nelement face"), "");
+
+  // As floats, and in the other order
+  const std::string binary = damage("ply\nformat binary_big_endian 1.0\nelement face 1\n"
+                                    "property list uchar float vertex_index\nelement vertex 1\n"
+                                    "property uchar x\nend_header\n\1\x3f\x80" +
+                                    std::string(3, '\0'));
+  EXPECT_EQ(binary,
+            "mesh `a.ply` is damaged: face 1 of 1 has the corner 1, and there are 1 vertices");
+}
+
 TEST_F(Meshes, BinaryPlyThatEndsTooEarly) {
   std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float "
                        "x\nproperty float y\nproperty float z\n"
