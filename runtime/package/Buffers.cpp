@@ -103,6 +103,11 @@ public:
   std::string_view left;
 };
 
+/// Of element 0, in a flat scene.
+std::uint64_t startOf(const RtslBuffer &buffer) {
+  return std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
+}
+
 std::uint64_t bytesOf(const RtslBuffer &buffer, const ValueType &type) {
   std::uint64_t bytes = type.elementSize;
   for (std::uint8_t i = 0; i < type.bufferRank; ++i)
@@ -136,10 +141,28 @@ bool parse(std::string_view bytes, std::vector<PackageBuffer> &buffers) {
     buffer.place = reader.number();
     buffer.hasLaunchSize = reader.number() != 0;
     buffer.setsLaunchSize = reader.number() != 0;
-    reader.isDamaged |= buffer.type.bufferRank < 1 || buffer.type.bufferRank > 3;
+    reader.isDamaged |=
+        buffer.type.bufferRank < 1 || buffer.type.bufferRank > 3 || buffer.type.elementSize == 0;
     buffers.push_back(std::move(buffer));
   }
   return !reader.isDamaged && reader.left.empty();
+}
+
+bool isWithin(const FlatScene &scene, const PackageBuffer &buffer) {
+  const std::uint64_t size = scene.bytes.size();
+  RtslBuffer header;
+  if (size < sizeof header || buffer.place > size - sizeof header)
+    return false;
+  std::memcpy(&header, scene.bytes.data() + buffer.place, sizeof header);
+  const std::uint32_t *const sizes = header.size, *const end = sizes + buffer.type.bufferRank;
+  if (std::find(sizes, end, 0u) != end)
+    return true;
+  if (startOf(header) > size)
+    return false;
+  std::uint64_t most = (size - startOf(header)) / buffer.type.elementSize;
+  for (const std::uint32_t *one = sizes; one != end; ++one)
+    most /= *one; // floor(floor(a / b) / c) = floor(a / (b c))
+  return most > 0;
 }
 
 //===----------------------------------------------------------------------===//
@@ -238,8 +261,7 @@ void LaunchBuffers::setSize(const RenderOptions &options) {
     if (!buffers[i].type.isOutput || bytes == 0)
       continue;
     memory[i].resize(bytes);
-    const std::uint64_t start = std::uint64_t(now.addressHigh) << 32 | now.addressLow;
-    flat.outputs.push_back({start, bytes, memory[i].data()});
+    flat.outputs.push_back({startOf(now), bytes, memory[i].data()});
   }
 }
 

@@ -35,6 +35,9 @@ struct PackageBuffer {
 std::string serialize(const std::vector<PackageBuffer> &buffers);
 bool parse(std::string_view bytes, std::vector<PackageBuffer> &buffers);
 
+/// Whether the scene holds the buffer with all of its elements.
+bool isWithin(const FlatScene &scene, const PackageBuffer &buffer);
+
 /// The flat scene of a package with the buffers of one launch.
 class LaunchBuffers {
 public:

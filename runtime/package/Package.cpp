@@ -195,7 +195,7 @@ private:
   }
 
   void readSections() {
-    if (sectionCount > (file.size() - sizeof(Header)) / sizeof(Section))
+    if (sectionCount == 0 || sectionCount > (file.size() - sizeof(Header)) / sizeof(Section))
       refuseDamaged();
     sections.resize(sectionCount);
     std::memcpy(sections.data(), file.data() + sizeof(Header), sectionCount * sizeof(Section));
@@ -229,6 +229,11 @@ private:
     package.options.samplesPerPixel = info.samplesPerPixel;
     package.options.maxDepth = info.maxDepth;
     package.options.seed = info.seed;
+    try {
+      checkOptions(package.options);
+    } catch (const Error &) {
+      refuseDamaged();
+    }
     package.stateCount = info.stateCount;
     package.frameBytes = info.frameBytes;
     const std::string_view laneBytes = content(SectionKind::LaneBytes);
@@ -246,7 +251,7 @@ private:
       refuseDamaged();
   }
 
-  /// Every pointer must be within the scene and point into it.
+  /// Every pointer must be within the scene, after the one before it, and point into it.
   void readScene(FlatScene &scene) const {
     const std::string_view bytes = content(SectionKind::Scene);
     const std::string_view pointers = content(SectionKind::Pointers);
@@ -256,21 +261,24 @@ private:
     scene.pointers.resize(pointers.size() / 8);
     if (!pointers.empty())
       std::memcpy(scene.pointers.data(), pointers.data(), pointers.size());
+    std::uint64_t end = 0; // of the one before it
     for (std::uint64_t place : scene.pointers) {
       std::uint64_t target;
-      if (place > bytes.size() - 8)
+      if (place < end || place > bytes.size() - sizeof target)
         refuseDamaged();
+      end = place + sizeof target;
       std::memcpy(&target, bytes.data() + place, sizeof target);
       if (target >= bytes.size())
         refuseDamaged();
     }
   }
 
+  /// Every buffer must be within the scene, with all of its elements.
   void readBuffers(Package &package) const {
     if (!parse(content(SectionKind::Buffers), package.buffers))
       refuseDamaged();
     for (const PackageBuffer &buffer : package.buffers)
-      if (buffer.place > package.scene.bytes.size() - sizeof(RtslBuffer))
+      if (!isWithin(package.scene, buffer))
         refuseDamaged();
   }
 

@@ -112,6 +112,31 @@ TEST(Package, EveryOtherLengthIsFound) {
   EXPECT_NE(refusal(whole + '\0'), "");
 }
 
+TEST(Package, ContentsThatNoRenderingCanHaveAreFound) {
+  const auto refused = [](auto change) {
+    Package package = smallPackage();
+    PackageBuffer buffer;
+    buffer.name = "rays";
+    buffer.type.bufferRank = 1;
+    buffer.type.elementSize = 4;
+    buffer.place = sizeof(RtslLaunch) - sizeof(RtslBuffer);
+    package.buffers = {buffer};
+    change(package);
+    return refusal(serialize(package)) == "`x.rtslpkg` is damaged: pack the scene again";
+  };
+  const auto setElements = [](Package &package, std::uint32_t start, std::uint32_t count) {
+    const RtslBuffer header{start, 0, {count, 0, 0}};
+    std::memcpy(&package.scene.bytes[package.buffers[0].place], &header, sizeof header);
+  };
+  EXPECT_FALSE(refused([&](Package &package) { setElements(package, sizeof(RtslLaunch), 4); }));
+  EXPECT_TRUE(refused([&](Package &package) { setElements(package, sizeof(RtslLaunch), 5); }));
+  EXPECT_TRUE(refused([&](Package &package) { setElements(package, 0xffffffff, 1); }));
+  EXPECT_TRUE(refused([](Package &package) { package.buffers[0].type.elementSize = 0; }));
+  EXPECT_TRUE(refused([](Package &package) { package.options.maxDepth = maxRayDepth + 1; }));
+  EXPECT_TRUE(refused([](Package &package) { package.options.slices = 0; }));
+  EXPECT_TRUE(refused([](Package &package) { package.scene.pointers = {8, 0}; }));
+}
+
 TEST(Package, RejectionsHaveReasons) {
   const std::string whole = serialize(smallPackage());
   EXPECT_EQ(refusal("an ordinary text that has nothing to do with it"),
