@@ -1,14 +1,16 @@
 //===- Target.h - what a fuzzer runs --------------------------------------===//
 //
-// All targets, FrontEnd.cpp, SceneReader.cpp, MaterialReader.cpp, GltfReader.cpp and
-// ImageReader.cpp, define LLVMFuzzerTestOneInput. libFuzzer calls it with inputs that it makes;
-// Replay.cpp is a plain main that calls it with files. docs/testing.md describes how to run them.
+// All targets, FrontEnd.cpp and the readers of files, define LLVMFuzzerTestOneInput. libFuzzer
+// calls it with inputs that it makes; Replay.cpp is a plain main that calls it with files.
+// docs/testing.md describes how to run them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 /// Runs one input. What must not be ends the process.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size);
@@ -17,5 +19,17 @@ namespace rtsl::fuzz {
 
 /// Ends the process unless `holds`; fuzzers take that as a crash.
 void require(bool holds, const char *what);
+
+/// A file with this content, for readers that take paths. It is removed at the end.
+class File {
+public:
+  /// The end of `name` tells readers the format.
+  File(std::string_view content, const std::string &name);
+  ~File();
+  File(const File &) = delete;
+  File &operator=(const File &) = delete;
+
+  std::string path;
+};
 
 } // namespace rtsl::fuzz

@@ -28,11 +28,13 @@ void HostBuildDevice::release(Address address) {
 }
 
 void HostBuildDevice::upload(Address to, const void *from, std::size_t bytes) {
-  std::memcpy(reinterpret_cast<void *>(to), from, bytes);
+  if (bytes != 0) // else there may be no `from`, which memcpy does not allow
+    std::memcpy(reinterpret_cast<void *>(to), from, bytes);
 }
 
 void HostBuildDevice::download(void *to, Address from, std::size_t bytes) {
-  std::memcpy(to, reinterpret_cast<const void *>(from), bytes);
+  if (bytes != 0)
+    std::memcpy(to, reinterpret_cast<const void *>(from), bytes);
 }
 
 void HostBuildDevice::copy(Address to, Address from, std::size_t bytes) {
