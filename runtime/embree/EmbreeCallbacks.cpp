@@ -1,6 +1,7 @@
 #include "runtime/embree/EmbreeCallbacks.h"
 
 #include "runtime/embree/EmbreeRay.h"
+#include "runtime/embree/EnterSpace.h"
 #include "runtime/embree/HostScene.h"
 
 #include <limits>
@@ -135,16 +136,6 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   return false;
 }
 
-/// Does the ray enter the box of the space before `limit`? It is that of a tree's root, tested
-/// before Embree begins, and turns with the instance, whose box in world space may be larger.
-bool entersSpace(const EmbreeSpace &space, const device::InstanceRay &ray, float epsilon,
-                 float limit) {
-  const device::Range range = device::rangeInBox(space.bounds.lower, space.bounds.upper, ray.origin,
-                                                 ray.inverse, 0, device::infinity);
-  return !range.isEmpty() && range.near <= limit * device::cullSlack &&
-         range.far >= epsilon * (1 - 2 * device::rangeShare);
-}
-
 /// Searches an instance that has a space of its own. True if the search is over.
 template <bool anyHit>
 bool searchInstance(const EmbreeContext &outer, unsigned number) {
@@ -156,10 +147,8 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
     return outer.seesAll ||
            device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots});
   };
-  if (!isSeen() ||
-      !device::enterInstance(*state.launch, *outer.ray, one.instance, state.Time, state.Epsilon,
-                             outer.limit(), ray) ||
-      !entersSpace(*one.inside, ray, state.Epsilon, outer.limit()))
+  if (!isSeen() || !enterSpace(*state.launch, *outer.ray, one.instance, one.inside->bounds,
+                               state.Time, state.Epsilon, outer.limit(), ray))
     return false;
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);
