@@ -14,7 +14,8 @@ NamedAttribute floatAttribute(std::string name, std::uint32_t components,
   attribute.name = std::move(name);
   attribute.components = components;
   attribute.words.resize(numbers.size());
-  std::memcpy(attribute.words.data(), numbers.data(), 4 * numbers.size());
+  if (!numbers.empty()) // else there is no data(), and memcpy needs one
+    std::memcpy(attribute.words.data(), numbers.data(), 4 * numbers.size());
   return attribute;
 }
 

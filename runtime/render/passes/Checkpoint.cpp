@@ -196,7 +196,8 @@ void compare(const Identity &theirs, const Identity &ours, const std::string &pa
 template <typename Value>
 std::string_view readValues(std::string_view from, std::vector<Value> &values) {
   const std::size_t bytes = values.size() * sizeof(Value);
-  std::memcpy(values.data(), from.data(), bytes);
+  if (bytes != 0) // else there is no data(), and memcpy needs one
+    std::memcpy(values.data(), from.data(), bytes);
   return from.substr(bytes);
 }
 
