@@ -31,7 +31,8 @@ LargeArray<TriangleBox> boxesAt(std::size_t count, const Place &place, float siz
 std::vector<BoxRun> check(LargeArray<TriangleBox> &boxes, LargeArray<TriangleBox> again) {
   const std::size_t count = boxes.size();
   const std::vector<BoxRun> runs = sortIntoRuns(boxes, 0), ofOneThread = sortIntoRuns(again, 1);
-  EXPECT_EQ(std::memcmp(boxes.data(), again.data(), count * sizeof(TriangleBox)), 0);
+  EXPECT_TRUE(count == 0 ||
+              std::memcmp(boxes.data(), again.data(), count * sizeof(TriangleBox)) == 0);
   EXPECT_EQ(runs.size(), ofOneThread.size());
   std::size_t next = 0;
   for (const BoxRun &run : runs) {
