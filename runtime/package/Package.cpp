@@ -17,7 +17,7 @@ namespace {
 
 constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 11;
+constexpr std::uint32_t formatVersion = 12;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {
@@ -65,7 +65,7 @@ struct Info {
   std::uint32_t width, height, slices, samplesPerPixel, maxDepth, seed;
   std::uint32_t stateCount, frameBytes, hostStackBytes, registers;
   std::uint32_t waveStates, waveGroups, waveHasStacks, waveIsPersistent; // WaveFacts
-  std::uint32_t padding;
+  std::uint32_t hasSamples;
   std::uint64_t hostLaneBytes, hostRunLane; // distances from the start of the host's code
 };
 static_assert(sizeof(Info) == 112);
@@ -94,6 +94,7 @@ Info infoOf(const Package &package) {
   info.height = package.options.height;
   info.slices = package.options.slices;
   info.samplesPerPixel = package.options.samplesPerPixel;
+  info.hasSamples = package.hasSamples;
   info.maxDepth = package.options.maxDepth;
   info.seed = package.options.seed;
   info.stateCount = package.stateCount;
@@ -227,6 +228,7 @@ private:
     package.options.height = info.height;
     package.options.slices = info.slices;
     package.options.samplesPerPixel = info.samplesPerPixel;
+    package.hasSamples = info.hasSamples != 0;
     package.options.maxDepth = info.maxDepth;
     package.options.seed = info.seed;
     try {

@@ -29,6 +29,7 @@ struct NativeImage {
 struct Package {
   std::string compiler;                         // "rtslc 0.1.0", at most 31 bytes
   RenderOptions options;                        // the scene's own size, samples, depth and seed
+  bool hasSamples = false;                      // the scene gives the samples
   std::uint32_t stateCount = 0, frameBytes = 0; // of the largest frame
   /// The results of rtsl_lane_bytes of its code, for each depth limit from 0.
   std::array<std::uint32_t, maxRayDepth + 1> laneBytes{};

@@ -56,6 +56,8 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   if (options.size)
     options.size->apply(render);
   render.crop = options.crop;
+  if (options.output.empty() && !package.hasSamples) // a launch, as of rtslc run
+    render.samplesPerPixel = 1;
   render.samplesPerPixel = options.samples.value_or(render.samplesPerPixel);
   render.maxDepth = options.depth.value_or(render.maxDepth);
   render.seed = options.seed.value_or(render.seed);

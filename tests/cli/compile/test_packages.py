@@ -105,11 +105,19 @@ class Steps : rt_RayGeneration {
                 "origins": "starts",
                 "counts": {"size": [2]},
             },
-            "render": {"engine": "programs", "size": "origins", "spp": 1},
+            "render": {"engine": "programs", "size": "origins"},
         }
         self.write("scene.json", json.dumps(scene))
         self.write("starts.npy", npy("f", (3,), [0.5, 1, 2]))
         self.write("more.npy", npy("d", (5,), [1, 2, 3, 4, 5]))
+        several = {**scene, "render": {**scene["render"], "spp": 3}}
+        self.write("several.json", json.dumps(several))
+        self.run_rtslc("pack", "several.json", "-o", "x.rtslpkg", "-q")
+        self.run_rtslc("run", "several.json", "-q", "--out=counts=counts.csv")
+        expected = (self.folder / "counts.csv").read_bytes()
+        self.run_alone("--out=counts=counts.csv", "--target=host", "-q")
+        self.assertEqual((self.folder / "counts.csv").read_bytes(), expected)
+
         self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg", "-q")
         for inputs in ([], ["--in=starts=more.npy"], ["--in=origins=more.npy"]):
             outputs = ["--out=cells=cells.npy", "--out=counts=counts.csv"]

@@ -88,6 +88,7 @@ void packScene(const PackOptions &options, Messages &messages) {
   runtime::Package package;
   package.compiler = "rtslc " RTSL_VERSION;
   package.options = scene::renderOptions(description.render);
+  package.hasSamples = description.render.hasSamples;
   const std::optional<runtime::Scene> scene = compileScenePackage(
       *module, request, compile, messages.diagnostics,
       [&](const auto &constructors) { return scene::buildScene(description, constructors); },
