@@ -319,6 +319,42 @@ void testCompound(Floor &floor) {
   floor.directions("BumpMap", bumpy, {1.2});
 }
 
+/// The published formula of fibres, in double; both directions are above the surface.
+double fibres(const glm::dvec3 &toLight, const glm::dvec3 &toEye, double spread) {
+  const double pi = std::acos(-1.0);
+  const glm::dvec3 half = glm::normalize(toLight + toEye);
+  const double sine = std::sqrt(std::max(0.0, 1 - half.z * half.z));
+  const double distribution = (2 + 1 / spread) * std::pow(sine, 1 / spread) / (2 * pi);
+  const double visibility = 1 / (4 * (toLight.z + toEye.z - toLight.z * toEye.z));
+  return distribution * visibility;
+}
+
+/// sheenReflection is that formula, and sheenAlbedo its integral within 0.03.
+void testFibres(Floor &floor) {
+  constexpr int rings = 256, sectors = 64; // of directions towards light
+  const double turn = 2 * std::acos(-1.0);
+  for (const double spread : {0.2, 0.35, 0.6, 1.0})
+    for (const double cosine : {0.02, 0.1, 0.3, 0.6, 1.0}) {
+      const glm::dvec3 toEye(std::sqrt(1 - cosine * cosine), 0, cosine);
+      double albedo = 0, worst = 0;
+      for (int ring = 0; ring < rings; ++ring)
+        for (int sector = 0; sector < sectors; ++sector) {
+          const double z = (ring + 0.5) / rings, around = turn * (sector + 0.5) / sectors;
+          const double r = std::sqrt(1 - z * z);
+          const glm::dvec3 toLight(r * std::cos(around), r * std::sin(around), z);
+          const double expected = fibres(toLight, toEye, spread);
+          const double found =
+              double(sheenReflection(glm::vec3(toLight), glm::vec3(toEye), float(spread)));
+          worst = std::max(worst, std::abs(found - expected) / (1e-3 + expected));
+          albedo += expected * z * turn / (rings * sectors);
+        }
+      const std::string name = named("fibres", float(spread)) + named(" cosine", float(cosine));
+      floor.verdict.expect(worst < 1e-4, name + ": reflection", worst, 1e-4);
+      const double off = std::abs(double(sheenAlbedo(float(cosine), float(spread))) - albedo);
+      floor.verdict.expect(off < 0.03, name + ": albedo", off, 0.03);
+    }
+}
+
 /// A lamp scatters no light.
 void testEmitter(Floor &floor) {
   State rt = floor.hit({0, 0, 1});
@@ -341,6 +377,7 @@ int run() {
   else
     testPrincipled(floor, {0, 1}, {0, 0.35f, 1});
   testCompound(floor);
+  testFibres(floor);
   testEmitter(floor);
   std::printf("largest albedo %g, worst chi-square %g standard deviations, worst reciprocity %g\n",
               floor.verdict.largestAlbedo, floor.verdict.worstDeviation,

@@ -19,6 +19,7 @@ Package smallPackage() {
   package.options.width = 30;
   package.options.height = 20;
   package.options.samplesPerPixel = 4;
+  package.hasSamples = true;
   package.options.maxDepth = 5;
   package.options.seed = 6;
   package.stateCount = 7;
@@ -79,6 +80,7 @@ TEST(Package, IsReadAsItWasWritten) {
   EXPECT_EQ(read.options.width, 30u);
   EXPECT_EQ(read.options.height, 20u);
   EXPECT_EQ(read.options.samplesPerPixel, 4u);
+  EXPECT_TRUE(read.hasSamples);
   EXPECT_EQ(read.options.maxDepth, 5u);
   EXPECT_EQ(read.options.seed, 6u);
   EXPECT_EQ(read.stateCount, 7u);
@@ -143,9 +145,10 @@ TEST(Package, RejectionsHaveReasons) {
             "`x.rtslpkg` is not a package of rtslc");
   EXPECT_EQ(refusal(""), "`x.rtslpkg` is not a package of rtslc");
   std::string newer = whole;
-  newer[8] = 12;
-  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format 12, and this program reads format "
-                            "11: use a newer rtsl-run");
+  const int format = newer[8]++;
+  EXPECT_EQ(refusal(newer), "`x.rtslpkg` is a package of format " + std::to_string(format + 1) +
+                                ", and this program reads format " + std::to_string(format) +
+                                ": use a newer rtsl-run");
   EXPECT_NE(refusal(whole.substr(0, 200)).find("is truncated: it has 200 bytes of"),
             std::string::npos);
   std::string damaged = whole;
