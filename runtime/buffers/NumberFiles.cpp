@@ -188,6 +188,8 @@ NpyFile::NpyFile(const std::string &path, Part part, const StructType *structTyp
 
 /// Counts the elements, which take all of these bytes.
 void NpyFile::checkLength(const std::string &path, std::size_t bytes, std::size_t elementBytes) {
+  if (std::find(sizes.begin(), sizes.end(), std::size_t(0)) != sizes.end())
+    elementCount = 0;
   for (const std::size_t size : sizes) {
     if (size != 0 && elementCount > bytes / size)
       throw Error(message::numbersTruncated(path));

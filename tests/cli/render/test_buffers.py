@@ -325,6 +325,10 @@ class Buffers(Case):
         for name in ("none.npy", "none.raw", "none.csv"):
             self.scene(numbers={"buffer": name})
             self.assertEqual(self.printed(), [])
+        for shape in ((5, 0), (0, 5)):
+            self.write("rows.npy", npy("f", shape, []))
+            self.scene(table={"buffer": "rows.npy"})
+            self.assertEqual(self.printed(), [])
 
     def test_inputs_are_not_overwritten(self):
         self.write("numbers.exr", struct.pack("<4f", 1, 2, 3, 4))
