@@ -7,13 +7,13 @@
 #include "Target.h"
 
 #include "runtime/buffers/BufferFiles.h"
-#include "support/Error.h"
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 using namespace rtsl;
+using fuzz::attempt;
 using fuzz::require;
 using runtime::MemberInfo;
 using runtime::Value;
@@ -60,17 +60,6 @@ std::vector<ValueType> types() {
           bufferOf(Kind::Bool, 1, 3),
           bufferOf(Kind::Color, 1, 1),
           bufferOfStructs()};
-}
-
-/// Calls `read`, whose errors are those of the file.
-template <typename Read>
-void attempt(Read read) {
-  try {
-    read();
-  } catch (const Error &error) {
-    require(error.code != ErrorCode::Internal, "an error is the file's");
-    require(error.what()[0] != '\0', "an error has a message");
-  }
 }
 
 void check(const Value &value, const ValueType &type) {

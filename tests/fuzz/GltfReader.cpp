@@ -16,15 +16,10 @@
 
 using namespace rtsl;
 using namespace rtsl::scene;
+using fuzz::expectAboutFile;
 using fuzz::require;
 
 namespace {
-
-/// What is wrong is the file's fault, and said.
-void expectAboutFile(const Error &error) {
-  require(error.code != ErrorCode::Internal, "an error is the file's");
-  require(error.what()[0] != '\0', "an error has a message");
-}
 
 void makeModel(const gltf::File &file, bool isDuringFrame) {
   gltf::Play play;

@@ -8,27 +8,16 @@
 
 #include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/ObjFile.h"
-#include "support/Error.h"
 
 #include <optional>
 #include <string>
 #include <string_view>
 
 using namespace rtsl;
+using fuzz::attempt;
 using fuzz::require;
 
 namespace {
-
-/// Calls `read`, whose errors are those of the file.
-template <typename Read>
-void attempt(Read read) {
-  try {
-    read();
-  } catch (const Error &error) {
-    require(error.code != ErrorCode::Internal, "an error is the file's");
-    require(error.what()[0] != '\0', "an error has a message");
-  }
-}
 
 void check(const runtime::Mesh &mesh) {
   validateMesh(mesh, "mesh");

@@ -30,6 +30,11 @@ void rtsl::fuzz::require(bool holds, const char *what) {
   std::abort();
 }
 
+void rtsl::fuzz::expectAboutFile(const Error &error) {
+  require(error.code != ErrorCode::Internal, "an error is the file's");
+  require(error.what()[0] != '\0', "an error has a message");
+}
+
 rtsl::fuzz::File::File(std::string_view content, const std::string &name) {
   static const Folder folder;
   path = folder.path + "/" + name;

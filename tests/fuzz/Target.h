@@ -7,6 +7,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "support/Error.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -19,6 +21,19 @@ namespace rtsl::fuzz {
 
 /// Ends the process unless `holds`; fuzzers take that as a crash.
 void require(bool holds, const char *what);
+
+/// Requires that an error is the file's, and says what is wrong.
+void expectAboutFile(const Error &error);
+
+/// Calls `read`, whose errors are those of the file.
+template <typename Read>
+void attempt(Read read) {
+  try {
+    read();
+  } catch (const Error &error) {
+    expectAboutFile(error);
+  }
+}
 
 /// A file with this content, for readers that take paths. It is removed at the end.
 class File {
