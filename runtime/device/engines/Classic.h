@@ -208,28 +208,35 @@ inline void callCamera(RtslState &state, const RtslLaunch &launch) {
   rtsl_rt_Camera_generateRay(&state, launch.camera);
 }
 
-/// Writes the camera's ray to the state of a sample that begins.
-inline void aimCamera(RtslState &state, const RtslLaunch &launch) {
+/// Writes the camera's ray to the state of a sample that begins. False if the camera sends none:
+/// its direction is zero.
+inline bool aimCamera(RtslState &state, const RtslLaunch &launch) {
   const uint32_t dimension = state.dimension;
   callCamera(state, launch);
   if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT)
     describeCameraCone(state, launch, dimension, [&](RtslState &ray) { callCamera(ray, launch); });
+  return !isZero(load(state.RayDirection));
 }
 
-/// Makes `state` the camera ray of one sample of one pixel.
-inline void startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+/// Makes `state` the camera ray of one sample of one pixel. False if there is none: the sample is
+/// black.
+inline bool startSample(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                         uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
-  aimCamera(state, launch);
+  if (!aimCamera(state, launch)) {
+    setColor(state.SampleColor, rtsl_color_components(&launch), 0);
+    return false;
+  }
   setRay(state, load(state.RayOrigin), load(state.RayDirection), {0, 0, RTSL_NO_HIT, 0}, infinity);
+  return true;
 }
 
 /// One sample of one pixel: the color that arrives along its ray.
 inline void sample(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t index, float *color) {
   RtslState state;
   RtslEvents events;
-  startSample(state, launch, x, y, index, events);
-  follow(state);
+  if (startSample(state, launch, x, y, index, events))
+    follow(state);
   endEvents(state);
   copyColor(color, state.SampleColor, rtsl_color_components(&launch));
 }

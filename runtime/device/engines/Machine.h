@@ -237,20 +237,20 @@ inline int32_t begin(Rays &rays) {
 }
 
 /// Starts a sample, on a stack of stackSize(...) bytes: with `generate` if the program has it,
-/// otherwise with the camera ray.
+/// otherwise with the camera ray. Without a ray the sample is over.
 inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t y,
                       uint32_t index) {
   CurrentRay &ray = rays.ray;
   ray.level = rays.bottom;
   rays.waiting = 0;
   if (launch.rayGeneration) {
-    startGenerate(ray.state, launch, x, y, index, rays.events);
-    rays.next = rtsl_rt_RayGeneration_generate_first(&ray.state);
+    const bool hasRay = startGenerate(ray.state, launch, x, y, index, rays.events);
+    rays.next = hasRay ? rtsl_rt_RayGeneration_generate_first(&ray.state) : Rays::none;
     beginOn(rays, launch.rayGeneration);
     return;
   }
-  startSample(ray.state, launch, x, y, index, rays.events);
-  rays.next = Rays::trace;
+  const bool hasRay = startSample(ray.state, launch, x, y, index, rays.events);
+  rays.next = hasRay ? Rays::trace : Rays::none;
 }
 
 /// The ray is over: its color is returned to the ray that sent it.

@@ -84,8 +84,9 @@ inline void trace(RtslState &parent, const PayloadRay &ray, uint32_t how) {
 }
 
 /// Makes `state` that of `generate`, which precedes all rays: the rays that it sends have depth 0.
-/// Its own ray is the camera's, if the scene has one.
-inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
+/// Its own ray is the camera's, if the scene has one. False if `generate` reads that ray and the
+/// camera sends none: the sample is black.
+inline bool startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x, uint32_t y,
                           uint32_t index, RtslEvents &events) {
   placeSample(state, launch, x, y, index, events);
   state.Depth = -1;
@@ -93,13 +94,12 @@ inline void startGenerate(RtslState &state, const RtslLaunch &launch, uint32_t x
   setColor(state.SampleColor, rtsl_color_components(&launch), 0);
   state.ConeWidth = state.ConeSpread = 0;
   if (!(rtsl_needs(&launch) & RTSL_NEEDS_CAMERA_RAY))
-    return;
-  if (launch.camera) {
-    aimCamera(state, launch);
-  } else {
-    setVector(state.RayOrigin, 0, 0, 0);
-    setVector(state.RayDirection, 0, 0, 0);
-  }
+    return true;
+  if (launch.camera)
+    return aimCamera(state, launch);
+  setVector(state.RayOrigin, 0, 0, 0);
+  setVector(state.RayDirection, 0, 0, 0);
+  return true;
 }
 
 /// One sample of one pixel: the result of `generate`.
@@ -107,8 +107,8 @@ inline void generate(const RtslLaunch &launch, uint32_t x, uint32_t y, uint32_t 
                      float *color) {
   RtslState state;
   RtslEvents events;
-  startGenerate(state, launch, x, y, index, events);
-  rtsl_rt_RayGeneration_generate(&state, launch.rayGeneration);
+  if (startGenerate(state, launch, x, y, index, events))
+    rtsl_rt_RayGeneration_generate(&state, launch.rayGeneration);
   endEvents(state);
   copyColor(color, state.SampleColor, rtsl_color_components(&launch));
 }
