@@ -115,10 +115,12 @@ void Program::declareMethods(ClassScope &scope) {
       checkOverride(scope, *function);
     overloads.push_back(function);
     scope.definition->functions.push_back(std::move(owned));
-    if (declaration.body)
+    if (declaration.body) {
       bodies.push_back({&declaration, function, &scope});
-    else
-      function->body = std::make_unique<typed::CompoundStmt>(); // required by a default class
+    } else {
+      function->isRequired = true;
+      function->body = std::make_unique<typed::CompoundStmt>();
+    }
   }
 }
 

@@ -111,6 +111,7 @@ struct Function {
   bool isConstructor = false;
   bool isCalledOnSelf =
       false;                  // a method that other methods of the object call, not only the engine
+  bool isRequired = false;    // declared by a default class, without a body
   bool isStateMethod = false; // overrides an engine method of its base class: intersect, shade, ...
   SentRays sends;             // by itself or its callees, and by methods that override these
   SentRays callSends;         // by a call of it, which may run an overriding method

@@ -23,6 +23,7 @@
 #include "mlir/IR/Matchers.h"
 
 #include <algorithm>
+#include <set>
 
 namespace rtsl::linking {
 
@@ -172,6 +173,78 @@ bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHi
 }
 
 //===----------------------------------------------------------------------===//
+// Rays that no class handles
+//===----------------------------------------------------------------------===//
+
+/// The methods that a default class and its bases require of a class.
+std::set<std::string> requiredBy(const typed::Class *definition) {
+  std::set<std::string> names;
+  for (; definition; definition = definition->base)
+    for (const auto &method : definition->functions)
+      if (method->isRequired)
+        names.insert(method->name);
+  return names;
+}
+
+bool handles(const typed::Class &definition, const RayType &type) {
+  return llvm::any_of(definition.functions, [&](const auto &method) {
+    return typed::takesPayload(*method) &&
+           method->parameters.front()->type->structure->name == type.name();
+  });
+}
+
+/// What a material has to define so that a default class handles rays of this type for it: any of
+/// these sets of methods. None of them contains another one.
+std::vector<std::set<std::string>> requirementsFor(const LinkContext &context,
+                                                   const RayType &type) {
+  std::vector<std::set<std::string>> all, smallest;
+  for (const auto &definition : context.module.classes)
+    if (const std::set<std::string> names = requiredBy(definition.get());
+        !names.empty() && definition->root == "rt_Material" && handles(*definition, type) &&
+        !llvm::is_contained(all, names))
+      all.push_back(names);
+  llvm::copy_if(all, std::back_inserter(smallest), [&](const std::set<std::string> &one) {
+    return llvm::none_of(all, [&](const std::set<std::string> &other) {
+      return other != one && std::includes(one.begin(), one.end(), other.begin(), other.end());
+    });
+  });
+  return smallest;
+}
+
+/// "`sampleBSDF`, nor `shade`"
+std::string asText(const std::vector<std::set<std::string>> &alternatives) {
+  std::string text;
+  for (const std::set<std::string> &names : alternatives) {
+    text += text.empty() ? "" : ", nor ";
+    for (const std::string &name : names)
+      text += (name == *names.begin() ? "`" : " and `") + name + "`";
+  }
+  return text;
+}
+
+/// Reports the materials that rays of this type may hit, although neither the author nor a default
+/// class handles that, and a type that is handled nowhere.
+void reportUnanswered(const LinkContext &context, const RayType &type) {
+  const typed::Struct *payload = structOf(context, type);
+  if (!context.hasScene || !payload)
+    return;
+  bool isAnswered = !methodsFor(context, type, "miss").empty();
+  const std::vector<std::set<std::string>> requirements = requirementsFor(context, type);
+  for (const LinkedClass &linked : context.classes) {
+    if (!linked.isUsed || linked.info->root != "rt_Material")
+      continue;
+    const bool isHandled = findMethod(context, linked, "closestHit." + type.name()) ||
+                           findMethod(context, linked, "anyHit." + type.name());
+    isAnswered |= isHandled || !requirements.empty();
+    if (!isHandled && !requirements.empty())
+      context.diagnostics.report(Code::materialUnanswered, linked.info->range, payload->name,
+                                 linked.info->name, asText(requirements));
+  }
+  if (!isAnswered)
+    context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
+}
+
+//===----------------------------------------------------------------------===//
 // Numbers of types
 //===----------------------------------------------------------------------===//
 
@@ -179,10 +252,7 @@ bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHi
 std::uint32_t searchFor(LinkContext &context, const RayType &type) {
   const bool hasClosestHit = !methodsFor(context, type, "closestHit").empty();
   const std::vector<FuncOp> anyHits = methodsFor(context, type, "anyHit");
-  if (context.hasScene && !hasClosestHit && anyHits.empty() &&
-      methodsFor(context, type, "miss").empty())
-    if (const typed::Struct *payload = structOf(context, type))
-      context.diagnostics.report(Code::rayTypeUnanswered, payload->range, payload->name);
+  reportUnanswered(context, type);
   std::uint32_t how = hasClosestHit ? 0 : RTSL_FIRST_HIT;
   if (!anyHits.empty())
     how |=

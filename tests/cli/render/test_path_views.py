@@ -127,6 +127,24 @@ class Views(PathCase):
             'rayGeneration={"class": "OcclusionView", "reach": 0.5}',
         )
 
+    def test_materials_that_the_albedo_does_not_see_are_named(self):
+        """Once, where their author has written them, also as a layer; not those that only shine."""
+        text = """
+class Flat : rt_Material { void shade() { rt_SampleColor = color(1.0); } };
+class Lamp : rt_Material { void emission() { rt_EmissionColor = color(1.0); } };
+"""
+        self.write("flat.rtsl", text)
+        self.scene([(FLOOR, {"class": "Flat"}), (FLOOR, {"class": "Lamp"})], spp=1, size=(4, 4))
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("flat.rtsl")
+        self.write("scene.json", json.dumps(scene))
+        for options in (["--set", "render.engine=albedo"], ["--aov", "albedo,normal,depth"]):
+            with self.subTest(options=options):
+                _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *options)
+                self.assertIn("flat.rtsl:2:7: warning[W2701]", error)
+                self.assertIn("`Flat`, which does not define `sampleBSDF`", error)
+                self.assertEqual(error.count("warning["), 1, error)
+
     def test_ids_differ(self):
         """Of seven balls, of which one after the other is in front of the camera and the rest
         behind it."""

@@ -127,6 +127,31 @@ class Eye : rt_RayGeneration {
   EXPECT_EQ(linked.diagnostics.sources().text(linked.diagnostics.all()[0].range), "Lost");
 }
 
+TEST(RayTypes, AMaterialThatNoDefaultClassFitsIsAWarning) {
+  Linked linked(
+      R"(
+struct Seen { float x; };
+default class Reflects : rt_Material { void BSDF(); void evaluatePDF(); void closestHit(inout Seen s) {} };
+default class Scatters : rt_Material { void sampleBSDF(); void closestHit(inout Seen s) {} };
+default class Both : rt_Material { void sampleBSDF(); void shade(); void closestHit(inout Seen s) {} };
+default class Leaves : rt_Miss { void miss(); void miss(inout Seen s) {} };
+class Lost : rt_Material { void shade() { rt_SampleColor = color(1.0); } };
+class Unused : rt_Material { void shade() { rt_SampleColor = color(1.0); } };
+class Own : rt_Material { void closestHit(inout Seen s) { s.x = 1.0; } };
+class Fits : rt_Material { void sampleBSDF() { rt_PDF = 0.0; } };
+class Eye : rt_RayGeneration {
+  void generate() { Seen s = Seen(0.5); trace(vec3(0.0), vec3(1.0), 0.0, 1.0, s); rt_SampleColor = color(s.x); }
+};)",
+      {{"Eye", "Lost", "Own", "Fits"}, {}, {}, {}, {}, {}, true, runtime::Engine::Programs});
+  EXPECT_TRUE(linked.succeeded);
+  ASSERT_EQ(linked.diagnostics.all().size(), 1u) << renderText(linked.diagnostics, false);
+  EXPECT_EQ(linked.diagnostics.all()[0].code, Code::materialUnanswered);
+  EXPECT_EQ(linked.diagnostics.sources().text(linked.diagnostics.all()[0].range), "Lost");
+  EXPECT_EQ(linked.diagnostics.all()[0].message,
+            "rays with the payload `Seen` do nothing where they hit `Lost`, which does not define "
+            "`BSDF` and `evaluatePDF`, nor `sampleBSDF`");
+}
+
 TEST(RayTypes, EachTypeHasItsPrograms) {
   Linked linked(R"(
 struct A { float x; };
