@@ -2,6 +2,7 @@
 #include "codegen/driver/Stages.h"
 
 #include "codegen/driver/Compilation.h"
+#include "codegen/driver/Footprints.h"
 #include "codegen/driver/outputs/CppOutput.h"
 #include "codegen/driver/outputs/Reflection.h"
 #include "codegen/ir/Attributes.h"
@@ -63,62 +64,11 @@ bool reachModuleFacts(Compilation &compilation) {
   return compilation.moduleFacts.has_value();
 }
 
-/// Changes the finding that this subject is read: it is not.
-static void noteNeverRead(Compilation &compilation, Item item, const std::string &subject) {
-  if (!compilation.findings)
-    return;
-  for (Finding &finding : *compilation.findings)
-    if (finding.item == item && finding.isNeeded && finding.subject == subject) {
-      finding.isNeeded = false;
-      finding.reason = "read only by code that never runs with the numbers of the scene";
-    }
-}
-
-/// Lookups that need the footprint of a ray may be in code that never runs with the numbers of the
-/// scene: with the filter of an image, above all. Then rays have no cones.
-static void leaveOutFootprints(Compilation &compilation) {
-  const LinkRequest *scene = compilation.input.scene;
-  if (!scene || scene->keep.has(Item::Outputs) || ir::readsFootprints(*compilation.ir))
-    return;
-  compilation.program->needs &= ~(RTSL_NEEDS_FOOTPRINT | RTSL_NEEDS_NORMAL_CHANGES);
-  noteNeverRead(compilation, Item::Outputs, footprintSubject);
-}
-
-/// The same for changes of attributes of meshes: what no code reads any more is not computed.
-static void leaveOutChanges(Compilation &compilation) {
-  const LinkRequest *scene = compilation.input.scene;
-  const auto table = ir::attr::meshAttributes.of(*compilation.ir);
-  if (!scene || scene->keep.has(Item::MeshAttributes) || !table)
-    return;
-  std::set<std::uint32_t> read;
-  compilation.ir->walk([&](ir::AttributeOp op) {
-    if (op.getAxis() && !op->use_empty())
-      read.insert(*op.getOffset());
-  });
-  std::vector<std::int32_t> words;
-  for (runtime::AttributeInfo &attribute : compilation.program->meshAttributes) {
-    const std::int32_t size = table[words.size() + 1];
-    words.push_back(static_cast<std::int32_t>(attribute.offset));
-    words.push_back(size);
-    for (std::uint32_t axis = 0; axis < 2; ++axis) {
-      std::uint32_t &change = attribute.changes[axis];
-      if (change != RTSL_NOT_READ && !read.count(change)) {
-        change = RTSL_NOT_READ;
-        noteNeverRead(compilation, Item::MeshAttributes, changeSubject(attribute.name, axis));
-      }
-      words.push_back(static_cast<std::int32_t>(change));
-    }
-  }
-  ir::attr::meshAttributes.set(
-      *compilation.ir, mlir::Builder(compilation.ir->getContext()).getDenseI32ArrayAttr(words));
-}
-
 bool reachSsa(Compilation &compilation) {
   if (!reachIr(compilation))
     return false;
   run(*compilation.ir, codegen::buildSsaPipeline);
   leaveOutFootprints(compilation);
-  leaveOutChanges(compilation);
   return true;
 }
 
@@ -132,7 +82,6 @@ static bool split(Compilation &compilation, bool dispatch) {
   how.explain = compilation.explains;
   compilation.report = runToStates(*compilation.ir, how);
   leaveOutFootprints(compilation);
-  leaveOutChanges(compilation);
   return true;
 }
 

@@ -87,7 +87,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   const linking::ImageChannels imageChannels = linking::findImageChannels(context);
   linking::resolveSlots(context);
   linking::findMeshMaterials(context);
-  linking::dropChangesOfPrimitives(context);
+  linking::dropUnknownChanges(context);
   linking::dropUnreached(context);
   linking::noteClasses(context);
   linking::dropUnreadOutputs(context);

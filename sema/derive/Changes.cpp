@@ -22,12 +22,21 @@ void Changes::addParameters(AxisSet given) {
   axesUsed.add(given);
 }
 
+/// Rays differ in another way inside of `intersect` than at the hit.
+static bool isOfPrimitive(const Function &function) {
+  return function.owner && function.owner->root == "rt_Primitive";
+}
+
+bool Changes::isFollowed(const Function &called) const {
+  return isAtHit && (!isOfPrimitive(called) || isOfPrimitive(function));
+}
+
 bool Changes::followsOutputs(const Function &called) const {
-  return isAtHit && derivation.hasVariants(called);
+  return isFollowed(called) && derivation.hasVariants(called);
 }
 
 bool Changes::isCallVaried(const Function &called, const std::vector<ExprPtr> &args) const {
-  return isAtHit && derivation.canBeFollowed(called) &&
+  return isFollowed(called) && derivation.canBeFollowed(called) &&
          (std::any_of(args.begin(), args.end(),
                       [&](const ExprPtr &arg) { return isVaried(*arg); }) ||
           derivation.readsSeeds(called));
@@ -42,7 +51,7 @@ bool Changes::isVaried(const Expr &expr) const {
   };
   switch (expr.kind) {
   case ExprKind::State:
-    return changeOf(cast<StateExpr>(expr).variable, Axis::X) != nullptr;
+    return changeOf(cast<StateExpr>(expr).variable, function, Axis::X) != nullptr;
   case ExprKind::Member:
     return changes(*cast<MemberExpr>(expr).member);
   case ExprKind::Variable:

@@ -32,6 +32,7 @@ public:
 
 private:
   void collect();
+  bool isFollowed(const typed::Function &called) const;
   bool isCallVaried(const typed::Function &function, const std::vector<typed::ExprPtr> &args) const;
   void use(const typed::Expr &expr);
 

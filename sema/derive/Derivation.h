@@ -34,8 +34,11 @@ enum class Result : std::uint8_t { Value, AlongX, AlongY };
 /// be an attribute of a mesh does.
 bool changes(const typed::Member &member);
 
-/// The state variable that is the change of another one; nothing if that does not change.
-const typed::StateVariable *changeOf(typed::StateVariable variable, Axis axis);
+/// The state variable that is the change of another one in a function; null if that does not
+/// change there. In primitives it is that of the direction of the ray (ScratchChanges.h), also for
+/// its inverse.
+const typed::StateVariable *changeOf(typed::StateVariable variable, const typed::Function &in,
+                                     Axis axis);
 
 class Derivation {
 public:
@@ -80,6 +83,10 @@ private:
   std::string variantName(const typed::Function &from, Result result) const;
   void addVariants(std::vector<std::unique_ptr<typed::Function>> &functions);
   std::string memberName(const typed::Member &of, Axis axis) const;
+  /// Adds the methods of ScratchChanges.h that materials need.
+  void addScratchChanges();
+  /// The changes of scratch members of a primitive that materials on it use.
+  std::vector<const typed::Member *> changesUsedOf(const typed::Class &primitive);
   /// Places the members of changeOf in their classes.
   void addMembers();
 
@@ -95,6 +102,13 @@ private:
   std::deque<Variant> variants; // in the order in which they were required
   std::map<std::pair<const typed::Function *, Result>, const typed::Function *> made;
   std::vector<std::unique_ptr<typed::Member>> members; // in the order in which they were required
+  /// A method of ScratchChanges.h.
+  struct Scratch {
+    typed::Class *owner;
+    typed::Function withDerivatives; // before dFdx and dFdy are replaced
+    std::unique_ptr<typed::Function> made;
+  };
+  std::deque<Scratch> scratch;
 };
 
 } // namespace rtsl::derive

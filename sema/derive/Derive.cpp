@@ -3,6 +3,7 @@
 
 #include "sema/derive/Derivation.h"
 #include "sema/derive/DerivedBody.h"
+#include "sema/derive/ScratchChanges.h"
 #include "sema/derive/Term.h"
 #include "sema/typed/Analysis.h"
 #include "sema/typed/Casting.h"
@@ -14,12 +15,17 @@ namespace rtsl::derive {
 
 using namespace typed;
 
-const StateVariable *changeOf(StateVariable variable, Axis axis) {
+const StateVariable *changeOf(StateVariable variable, const Function &in, Axis axis) {
   static constexpr StateVariable ofPoint[] = {StateVariable::dPdx, StateVariable::dPdy};
   static constexpr StateVariable ofUV[] = {StateVariable::dUVdx, StateVariable::dUVdy};
   static constexpr StateVariable ofUVW[] = {StateVariable::dUVWdx, StateVariable::dUVWdy};
   static constexpr StateVariable ofNormal[] = {StateVariable::dNdx, StateVariable::dNdy};
   const auto index = static_cast<int>(axis);
+  if (in.owner && in.owner->root == "rt_Primitive") {
+    const bool isDirection =
+        variable == StateVariable::RayDirection || variable == StateVariable::InverseRayDirection;
+    return isDirection ? &ofUVW[index] : nullptr;
+  }
   switch (variable) {
   case StateVariable::HitPoint:
     return &ofPoint[index];
@@ -54,14 +60,14 @@ static bool isDerivative(const Expr &expr) {
   return builtin && (builtin->builtin == Builtin::DFdx || builtin->builtin == Builtin::DFdy);
 }
 
-static bool isSeed(const Expr &expr) {
+static bool isSeed(const Expr &expr, const Function &in) {
   if (auto *member = dynCast<MemberExpr>(&expr))
     return changes(*member->member);
   auto *state = dynCast<StateExpr>(&expr);
-  return state && changeOf(state->variable, Axis::X);
+  return state && changeOf(state->variable, in, Axis::X);
 }
 
-/// May a function of this class be called with changes?
+/// Do methods of this class run at a hit?
 static bool isAtHits(const std::string &root) {
   return root == "rt_Material" || root == "rt_Texture";
 }
@@ -85,7 +91,7 @@ const Derivation::Facts &Derivation::factsOf(const Function &function) {
   if (isNew && function.body)
     forEachExpr(*function.body, [&](const Expr &expr) {
       made.asks |= isDerivative(expr);
-      made.readsSeeds |= isSeed(expr);
+      made.readsSeeds |= isSeed(expr, function);
       if (const Function *called = callee(expr))
         for (const Function *definition : definitions(*called))
           made.callees.push_back(definition);
@@ -125,7 +131,8 @@ bool Derivation::readsSeeds(const Function &function) {
 
 bool Derivation::hasVariants(const Function &function) const {
   return !function.isConstructor && !function.isStateMethod &&
-         (!function.owner || function.owner->root == helperRoot || isAtHits(function.owner->root));
+         (!function.owner || function.owner->root == helperRoot ||
+          function.owner->root == "rt_Primitive" || isAtHits(function.owner->root));
 }
 
 bool Derivation::canBeFollowed(const Function &function) {
@@ -225,6 +232,52 @@ void Derivation::addMembers() {
         owner->members.push_back(std::move(member));
 }
 
+std::vector<const Member *> Derivation::changesUsedOf(const Class &primitive) {
+  std::vector<std::pair<const Member *, Axis>> used;
+  for (const Class *at = &primitive; at; at = at->base)
+    for (const auto &member : at->members)
+      for (const auto &change : members)
+        if (member->access == ast::Access::Scratch && changes(*change->changeOf) &&
+            member->name == change->changeOf->name && member->type == change->type)
+          used.emplace_back(member.get(), change->axis == 0 ? Axis::X : Axis::Y);
+  std::vector<const Member *> found;
+  for (const auto &[member, axis] : used)
+    if (const Member *change = &changeOf(*member, axis);
+        std::find(found.begin(), found.end(), change) == found.end())
+      found.push_back(change);
+  return found;
+}
+
+void Derivation::addScratchChanges() {
+  for (const auto &owner : module.classes) {
+    const auto intersect =
+        std::find_if(owner->functions.begin(), owner->functions.end(), [](const auto &function) {
+          return function->isStateMethod && function->name == "intersect" && function->body;
+        });
+    if (owner->root != "rt_Primitive" || intersect == owner->functions.end())
+      continue;
+    const std::vector<const Member *> used = changesUsedOf(*owner);
+    if (used.empty())
+      continue;
+    Scratch &one = scratch.emplace_back();
+    one.owner = owner.get();
+    one.made = std::make_unique<Function>();
+    one.made->name = scratchChangesMethod;
+    one.made->returnType = types().voidType;
+    one.made->owner = owner.get();
+    one.made->isStateMethod = true;
+    one.made->range = (*intersect)->range;
+    one.withDerivatives.owner = owner.get();
+    if (!canFollowScratch(**intersect, effects)) {
+      one.made->knowsNoChanges = true;
+      writeNoScratchChanges(**intersect, used, *one.made);
+      continue;
+    }
+    writeScratchChanges(*this, **intersect, used, one.withDerivatives);
+    DerivedBody(*this, one.withDerivatives, *one.made, /*isAtHit=*/true).replace();
+  }
+}
+
 void Derivation::run() {
   struct Replaced {
     Function *function;
@@ -243,8 +296,15 @@ void Derivation::run() {
   for (const auto &owner : module.classes)
     for (const auto &method : owner->functions)
       replace(*method, isAtHits(owner->root) && !method->isConstructor);
-  for (std::size_t i = 0; i < variants.size(); ++i) // deriving one may require others
-    DerivedBody(*this, *variants[i].from, *variants[i].function, true).vary(variants[i].result);
+  std::size_t derived = 0;
+  const auto deriveVariants = [&] { // deriving one may require others
+    for (; derived < variants.size(); ++derived)
+      DerivedBody(*this, *variants[derived].from, *variants[derived].function, true)
+          .vary(variants[derived].result);
+  };
+  deriveVariants();
+  addScratchChanges(); // when it is known which changes materials use
+  deriveVariants();
 
   for (Replaced &one : replaced) {
     one.function->body = std::move(one.derived.body);
@@ -254,6 +314,8 @@ void Derivation::run() {
   addVariants(module.functions);
   for (const auto &owner : module.classes)
     addVariants(owner->functions);
+  for (Scratch &one : scratch)
+    one.owner->functions.push_back(std::move(one.made));
 }
 
 } // namespace rtsl::derive

@@ -12,7 +12,7 @@ namespace rtsl::derive {
 using namespace typed;
 
 DerivedBody::DerivedBody(Derivation &derivation, const Function &from, Function &to, bool isAtHit)
-    : derivation(derivation), types(derivation.types()), from(from), to(to),
+    : types(derivation.types()), to(to), derivation(derivation), from(from),
       changes(derivation, from, isAtHit) {}
 
 std::unique_ptr<Variable> variableLike(const Variable &from) {
@@ -29,8 +29,7 @@ std::unique_ptr<Variable> variableLike(const Variable &from) {
   return made;
 }
 
-/// The name, with underscores after it if a variable of the function has it already.
-static std::string freeName(const Function &function, std::string name) {
+std::string freeName(const Function &function, std::string name) {
   const auto isTaken = [&](const auto &variables) {
     return std::any_of(variables.begin(), variables.end(),
                        [&](const auto &variable) { return variable->name == name; });

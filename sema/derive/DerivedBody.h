@@ -11,9 +11,12 @@ namespace rtsl::derive {
 /// A new variable with the same properties, without an initialiser.
 std::unique_ptr<typed::Variable> variableLike(const typed::Variable &from);
 
+/// The name, with underscores after it if a variable of the function has it already.
+std::string freeName(const typed::Function &function, std::string name);
+
 /// Writes a function without dFdx and dFdy: one that replaces it, or a variant of it. The copy has
 /// variables of its own.
-class DerivedBody : Copier {
+class DerivedBody : protected Copier {
 public:
   /// `isAtHit`: rays have footprints there.
   DerivedBody(Derivation &derivation, const typed::Function &from, typed::Function &to,
@@ -24,6 +27,21 @@ public:
   /// A variant of it.
   void vary(Result result);
 
+protected:
+  // DerivedBody.cpp
+  typed::Variable &addLocal(std::string name, const Type *type, SourceRange range);
+  /// A variable for a value that is computed once, declared before the statement.
+  const typed::Variable &addKept(const Type *type, SourceRange range);
+  typed::StmtPtr declaration(const typed::Variable &variable) const;
+  // DerivedStatements.cpp
+  virtual void statement(const typed::Stmt &from, std::vector<typed::StmtPtr> &out);
+  // DerivedExpressions.cpp
+  typed::ExprPtr copy(const typed::Expr &expr) override;
+  using Copier::copy;
+
+  TypeContext &types;
+  typed::Function &to;
+
 private:
   /// Variables with the changes of another one; null along an axis for which it is not used.
   struct Companions {
@@ -32,20 +50,15 @@ private:
 
   // DerivedBody.cpp
   void run();
-  typed::Variable &addLocal(std::string name, const Type *type, SourceRange range);
-  /// A variable for a value that is computed once, declared before the statement.
-  const typed::Variable &addKept(const Type *type, SourceRange range);
   void addCompanions(const typed::Variable &of, std::vector<typed::StmtPtr> &out,
                      const Term (&changes)[2]);
   const Companions *companionsOf(const typed::Expr &place) const;
   /// Moves the declarations of variables made by addKept to `out`.
   void declareKept(std::vector<typed::StmtPtr> &out);
-  typed::StmtPtr declaration(const typed::Variable &variable) const;
   typed::StmtPtr assignment(const typed::Variable &variable, typed::ExprPtr value);
 
   // DerivedStatements.cpp
   typed::StmtPtr statement(const typed::StmtPtr &from);
-  void statement(const typed::Stmt &from, std::vector<typed::StmtPtr> &out);
   void declare(const typed::Variable &from, std::vector<typed::StmtPtr> &out);
   void evaluate(const typed::Expr &expr, SourceRange range, std::vector<typed::StmtPtr> &out);
   void forgetWritten(const typed::Expr &expr, std::vector<typed::StmtPtr> &out);
@@ -57,8 +70,6 @@ private:
   typed::ExprPtr returned(const typed::ExprPtr &value);
 
   // DerivedExpressions.cpp
-  typed::ExprPtr copy(const typed::Expr &expr) override;
-  using Copier::copy;
   typed::ExprPtr derivativeOf(const typed::Expr &expr, Axis axis);
   typed::ExprPtr callWithFootprint(const typed::Expr &expr, const typed::Function &function,
                                    const std::vector<typed::ExprPtr> &args);
@@ -71,6 +82,7 @@ private:
   // DerivedChanges.cpp
   /// The change of an expression's value.
   Term change(const typed::Expr &expr, Axis axis);
+  Term changeOfState(const typed::StateExpr &expr, Axis axis);
   Term changeOfBinary(ast::BinaryOp op, const typed::Expr &left, const typed::Expr &right,
                       const Type *type, Axis axis);
   Term changeOfConstruct(const typed::ConstructExpr &expr, Axis axis);
@@ -86,9 +98,7 @@ private:
   Term factor(const typed::Expr &expr);
 
   Derivation &derivation;
-  TypeContext &types;
   const typed::Function &from;
-  typed::Function &to;
   Changes changes;
   Result result = Result::Value;
   std::map<const typed::Variable *, Companions> companions; // by variable of the original

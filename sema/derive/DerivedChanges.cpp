@@ -132,15 +132,22 @@ Term DerivedBody::changeOfCall(const Expr &expr, const Function &function,
   return {callOfVariant(expr, derivation.variant(function, wanted), std::move(all)), types};
 }
 
+Term DerivedBody::changeOfState(const StateExpr &expr, Axis axis) {
+  auto node = makeExpr<StateExpr>(expr.type, expr.range);
+  node->variable = *changeOf(expr.variable, from, axis);
+  Term change(std::move(node), types);
+  if (expr.variable != StateVariable::InverseRayDirection)
+    return change;
+  const Term inverse = factor(expr); // of the direction, of which this is the change
+  return -(inverse * inverse * change);
+}
+
 Term DerivedBody::change(const Expr &expr, Axis axis) {
   if (!changes.isVaried(expr))
     return {};
   switch (expr.kind) {
-  case ExprKind::State: {
-    auto node = makeExpr<StateExpr>(expr.type, expr.range);
-    node->variable = *changeOf(cast<StateExpr>(expr).variable, axis);
-    return {std::move(node), types};
-  }
+  case ExprKind::State:
+    return changeOfState(cast<StateExpr>(expr), axis);
   case ExprKind::Member: {
     auto node = makeExpr<MemberExpr>(expr.type, expr.range);
     node->member = &derivation.changeOf(*cast<MemberExpr>(expr).member, axis);

@@ -113,12 +113,16 @@ struct Function {
       false;                  // a method that other methods of the object call, not only the engine
   bool isRequired = false;    // declared by a default class, without a body
   bool isStateMethod = false; // overrides an engine method of its base class: intersect, shade, ...
-  SentRays sends;             // by itself or its callees, and by methods that override these
-  SentRays callSends;         // by a call of it, which may run an overriding method
+  bool knowsNoChanges = false; // scratchChangesMethod of an `intersect` that cannot be followed
+  SentRays sends;              // by itself or its callees, and by methods that override these
+  SentRays callSends;          // by a call of it, which may run an overriding method
   bool mayRunInLookup = false; // reachable from a texture's `lookup`
   SourceRange range;           // of the name
   std::string comment;
 };
+
+/// A method of primitives that sema/derive adds: the changes of scratch members.
+inline constexpr const char *scratchChangesMethod = "rt_computeChanges";
 
 /// The root of a class that derives from no rt_ class.
 inline constexpr const char *helperRoot = "helper class";

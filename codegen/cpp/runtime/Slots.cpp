@@ -25,6 +25,8 @@ static Statements callSlotMethod(Context &context,
     return {};
   if (context.signatures.takesScratch(*method) && method->name == "intersect")
     return {statement(call("rtsl::intersect", {rt, object}))};
+  if (name == typed::scratchChangesMethod)
+    return {statement(call("rtsl::computeChanges", {rt, object}))};
   std::vector<Code> arguments = {rt};
   if (context.signatures.takesScratch(*method))
     arguments.push_back(storedScratch(context.names, definition));

@@ -153,6 +153,8 @@ private:
       addMethods("rt_Primitive", "computeTextureCoordinates", cause);
     if (needs & (RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT))
       addMethods("rt_Primitive", "computeDerivatives", cause);
+    if (isOfScratchChanges(needs))
+      addMethods("rt_Primitive", typed::scratchChangesMethod, cause);
     if (needs & RTSL_NEEDS_CAMERA_RAY && context.request.engine != runtime::Engine::Classic)
       addMethods("rt_Camera", "generateRay", cause);
   }

@@ -31,6 +31,8 @@ std::uint32_t needsOf(llvm::StringRef state) {
 /// outputs of the hit that it reads must then be computed for each candidate.
 bool mayRunForCandidates(const Reader &reader) {
   const auto method = ir::attr::methodName.of(reader.function);
+  if (method && method == typed::scratchChangesMethod)
+    return false;
   return (reader.root.empty() || reader.root == "rt_Primitive" || reader.root == ir::helperRoot) &&
          !(method &&
            llvm::StringSwitch<bool>(method.getValue())
@@ -104,6 +106,10 @@ bool isRead(mlir::Value address) {
                       [](mlir::Operation *user) { return !mlir::isa<ir::StoreOp>(user); });
 }
 
+bool isOfScratchChanges(std::uint32_t needs) {
+  return needs & RTSL_NEEDS_ATTRIBUTES && needs & RTSL_NEEDS_FOOTPRINT;
+}
+
 std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   if (auto state = llvm::dyn_cast<ir::StateOp>(op)) {
     if (!isRead(state))
@@ -162,6 +168,8 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
   const std::uint32_t ofLights = needsOfMethods(context, "rt_Light", "illumination");
   // A method that computes one of these may read another.
   const std::uint32_t ofDerivatives = needsOfMethods(context, "rt_Primitive", "computeDerivatives");
+  const std::uint32_t ofScratchChanges =
+      needsOfMethods(context, "rt_Primitive", typed::scratchChangesMethod);
   const std::uint32_t ofNormals = needsOfMethods(context, "rt_Primitive", "computeNormal");
   const std::uint32_t ofCoordinates =
       needsOfMethods(context, "rt_Primitive", "computeTextureCoordinates");
@@ -179,6 +187,8 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
       needs |= ofLights;
     if (hasLamps && linked.info->root == "rt_Material" && findMethod(context, linked, "emission"))
       needs |= RTSL_NEEDS_NORMALS;
+    if (isOfScratchChanges(needs))
+      needs |= ofScratchChanges;
     if (needs & (RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT))
       needs |= ofDerivatives;
     if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)

@@ -36,7 +36,8 @@ void makeSlot(LinkContext &context, const Slot &slot) {
     return findMethod(context, *linked, slot.method);
   };
   const bool isForBuilding = std::string_view(slot.method) == "computeBounds";
-  const bool isDerived = slot.method == hitErrorMethod; // no author has defined it
+  const bool isDerived = // no author has defined it
+      slot.method == hitErrorMethod || llvm::StringRef(slot.method) == typed::scratchChangesMethod;
   if (!isNoted && !isForBuilding && !isDerived && llvm::any_of(classes, hasMethod))
     context.findings.push_back(describeDispatch(name, classes, {}));
 

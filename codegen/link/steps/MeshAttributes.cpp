@@ -78,15 +78,36 @@ bool mayBeOnMesh(const LinkContext &context, const std::string &className) {
   return context.meshMaterials.count(className) != 0;
 }
 
-void dropChangesOfPrimitives(LinkContext &context) {
+namespace {
+
+/// A change, by name, axis and type.
+using Change = std::tuple<llvm::StringRef, std::uint32_t, mlir::Type>;
+
+Change changeOf(ir::AttributeOp op) {
+  return {op.getName(), *op.getAxis(), op.getType()};
+}
+
+} // namespace
+
+void dropUnknownChanges(LinkContext &context) {
+  std::vector<Change> ofPrimitives;
+  for (const LinkedClass &linked : context.classes)
+    if (mlir::func::FuncOp method = findMethod(context, linked, typed::scratchChangesMethod);
+        method && linked.isUsed)
+      method.walk([&](ir::AttributeOp op) {
+        if (op.getAxis())
+          ofPrimitives.push_back(changeOf(op));
+      });
   std::vector<ir::AttributeOp> changes;
   context.ir.walk([&](ir::AttributeOp op) {
     if (!op.getAxis())
       return;
     const auto owner = ir::attr::className.of(op->getParentOfType<mlir::func::FuncOp>());
     const std::string subject = changeSubject(op.getName().str(), *op.getAxis());
-    if (!owner || !mayBeOnMesh(context, owner.str()) ||
-        context.isWithout(Item::MeshAttributes, subject))
+    const bool isKnown = (owner && mayBeOnMesh(context, owner.str())) ||
+                         llvm::is_contained(ofPrimitives, changeOf(op));
+    if (!isKnown || context.isWithout(Item::MeshAttributes, subject) ||
+        context.isWithout(Item::Attributes, subject))
       changes.push_back(op);
   });
   for (ir::AttributeOp op : changes)

@@ -4,8 +4,8 @@
 // itself, matched by name and type. On a mesh they are its named attributes (MeshAttributes.cpp).
 // Two attributes may overlap if no primitive has both. The changes of an attribute across the
 // footprint are attributes, too; none overlaps another one, because they are 0 where a primitive is
-// hit, whatever scratch members that has. An attribute that is never read has no
-// offset, and is not stored.
+// hit that does not have the scratch member. An attribute that is never read has no offset, and is
+// not stored.
 //
 // Without a scene, attributes that are never read also get offsets if there is space, and
 // attributes of classes with a common base do not overlap: C++ has one struct for all of them.
@@ -75,11 +75,6 @@ bool isStore(mlir::Operation *user, ir::AttributeOp op) {
   if (auto copy = mlir::dyn_cast<ir::CopyOp>(user))
     return copy.getTarget() == op && copy.getSource() != op;
   return mlir::isa<ir::StoreOp, ir::ClearOp>(user);
-}
-
-bool isRead(ir::AttributeOp op) {
-  return std::any_of(op->user_begin(), op->user_end(),
-                     [&](mlir::Operation *user) { return !isStore(user, op); });
 }
 
 /// Attributes of classes in the same group must not overlap.
@@ -182,6 +177,11 @@ void eraseStores(Attribute &attribute) {
 }
 
 } // namespace
+
+bool isRead(ir::AttributeOp op) {
+  return std::any_of(op->user_begin(), op->user_end(),
+                     [&](mlir::Operation *user) { return !isStore(user, op); });
+}
 
 const typed::Member *findScratch(const typed::Class &info, const std::string &name) {
   for (const typed::Member *member : allMembers(info))

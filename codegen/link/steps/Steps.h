@@ -129,9 +129,9 @@ const typed::Class *findClass(const ClassesByName &classes, const std::string &n
 /// MeshAttributes.cpp: finds the materials that may be on a mesh, and reports their scratch members
 /// whose types the attributes of a mesh cannot have.
 void findMeshMaterials(LinkContext &context);
-/// Replaces by 0 the changes of attributes that materials read which are on no mesh, and those in
-/// LinkRequest::without.
-void dropChangesOfPrimitives(LinkContext &context);
+/// Replaces by 0 the changes of attributes that materials read which are on no mesh, and that no
+/// primitive computes, and those in LinkRequest::without.
+void dropUnknownChanges(LinkContext &context);
 /// Whether a class is one of the materials that may be on a mesh.
 bool mayBeOnMesh(const LinkContext &context, const std::string &className);
 /// Lists the attributes that these materials read and that have offsets:
@@ -141,6 +141,8 @@ void listMeshAttributes(LinkContext &context, const ClassesByName &classes);
 std::vector<runtime::AttributeInfo> describeMeshAttributes(const LinkContext &context);
 std::uint32_t meshAttributesOf(const LinkContext &context, const std::string &className);
 
+/// Is the attribute used other than by stores of all of it?
+bool isRead(ir::AttributeOp op);
 /// The scratch member of this name of a class; null if there is none.
 const typed::Member *findScratch(const typed::Class &info, const std::string &name);
 /// The scratch member that an attribute stands for: for its value, or for its change along an axis.
@@ -220,6 +222,8 @@ struct Reader {
 Reader readerOf(const mlir::SymbolTable &symbols, mlir::func::FuncOp function);
 /// RTSL_NEEDS_*: the outputs that an operation of this function reads.
 std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
+/// Are these of reading the change of a scratch member, which primitives may have to compute?
+bool isOfScratchChanges(std::uint32_t needs);
 /// Whether an operation uses the address other than to store to it.
 bool isRead(mlir::Value address);
 /// The outputs that functions of the program read; the runtime computes no others.

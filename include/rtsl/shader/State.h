@@ -166,6 +166,14 @@ inline Attributes loadScratch(const State<N> &rt) {
   return scratch;
 }
 
+/// Runs the method that writes the changes of scratch members, which are attributes too.
+template <typename Primitive, int N>
+inline void computeChanges(State<N> &rt, const Primitive &primitive) {
+  auto scratch = loadScratch<typename Primitive::Scratch>(rt);
+  primitive.rt_computeChanges(rt, scratch);
+  scratch.visit([&](int word, const auto &value) { storeAttribute(rt, word, value); });
+}
+
 /// Runs `intersect`; what it wrote to its scratch members is kept if it accepted a hit.
 template <typename Primitive, int N>
 inline void intersect(State<N> &rt, const Primitive &primitive) {

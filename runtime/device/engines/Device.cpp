@@ -46,6 +46,7 @@ float rtsl_emitted_power(const RtslLaunch *launch, uint32_t instance, uint32_t p
 #ifndef RTSL_DEVICE_OF_SLOTS // SlotDevice.cpp calls the program
 /// Defaults that programs override if they define these functions.
 __attribute__((weak)) void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Primitive_rt_computeChanges(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Selector_visit(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_generateSample(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Primitive_samplePDF(RtslState *, RtslRef) {}

@@ -94,7 +94,7 @@ inline bool hasAttributeChanges(const RtslLaunch &launch) {
   return has;
 }
 
-/// On a primitive they are 0: what its `intersect` computes is not derived.
+/// On a primitive that does not have these scratch members they are 0.
 inline void clearAttributeChanges(RtslState &state) {
   const RtslMeshAttribute *attributes = rtsl_mesh_attributes(state.launch);
   for (uint32_t i = 0; i < rtsl_mesh_attribute_count(state.launch); ++i)

@@ -277,6 +277,25 @@ void describePrimitiveHit(RtslState &state, const RtslInstance &instance, uint32
                  {absolute(point.x), absolute(point.y), absolute(point.z)}, state.hitPointError);
 }
 
+/// The changes of scratch members across the footprint of state's hit on an RTSL primitive. Rays
+/// through neighbouring points have other directions (language/Slots.def).
+template <typename Slots>
+void describePrimitiveChanges(RtslState &state, const RtslInstance &instance, const Slots &slots) {
+  clearAttributeChanges(state);
+  const float distance = state.HitDistance;
+  const Vec3 x = load(state.dUVWdx), y = load(state.dUVWdy);
+  {
+    const InObjectSpace space(state, instance);
+    store(state.dUVWdx, x * (1 / distance));
+    store(state.dUVWdy, y * (1 / distance));
+    state.HitDistance = infinity;
+    slots.rt_Primitive_rt_computeChanges(&state, instance.primitive);
+  }
+  state.HitDistance = distance;
+  store(state.dUVWdx, x);
+  store(state.dUVWdy, y);
+}
+
 /// Everything that a material may read of the hit, after traversal. `ofMaterial` is the set of what
 /// it reads, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
 template <typename Slots>
@@ -303,7 +322,7 @@ void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
   if (instance.primitive == 0)
     describeMeshChanges(state, instance, needs);
   else if (needs & RTSL_NEEDS_ATTRIBUTES)
-    clearAttributeChanges(state);
+    describePrimitiveChanges(state, instance, slots);
 }
 
 inline void describeHit(RtslState &state) {

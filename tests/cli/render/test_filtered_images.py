@@ -225,7 +225,8 @@ class Plain : Second {
         for objects, filter, expected in (
             ([mesh], "trilinear", (True, True)),
             ([mesh], "bilinear", (False, False)),
-            ([disc], "trilinear", (False, False)),
+            ([disc], "trilinear", (True, True)),
+            ([disc], "nearest", (False, False)),
         ):
             show("Plain", *objects, filter=filter)
             self.assertEqual(needed(), expected)

@@ -387,9 +387,15 @@ def footprints():
                 "mesh": str(here / "painted.ply"),
                 "attributes": {"flow": {"space": "vector"}},
                 "material": {"class": "Painted", "image": picture},
-            }
+            },
+            "disk": {
+                "primitive": {"class": "Disk", "radius": 1.5},
+                "material": {"class": "Painted", "image": picture},
+                "transform": {"translate": [2, 2, 0]},
+            },
+            "both": {"children": ["painted", "disk"]},
         },
-        "root": {"child": "painted", "transform": [{"scale": [2, 1, 1]}, {"rotate": [5, 20, 0]}]},
+        "root": {"child": "both", "transform": [{"scale": [2, 1, 1]}, {"rotate": [5, 20, 0]}]},
         "background": {"class": "Sky", "texture": "picture"},
         "render": {"engine": "classic", "size": [32, 24], "spp": 2, "depth": 3},
     }

@@ -80,6 +80,7 @@ void rtsl_rt_Primitive_computeNormal(RtslState *state, RtslRef object) {
 void rtsl_rt_Primitive_computeTextureCoordinates(RtslState *, RtslRef) {}
 void rtsl_rt_Primitive_computeDerivatives(RtslState *, RtslRef) {}
 void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
+void rtsl_rt_Primitive_rt_computeChanges(RtslState *, RtslRef) {}
 void rtsl_rt_Texture_lookup(RtslState *, RtslRef) {}
 void rtsl_rt_RayGeneration_generate(RtslState *, RtslRef) {}
 void rtsl_rt_Exception_exception(RtslState *, RtslRef) {}

@@ -194,7 +194,8 @@ Shader::Shader(const std::string &source, Options options) : code(std::make_uniq
   code->jit = take(codegen::Jit::create(
       std::move(context), std::move(module), std::move(target),
       {{"rtsl_traverse", reinterpret_cast<void *>(&testTraverse)},
-       {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)}}));
+       {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)},
+       {"rtsl_rt_Primitive_rt_computeChanges", reinterpret_cast<void *>(&deriveNothing)}}));
 }
 
 Shader::~Shader() = default;

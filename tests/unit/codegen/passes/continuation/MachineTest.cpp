@@ -115,6 +115,7 @@ public:
         std::move(llvmContext), std::move(module), std::move(machine),
         {{"rtsl_traverse", reinterpret_cast<void *>(&traverse)},
          {"rtsl_rt_Primitive_rt_boundHitError", reinterpret_cast<void *>(&deriveNothing)},
+         {"rtsl_rt_Primitive_rt_computeChanges", reinterpret_cast<void *>(&deriveNothing)},
          {"rtsl_machine_stack", reinterpret_cast<void *>(&machineStack)}});
     if (!made) {
       ADD_FAILURE() << llvm::toString(made.takeError());

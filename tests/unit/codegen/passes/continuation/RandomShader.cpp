@@ -483,9 +483,9 @@ std::string Generator::module() {
   method("B", "closestHit.P", true);
   method("Sky", "miss.P", true);
   text += entryPoints;
-  for (const char *slot :
-       {"rt_Primitive_rt_boundHitError", "rt_Primitive_computeTextureCoordinates",
-        "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
+  for (const char *slot : {"rt_Primitive_rt_boundHitError", "rt_Primitive_rt_computeChanges",
+                           "rt_Primitive_computeTextureCoordinates",
+                           "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
     text += std::string("func.func @rtsl_") + slot +
             "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
   return text;
