@@ -147,8 +147,8 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
     return outer.seesAll ||
            device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots});
   };
-  if (!isSeen() || !enterSpace(*state.launch, *outer.ray, one.instance, one.inside->bounds,
-                               state.Time, state.Epsilon, outer.limit(), ray))
+  if (!isSeen() ||
+      !enterSpace(*state.launch, *outer.ray, one, state.Time, state.Epsilon, outer.limit(), ray))
     return false;
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);

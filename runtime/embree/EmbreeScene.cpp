@@ -92,7 +92,7 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
           addPrimitives(*inside, i);
         buildSpace(*inside, threads);
       }
-      self->world.instances.push_back({i, inside.get()});
+      self->world.instances.emplace_back(launch, i, inside.get());
     } else if (isMesh) {
       addMesh(self->world, i, i);
     } else {

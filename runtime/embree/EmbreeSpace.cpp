@@ -75,27 +75,37 @@ void boundPrimitive(const RTCBoundsFunctionArguments *arguments) {
   setBounds(arguments, box.lower, box.upper);
 }
 
-RtslBox boxOf(const EmbreeSpace &space, const EmbreeInstance &one) {
-  const RtslInstance &instance = space.scene->launch.instances[one.instance];
+RtslBox boxOf(const EmbreeInstance &one) {
   RtslBox box;
-  std::copy_n(instance.lower, 3, box.lower);
-  std::copy_n(instance.upper, 3, box.upper);
+  std::copy_n(one.lower, 3, box.lower);
+  std::copy_n(one.upper, 3, box.upper);
   return box;
 }
 
 void boundInstance(const RTCBoundsFunctionArguments *arguments) {
-  const EmbreeSpace &space = *levelOf(arguments).owner;
-  const RtslBox box = boxOf(space, space.instances[arguments->primID]);
-  setBounds(arguments, box.lower, box.upper);
+  const EmbreeInstance &one = levelOf(arguments).owner->instances[arguments->primID];
+  setBounds(arguments, one.lower, one.upper);
 }
 
 } // namespace
+
+void EmbreeInstance::update(const RtslLaunch &launch) {
+  const RtslInstance &of = launch.instances[instance];
+  const RtslTransform &transform = launch.transforms[of.transform];
+  std::copy_n(of.lower, 3, lower);
+  std::copy_n(of.upper, 3, upper);
+  std::copy_n(transform.inverse, 9, inverse);
+  if (transform.motion == 0)
+    std::copy_n(transform.translation, 3, translation);
+  else
+    std::fill_n(translation, 3, std::numeric_limits<float>::quiet_NaN());
+}
 
 void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes) {
   for (const EmbreePrimitive &primitive : space.primitives)
     boxes.push_back(boxOf(space, primitive));
   for (const EmbreeInstance &one : space.instances)
-    boxes.push_back(boxOf(space, one));
+    boxes.push_back(boxOf(one));
 }
 
 //===----------------------------------------------------------------------===//
@@ -163,10 +173,8 @@ void addLevels(EmbreeSpace &self) {
     const RtslBox box = boxOf(self, primitive);
     addBox(box.lower, box.upper);
   }
-  for (const EmbreeInstance &one : self.instances) {
-    const RtslInstance &instance = self.scene->launch.instances[one.instance];
-    addBox(instance.lower, instance.upper);
-  }
+  for (const EmbreeInstance &one : self.instances)
+    addBox(one.lower, one.upper);
   float reach = 1;
   if (!reaches.empty()) {
     auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
@@ -214,6 +222,7 @@ void buildSpace(EmbreeSpace &space, unsigned threads) {
   buildLevel(*space.levels[0]);
   space.firstLevel = space.levels[0]->scene;
   space.firstLevelOrigin = space.levels[0]->largestOrigin;
+  space.secondLevelOrigin = space.levels.size() > 1 ? space.levels[1]->largestOrigin : 0;
 }
 
 RTCScene EmbreeSpace::treeForFar(float origin) const {
@@ -222,6 +231,8 @@ RTCScene EmbreeSpace::treeForFar(float origin) const {
     ++i;
   EmbreeLevel &level = *levels[i];
   std::call_once(level.built, [&] { buildLevel(level); });
+  if (i == 1)
+    secondLevel.store(level.scene, std::memory_order_release);
   return level.scene;
 }
 
@@ -230,6 +241,7 @@ void releaseLevels(EmbreeSpace &space) {
     if (level->scene)
       rtcReleaseScene(level->scene);
   space.levels.clear();
+  space.secondLevel = nullptr;
 }
 
 //===----------------------------------------------------------------------===//
@@ -243,6 +255,11 @@ decltype(EmbreePrimitive::intersect) intersectOf(const Scene &scene, const Progr
 }
 
 namespace {
+
+void updateInstances(EmbreeSpace &space) {
+  for (EmbreeInstance &one : space.instances)
+    one.update(space.scene->launch);
+}
 
 /// Copies the vertices of all triangles to their blocks again. True if some are elsewhere.
 bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
@@ -268,6 +285,7 @@ bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
 
 /// Trees for distant origins are built when they are needed again.
 void releaseDistantLevels(EmbreeSpace &space) {
+  space.secondLevel = nullptr;
   for (std::size_t i = 1; i < space.levels.size(); ++i) {
     if (!space.levels[i]->scene)
       continue;
@@ -321,6 +339,7 @@ void useScene(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
 } // namespace
 
 bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
+  updateInstances(space);
   updateBlocks(space, mesh, threads);
   return updateTree(space, threads);
 }
@@ -328,6 +347,7 @@ bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
 void followSpace(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
                  const Program::Slots &slots, unsigned threads) {
   useScene(space, mesh, scene, slots);
+  updateInstances(space);
   const bool isChanged = updateBlocks(space, mesh, threads);
   std::vector<RtslBox> boxes;
   addBoxes(space, boxes);

@@ -12,6 +12,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -28,11 +29,24 @@ struct EmbreePrimitive {
   std::uint32_t number;   // of several of one object, or of the triangle
 };
 
-/// An instance in Embree that has a space of its own.
-struct EmbreeInstance {
+/// An instance in Embree that has a space of its own, with all that a ray needs to enter it: in two
+/// lines of the cache, where the tables of the launch would be six in three places.
+struct alignas(64) EmbreeInstance {
+  double inverse[9];        // of its RtslTransform
+  double loadedToo = 1;     // with the last column
+  float lower[3], upper[3]; // of RtslInstance
+  float translation[3];     // of its RtslTransform; NaN: that moves
   std::uint32_t instance;
   const EmbreeSpace *inside;
+
+  EmbreeInstance(const RtslLaunch &launch, std::uint32_t instance, const EmbreeSpace *inside)
+      : instance(instance), inside(inside) {
+    update(launch);
+  }
+  /// Copies what may have changed.
+  void update(const RtslLaunch &launch);
 };
+static_assert(sizeof(EmbreeInstance) == 128);
 
 /// A tree for rays with origins up to some distance.
 struct EmbreeLevel {
@@ -60,11 +74,18 @@ struct EmbreeSpace {
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
   float firstLevelOrigin = 0; // of levels[0]
   RTCScene firstLevel = nullptr;
+  // The same of levels[1], where most rays that enter an instance from elsewhere begin; null: it is
+  // not built.
+  float secondLevelOrigin = 0;
+  mutable std::atomic<RTCScene> secondLevel{nullptr};
 
   /// The tree for rays from this origin.
   RTCScene treeFor(device::Vec3 origin) const {
     float size = __builtin_fabsf(origin.x) + __builtin_fabsf(origin.y) + __builtin_fabsf(origin.z);
-    return size <= firstLevelOrigin ? firstLevel : treeForFar(size);
+    if (size <= firstLevelOrigin)
+      return firstLevel;
+    const RTCScene second = secondLevel.load(std::memory_order_acquire);
+    return second && size <= secondLevelOrigin ? second : treeForFar(size);
   }
   RTCScene treeForFar(float origin) const;
 };

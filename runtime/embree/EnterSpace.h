@@ -3,12 +3,13 @@
 // What device::enterInstance does, and a test of the box of everything in the space, with x, y and
 // z in lanes of one register. The operations are those of runtime/device/traverse/Instance.h,
 // BoxRange.h and Triangle.h, in the same order, and so are the bits. Rays that those treat
-// separately, and instances that move, are left to them.
+// separately, and instances that move, whose origin is NaN here, are left to them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/device/traverse/Instance.h"
+#include "runtime/embree/EmbreeSpace.h"
 
 #include <immintrin.h>
 
@@ -53,7 +54,7 @@ inline bool holds(Axes comparison) {
 [[gnu::always_inline]] inline Axes product(const double m[9], __m256d v) {
   const __m256d x = _mm256_permute4x64_pd(v, 0x00), y = _mm256_permute4x64_pd(v, 0x55),
                 z = _mm256_permute4x64_pd(v, 0xaa);
-  // A column and a double after it: of the next column, or RtslTransform::squaredScale.
+  // A column and a double after it: of the next column, or EmbreeInstance::loadedToo.
   const __m256d first = _mm256_fmadd_pd(_mm256_loadu_pd(m), x, _mm256_setzero_pd());
   const __m256d second = _mm256_fmadd_pd(_mm256_loadu_pd(m + 3), y, first);
   return _mm256_cvtpd_ps(_mm256_fmadd_pd(_mm256_loadu_pd(m + 6), z, second));
@@ -88,15 +89,15 @@ inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
                       epsilon, limit);
 }
 
-/// The ray in the object space of an instance, as device::enterInstance computes it. `bounds`: of
-/// all that is in that space. False if it hits nothing there before `limit`.
+/// The ray in the object space of an instance, as device::enterInstance computes it. False if it
+/// hits nothing there before `limit`.
 [[gnu::always_inline]] inline bool enterSpace(const RtslLaunch &launch,
                                               const device::TriangleRay &world,
-                                              std::uint32_t number, const RtslBox &bounds,
-                                              float time, float epsilon, float limit,
+                                              const EmbreeInstance &instance, float time,
+                                              float epsilon, float limit,
                                               device::InstanceRay &entered) {
-  const RtslInstance &instance = device::instanceAt(launch, number);
-  const RtslTransform &transform = launch.transforms[instance.transform];
+  const std::uint32_t number = instance.instance;
+  const RtslBox &bounds = instance.inside->bounds;
   const Axes worldOrigin = axesAt(&world.origin.x);
   const device::Range range =
       rangeInBox(instance.lower, instance.upper, worldOrigin, axesAt(&world.inverse.x));
@@ -105,13 +106,10 @@ inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
   const device::Range widened = range.widened();
   if (widened.near > limit || widened.far < epsilon)
     return false;
-  if (transform.motion != 0)
-    return enterAnySpace(launch, world, number, bounds, time, epsilon, limit, entered);
 
-  const Axes origin =
-      product(transform.inverse,
-              _mm256_cvtps_pd(worldOrigin) - _mm256_cvtps_pd(axesAt(transform.translation)));
-  const Axes direction = product(transform.inverse, _mm256_cvtps_pd(axesAt(&world.direction.x)));
+  const Axes origin = product(instance.inverse, _mm256_cvtps_pd(worldOrigin) -
+                                                    _mm256_cvtps_pd(axesAt(instance.translation)));
+  const Axes direction = product(instance.inverse, _mm256_cvtps_pd(axesAt(&world.direction.x)));
   const Axes inverse = _mm_set1_ps(1) / direction;
   const int longest = longestAxis(direction);
   alignas(16) static constexpr std::int32_t along[3][4] = {

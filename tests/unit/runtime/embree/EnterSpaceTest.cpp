@@ -151,8 +151,11 @@ unsigned compare(Form form, unsigned count) {
     const Case one = cases.make(form);
     const RtslLaunch launch = one.launch();
     InstanceRay lanes, each;
+    runtime::EmbreeSpace inside;
+    inside.bounds = one.bounds;
+    const runtime::EmbreeInstance entry(launch, 0, &inside);
     const bool enters =
-        runtime::enterSpace(launch, one.ray, 0, one.bounds, 0, one.epsilon, one.limit, lanes);
+        runtime::enterSpace(launch, one.ray, entry, 0, one.epsilon, one.limit, lanes);
     EXPECT_EQ(enters, runtime::enterAnySpace(launch, one.ray, 0, one.bounds, 0, one.epsilon,
                                              one.limit, each))
         << "case " << i;
