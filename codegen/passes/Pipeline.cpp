@@ -3,6 +3,7 @@
 
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/passes/BindMembers.h"
+#include "codegen/passes/ForgetArguments.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/PropagateConstants.h"
 #include "codegen/passes/ShareExpressions.h"
@@ -48,6 +49,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   inlined.addPass(createBindMembersPass()); // for members that copies have hidden
   inlined.addPass(createSimplifyPass());
 
+  module.addPass(createForgetArgumentsPass());
   module.addPass(mlir::createSymbolDCEPass());
 }
 
@@ -73,6 +75,7 @@ void registerPasses() {
   mlir::registerPass(createToControlFlowPass);
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
+  mlir::registerPass(createForgetArgumentsPass);
   mlir::registerPass([] { return createInlineFunctionsPass(); });
   mlir::registerPass(createShareExpressionsPass);
   mlir::registerPass([] { return createPromoteVariablesPass(/*fewest=*/0); });

@@ -124,6 +124,15 @@ std::shared_ptr<Value::Words> wordsAt(const char *elements, std::size_t bytes,
   return words;
 }
 
+/// The shape of a file for a buffer, such as "n, m, 3".
+std::string shapeTaken(const ValueType &type, std::size_t numbers) {
+  constexpr std::string_view names[] = {"n", "m", "k"};
+  std::string shape;
+  for (std::size_t i = 0; i < type.bufferRank; ++i)
+    shape += fmt::format("{}{}", i ? ", " : "", names[i]);
+  return numbers == 1 ? shape : fmt::format("{}, {}", shape, numbers);
+}
+
 /// The number of numbers, or structs, that a file of this shape has for an element. The dimensions
 /// of the buffer come first, those of an element follow. Throws WrongType.
 std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &shape,
@@ -134,13 +143,9 @@ std::size_t checkShape(const std::string &file, const std::vector<std::size_t> &
   const bool isColor = type.kind == ValueType::Kind::Color && type.arraySizes.empty();
   if (shape.size() < type.bufferRank ||
       (given != numbers && !(isColor && (given == 1 || given == 3))))
-    throw Error(message::bufferShape(
-        what, type.name,
-        type.bufferRank == 1 ? "1 dimension" : fmt::format("{} dimensions", type.bufferRank),
-        numbers,
-        fmt::format("{}{}", type.kind == ValueType::Kind::Struct ? "struct" : "number",
-                    numbers == 1 ? "" : "s"),
-        file, fmt::join(shape, ", ")));
+    throw Error(message::bufferShape(what, type.name, shapeTaken(type, numbers),
+                                     type.kind == ValueType::Kind::Struct ? " of structs" : "",
+                                     file, fmt::join(shape, ", ")));
   return given;
 }
 
@@ -165,8 +170,11 @@ Value readElements(const BufferDescription &buffer, const ValueType &type, std::
   const std::string bytes = readFile(buffer.file);
   const std::size_t stride = 4 * numbers;
   std::vector<std::size_t> shape(buffer.shape.begin(), buffer.shape.end());
-  if (shape.empty() && type.bufferRank == 1)
+  if (shape.empty() && type.bufferRank == 1) {
+    if (bytes.size() % stride != 0)
+      throw Error(message::bufferFileElements(buffer.file, bytes.size(), what, type.name, stride));
     shape.push_back(bytes.size() / stride);
+  }
   if (shape.size() != type.bufferRank)
     throw Error(message::bufferShapeRank(what, type.name, type.bufferRank));
   const auto count = std::accumulate(shape.begin(), shape.end(), 1.0,

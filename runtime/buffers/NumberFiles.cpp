@@ -159,7 +159,7 @@ NpyFile::NpyFile(const std::string &path, Part part, const StructType *structTyp
   if (hasStructs) {
     const std::string_view given = structTypeOf(name);
     if (part == Part::Whole && !structType)
-      throw Error(message::npyBadElements(path));
+      throw Error(message::npyBadElements(path, given));
     if (structType && given != structType->name)
       throw Error(message::npyOtherStructs(path, given, structType->name));
     elementBytes = structType ? structType->bytes : 0;
@@ -172,7 +172,7 @@ NpyFile::NpyFile(const std::string &path, Part part, const StructType *structTyp
     if (structType)
       throw Error(message::npyOtherStructs(path, name.substr(0, name.find(',')), structType->name));
     if (found == std::end(elementTypes))
-      throw Error(message::npyBadElements(path));
+      throw Error(message::npyBadElements(path, name.substr(0, name.find(','))));
     type = static_cast<std::size_t>(found - elementTypes);
     elementBytes = found->bytes;
   }

@@ -218,6 +218,8 @@ void readBuffers(const Options &options, runtime::LaunchBuffers &buffers,
     if (!buffer.setsLaunchSize || options.size)
       continue;
     render.width = buffers.lengthOf(buffer);
+    if (render.width == 0)
+      throw Error(message::launchOfEmptyBuffer(input.file, input.name, runtime::mostLaunchIndices));
     render.height = render.slices = 1;
   }
   buffers.setSize(render);

@@ -147,6 +147,15 @@ class Steps : rt_RayGeneration {
             b"`--in origins` is a `float[]`",
             self.run_alone("--in=origins=bad.npy", "--out=cells=a.npy", status=1).stderr,
         )
+        for name, content, expected in (
+            ("none.npy", npy("f", (0,), []), "`none.npy` has no elements for the buffer `starts`"),
+            ("none.raw", b"", "it needs 1 to 268435456"),
+            ("odd.raw", bytes(6), "one of `--in origins`, a `float[]`, has 4 bytes"),
+        ):
+            self.write(name, content)
+            done = self.run_alone(f"--in=starts={name}", "--out=cells=a.npy", status=1)
+            self.assertIn(expected, done.stderr.decode())
+        self.assertFalse((self.folder / "a.npy").exists())
         self.assertIn(b"--out, a buffer, is required", self.run_alone(status=2).stderr)
         for bad in ("--out=cells", "--in==x", "--out=cells=a --out=cells=b"):
             self.run_alone(*bad.split(), status=2)

@@ -370,7 +370,7 @@ class Buffers(Case):
                 "a.npy",
                 npy("f", (2, 2), [1, 2, 3, 4]),
                 "E0804",
-                "is a `float[]`: 1 dimension with 1 number each are needed",
+                "is a `float[]`, which takes the shape (n), and",
             ),
             ("a.npy", npy("d", (1,), [1e39]), "E0805", "the largest float"),
             ("a.csv", b"x,y\n1,2\n", "E0804", "has the shape (1, 2)"),
@@ -442,11 +442,13 @@ class Buffers(Case):
         self.write("a.npy", npy("f", (2,), [], descr=CORNER) + bytes(24))
         self.scene(numbers={"buffer": "a.npy"})
         messages = self.diagnose("render", "scene.json", "-o", "x.exr", "-Wno-all")
-        self.assert_message(messages, "E0906", "not little-endian integers or floats")
+        self.assert_message(
+            messages, "E0906", f"its elements are {CORNER}, not little-endian integers or floats"
+        )
         self.structs(pairs={"buffer": "a.npy"})
         messages = self.diagnose("render", "scene.json", "-o", "x.exr", "-Wno-all")
         self.assert_message(
-            messages, "E0804", "2 structs each are needed, and `a.npy` has the shape (2)"
+            messages, "E0804", "the shape (n, 2) of structs, and `a.npy` has the shape (2)"
         )
 
     def test_what_takes_no_file(self):

@@ -165,6 +165,34 @@ vec2 zero(vec2 uv) { return dFdx(uv); }
         self.same_bits([[], ["--keep=all"], ["--target=host-megakernel"]])
         self.far_scene(1, filter="trilinear")
         self.assertEqual(footprints(), [("footprints of rays", True)])
+        for filter in ("nearest", "trilinear"):  # through calls that are not inlined
+            images = [self.checkerboard(filter=filter), self.checkerboard(8, filter=filter)]
+            layers = [{"class": "Plain"}, {"class": "Chosen", "images": images}]
+            plane = {"class": "Parallelogram", "constructor": [[-9, -9, 0], [18, 0, 0], [0, 18, 0]]}
+            objects = [{"primitive": plane, "material": {"class": "Layered", "layers": layers}}]
+            self.scene(self.LAYERED, objects)
+            self.assertEqual(footprints(), [("footprints of rays", filter == "trilinear")])
+        self.same_bits([[], ["--keep=all"], ["--target=host-megakernel"]])
+
+    LAYERED = """
+class Layer { vec4 over(vec4 below, vec2 uv) { return below; } };
+class Plain : Layer { vec4 over(vec4 below, vec2 uv) { return 0.5 * below + vec4(uv, uv) * 0.1; } };
+class Chosen : Layer {
+  public sampler2D images[];
+  vec4 over(vec4 below, vec2 uv) {
+    return below + images[int(floor(9.0 * uv.x)) & 1].sample(7.0 * uv);
+  }
+};
+class Layered : rt_Material {
+  public Layer layers[];
+  void shade() {
+    vec4 value = vec4(1.0);
+    for (int i = 0; i < layers.length(); ++i)
+      value = layers[i].over(value, rt_TextureUV);
+    rt_SampleColor = color(value.r, value.g, value.b);
+  }
+};
+"""
 
 
 class OtherCoordinates(MeshCase):
