@@ -9,6 +9,7 @@
 
 #include "math/ArcTangent2.h"
 #include "math/Power.h"
+#include "math/TrigonometricOfPi.h"
 #include "math/kernels/ArgumentReduction.h"
 #include "math/tables/ArcTangentTable.h"
 
@@ -122,6 +123,18 @@ inline float withFlippedSign(float x, bool flip) {
   return floatOf(bitsOf(x) ^ (flip ? floatSignBit : 0u));
 }
 
+/// a = quadrant/2 + rest/pi for 0 <= a < mostHalfTurns.
+inline constexpr float mostHalfTurns = 0x1p21f;
+inline Quadrant reduceHalfTurns(float a) {
+  float q = nearest(2.0f * a);
+  return {int(q), fma(-0.5f, q, a) * float(pi.hi)};
+}
+/// y, with its sign flipped in the third and fourth quadrant unless it is 0, and by `sign`.
+inline float inHalfTurn(float y, int quadrant, uint32_t sign) {
+  uint32_t isNotZero = (bitsOf(y) & ~floatSignBit) + ~floatSignBit; // in the sign's bit
+  return floatOf(bitsOf(y) ^ (isNotZero & uint32_t(quadrant) << 30 & floatSignBit) ^ sign);
+}
+
 // ---- inverse trigonometric functions
 
 /// atan(y/x) for 0 <= y <= x, 0 < x: the nearest of atan(0), atan(1/4) ... atan(1), and a series
@@ -151,6 +164,12 @@ inline float firstQuadrantAngle(float y, float x) {
 
 [[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
   return device::pow(x, y);
+}
+[[gnu::cold, gnu::noinline]] inline float specialSineOfPi(float x) {
+  return device::sinpi(x);
+}
+[[gnu::cold, gnu::noinline]] inline float specialCosineOfPi(float x) {
+  return device::cospi(x);
 }
 [[gnu::cold, gnu::noinline]] inline float specialAngle(float y, float x) {
   return device::atan2(y, x);
@@ -225,6 +244,28 @@ inline float cos(float x) {
   Quadrant reduced = reduce(a);
   float y = series(reduced.rest, (reduced.quadrant & 1) == 0);
   return withFlippedSign(y, ((reduced.quadrant + 1) & 2) != 0);
+}
+
+/// sin(pi x), relative error below 2^-22. Its reduction has no branch, so that the optimiser can
+/// share it with cospi of the same argument.
+inline float sinpi(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  bool isUsual = a < mostHalfTurns;
+  Quadrant reduced = reduceHalfTurns(isUsual ? a : 0.0f);
+  float y = series(reduced.rest, (reduced.quadrant & 1) != 0);
+  uint32_t negative = bitsOf(x) & floatSignBit;
+  return isUsual ? inHalfTurn(y, reduced.quadrant, negative) : specialSineOfPi(x);
+}
+
+/// cos(pi x), relative error below 2^-22.
+inline float cospi(float x) {
+  using namespace detail;
+  float a = absolute(x);
+  bool isUsual = a < mostHalfTurns;
+  Quadrant reduced = reduceHalfTurns(isUsual ? a : 0.0f);
+  float y = series(reduced.rest, (reduced.quadrant & 1) == 0);
+  return isUsual ? inHalfTurn(y, reduced.quadrant + 1, 0) : specialCosineOfPi(x);
 }
 
 /// tan(x), relative error below 2^-21.
