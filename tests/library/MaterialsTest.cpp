@@ -1,6 +1,7 @@
 //===- MaterialsTest.cpp - scattering of the library's materials ----------===//
 //
-// The materials as C++ that rtslc prints. RTSL_DEEP=1 draws fifteen times as many directions.
+// The materials as C++ that rtslc prints. RTSL_DEEP=1 draws fifteen times as many directions, at
+// more settings and angles.
 //
 //===----------------------------------------------------------------------===//
 #include "everything.cpp" // made by rtslc
@@ -48,6 +49,7 @@ class Floor {
 public:
   Verdict verdict;
   Effort effort;
+  std::vector<double> cosines = {0.01, 0.05, 0.3, 0.7, 1};
   Objects objects;
 
   /// A hit of a ray from `toEye`, on a surface whose normal is z, or -z if the ray comes from
@@ -84,11 +86,14 @@ public:
     return {glm::normalize(glm::dvec3(rt.LightDirection)), green(rt.BSDFValue), rt.PDF};
   }
 
-  /// Directions and energy, at several cosines.
+  /// Directions and energy, at several cosines. Where the surface is seen at the most grazing ones,
+  /// cells are too coarse for narrow lobes and for refraction.
   template <typename Material>
   void directions(const std::string &name, const Material &material, const Limits &limits = {},
                   bool isOutside = true, double lean = 0) {
-    for (const double cosine : {0.05, 0.3, 0.7, 0.98}) {
+    for (const double cosine : cosines) {
+      if (cosine < 0.05 && (limits.width < 0.1 || limits.index != 1))
+        continue;
       State rt = hit({std::sqrt(1 - cosine * cosine), 0, cosine}, isOutside, lean);
       const Surface surface = {
           [&](glm::vec2 seed) { return sample(material, rt, seed); },
@@ -169,18 +174,30 @@ Limits ofAlpha(float alpha, double energy = 1.002, double index = 1) {
   return {energy, alpha > 0 ? double(alpha) : 1.0, index};
 }
 
-void testDiffuse(Floor &floor) {
+/// Settings of a parameter. Many of them take a grid that resolves the narrowest lobes.
+struct Settings {
+  std::vector<float> few, many;
+
+  const std::vector<float> &of(bool isDeep) const { return isDeep ? many : few; }
+};
+const Settings sigmas = {{0, 1e-4f, 0.2f, 0.5f, 1},
+                         {0, 1e-4f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.7f, 0.85f, 1}};
+const Settings spreads = {{0.2f, 0.25f, 0.5f, 1},
+                          {0.2f, 0.22f, 0.25f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1}};
+const Settings wardAlphas = {{0.05f, 0.15f, 0.5f}, {0.01f, 0.02f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f}};
+
+void testDiffuse(Floor &floor, bool isDeep) {
   Lambert lambert;
   lambert.reflectance = white;
   floor.all("Lambert", lambert);
   floor.directions("Lambert, other normal", lambert, {}, true, 0.3);
-  for (const float sigma : {0.0f, 0.2f, 0.5f, 1.0f}) {
+  for (const float sigma : sigmas.of(isDeep)) {
     OrenNayar rough;
     rough.reflectance = white;
     rough.sigma = sigma;
     floor.all(named("OrenNayar", sigma), rough, {1.002});
   }
-  for (const float spread : {0.2f, 0.3f, 0.5f, 1.0f}) {
+  for (const float spread : spreads.of(isDeep)) {
     Velvet velvet;
     velvet.reflectance = velvet.sheen = white;
     velvet.spread = spread;
@@ -195,7 +212,7 @@ void testMetal(Floor &floor, const char *name) {
   floor.all(name, metal, {0.999, 0.2});
 }
 
-void testGlossy(Floor &floor) {
+void testGlossy(Floor &floor, bool isDeep) {
   for (const float alpha : alphas) {
     Conductor metal;
     metal.eta = Color(0.001f);
@@ -218,8 +235,8 @@ void testGlossy(Floor &floor) {
     plastic.index = index;
     floor.all(named("Plastic of index", index), plastic, ofAlpha(plastic.alpha, 1.02));
   }
-  for (const float alphaU : {0.01f, 0.1f, 0.3f, 0.5f})
-    for (const float alphaV : {0.05f, 0.5f}) {
+  for (const float alphaU : wardAlphas.of(isDeep))
+    for (const float alphaV : wardAlphas.of(isDeep)) {
       Ward ward;
       ward.reflectance = ward.specular = Color(0.5f);
       ward.alphaU = alphaU;
@@ -367,10 +384,12 @@ void testEmitter(Floor &floor) {
 int run() {
   Floor floor;
   const bool isDeep = std::getenv("RTSL_DEEP");
-  if (isDeep)
+  if (isDeep) {
     floor.effort = {300'000, {24, 96}, 0.002};
-  testDiffuse(floor);
-  testGlossy(floor);
+    floor.cosines = {0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98, 1};
+  }
+  testDiffuse(floor, isDeep);
+  testGlossy(floor, isDeep);
   testTransparent(floor);
   if (isDeep)
     testPrincipled(floor, {0, 0.5f, 1}, {0, 0.2f, 0.35f, 0.7f, 1});
