@@ -297,7 +297,7 @@ private:
       pass.rayGeneration = readObject(require(value, "rayGeneration", "a pass"), "`rayGeneration`");
       pass.render = scene.render;
       pass.render.engine = runtime::Engine::Programs;
-      readSettings(value, pass.render, scene, value.find("rayGeneration"));
+      readSettings(value, pass.render, scene, value.find("rayGeneration"), errors);
       scene.passes.push_back(std::move(pass));
     });
     const JsonValue *passes = root.find("passes");
@@ -526,24 +526,26 @@ private:
               {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
               "`render`");
     if (const JsonValue *shutter = value.find("shutter"))
-      readShutter(*shutter);
+      errors.attempt([&] { readShutter(*shutter); });
     if (const JsonValue *sampler = value.find("lightSampler"))
-      readLightSampler(*sampler);
+      errors.attempt([&] { readLightSampler(*sampler); });
     if (const JsonValue *editable = value.find("editable"))
-      readEditable(*editable);
-    RenderSettings &render = scene.render;
-    if (const JsonValue *engine = value.find("engine")) {
-      expect(*engine, Kind::String, "`engine`");
-      const std::vector<std::string> &ofLibrary = libraryEngines();
-      if (std::find(ofLibrary.begin(), ofLibrary.end(), engine->string) != ofLibrary.end())
-        libraryEngine = engine;
-      else if (engine->string != "classic" && engine->string != "programs")
-        throw Error(message::noSuchEngine(engine->string, fmt::join(ofLibrary, "`, `")),
-                    engine->place());
-      if (engine->string != "classic")
-        render.engine = runtime::Engine::Programs;
-    }
-    readSettings(value, render, scene, root.find("rayGeneration"));
+      errors.attempt([&] { readEditable(*editable); });
+    if (const JsonValue *engine = value.find("engine"))
+      errors.attempt([&] { readEngine(*engine); });
+    readSettings(value, scene.render, scene, root.find("rayGeneration"), errors);
+  }
+
+  void readEngine(const JsonValue &engine) {
+    expect(engine, Kind::String, "`engine`");
+    const std::vector<std::string> &ofLibrary = libraryEngines();
+    if (std::find(ofLibrary.begin(), ofLibrary.end(), engine.string) != ofLibrary.end())
+      libraryEngine = &engine;
+    else if (engine.string != "classic" && engine.string != "programs")
+      throw Error(message::noSuchEngine(engine.string, fmt::join(ofLibrary, "`, `")),
+                  engine.place());
+    if (engine.string != "classic")
+      scene.render.engine = runtime::Engine::Programs;
   }
 
   const JsonValue &root;

@@ -55,33 +55,41 @@ static void readSlices(const JsonValue &size, RenderSettings &render) {
   render.height = std::uint32_t(rows);
 }
 
+static void readSize(const JsonValue &size, RenderSettings &render, const SceneDescription &scene,
+                     const JsonValue *rayGeneration) {
+  render.slices = 1;
+  render.sizeBuffer = size.kind == Kind::String ? size.string : "";
+  if (size.kind == Kind::String) {
+    render.width = lengthOfBuffer(size, scene, rayGeneration);
+    render.height = 1;
+  } else if (size.kind == Kind::Array && size.elements.size() == 1) {
+    render.width = readInteger(size.elements[0], 1, runtime::mostLaunchWidth, "the size");
+    render.height = 1;
+  } else if (size.kind == Kind::Array && size.elements.size() == 3) {
+    readSlices(size, render);
+  } else {
+    readNumbers(size, 2, "`size`");
+    render.width = readInteger(size.elements[0], 1, runtime::mostPixelsOfSide, "the width");
+    render.height = readInteger(size.elements[1], 1, runtime::mostPixelsOfSide, "the height");
+  }
+}
+
 void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
-                  const JsonValue *rayGeneration) {
-  if (const JsonValue *size = value.find("size")) {
-    render.slices = 1;
-    render.sizeBuffer = size->kind == Kind::String ? size->string : "";
-    if (size->kind == Kind::String) {
-      render.width = lengthOfBuffer(*size, scene, rayGeneration);
-      render.height = 1;
-    } else if (size->kind == Kind::Array && size->elements.size() == 1) {
-      render.width = readInteger(size->elements[0], 1, runtime::mostLaunchWidth, "the size");
-      render.height = 1;
-    } else if (size->kind == Kind::Array && size->elements.size() == 3) {
-      readSlices(*size, render);
-    } else {
-      readNumbers(*size, 2, "`size`");
-      render.width = readInteger(size->elements[0], 1, runtime::mostPixelsOfSide, "the width");
-      render.height = readInteger(size->elements[1], 1, runtime::mostPixelsOfSide, "the height");
-    }
-  }
-  if (const JsonValue *spp = value.find("spp")) {
-    render.samplesPerPixel = readInteger(*spp, 1, runtime::mostSamplesPerPixel, "`spp`");
+                  const JsonValue *rayGeneration, ErrorCollector &errors) {
+  const auto setting = [&](const char *name, const auto &read) {
+    if (const JsonValue *found = value.find(name))
+      errors.attempt([&] { read(*found); });
+  };
+  setting("size", [&](const JsonValue &size) { readSize(size, render, scene, rayGeneration); });
+  setting("spp", [&](const JsonValue &spp) {
+    render.samplesPerPixel = readInteger(spp, 1, runtime::mostSamplesPerPixel, "`spp`");
     render.hasSamples = true;
-  }
-  if (const JsonValue *depth = value.find("depth"))
-    render.depth = readInteger(*depth, 0, runtime::maxRayDepth, "`depth`");
-  if (const JsonValue *seed = value.find("seed"))
-    render.seed = readInteger(*seed, 0, 0xffffffff, "`seed`");
+  });
+  setting("depth", [&](const JsonValue &depth) {
+    render.depth = readInteger(depth, 0, runtime::maxRayDepth, "`depth`");
+  });
+  setting("seed",
+          [&](const JsonValue &seed) { render.seed = readInteger(seed, 0, 0xffffffff, "`seed`"); });
 }
 
 } // namespace rtsl::scene

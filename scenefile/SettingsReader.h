@@ -2,13 +2,14 @@
 #pragma once
 
 #include "scenefile/SceneFile.h"
+#include "support/ErrorCollector.h"
 
 namespace rtsl::scene {
 
 /// Reads size, samples, depth and seed, where `value` has them. The size may be the name of a
-/// buffer of the scene, or of a member of the ray generation, null without one. Throws OutOfRange,
-/// WrongType or UnknownName.
+/// buffer of the scene, or of a member of the ray generation, null without one. Mistakes
+/// (OutOfRange, WrongType, UnknownName) are added to `errors`, at most one for each setting.
 void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
-                  const JsonValue *rayGeneration);
+                  const JsonValue *rayGeneration, ErrorCollector &errors);
 
 } // namespace rtsl::scene

@@ -104,6 +104,23 @@ class CameraRays(Case):
         colors = exr_files.channels((self.folder / "a.exr").read_bytes())["R"]
         self.assertEqual([x for x in range(SIZE) if colors[SIZE + x]], [2, 3, 4, 5])
 
+    def test_check_finds_the_classes_of_all_cameras(self):
+        """Only those files of a module are read that are named, and a program has one camera."""
+        self.scene("path")
+        scene = json.loads((self.folder / "scene.json").read_text())
+        view = [[0, 0, 5], [0, 0, 0], [0, 1, 0]]
+        del scene["camera"]
+        scene["cameras"] = {
+            "front": {"class": "PerspectiveCamera", "constructor": view},
+            "wide": {"class": "FisheyeCamera", "constructor": view},
+        }
+        self.write("scene.json", json.dumps(scene))
+        self.assertEqual(self.run_rtslc("check", "scene.json"), ("", ""))
+        self.write("scene.json", json.dumps(scene).replace("FisheyeCamera", "FisheyCamera"))
+        self.assert_message(
+            self.diagnose("check", "scene.json"), "E0810", "no class is named `FisheyCamera`"
+        )
+
     def test_a_direction_that_is_no_number_is_still_a_bad_ray(self):
         self.scene("classic", "Surface")
         self.write("shaders.rtsl", SHADERS.replace("vec3(0.0, 0.0, -1.0)", "vec3(sqrt(-1.0))"))

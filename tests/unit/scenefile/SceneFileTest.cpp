@@ -199,6 +199,21 @@ TEST(SceneFile, TellsAllThatIsWrongInOneRun) {
       "dir/s.json:7:19+1: outOfRange: `spp` must be between 1 and 2147483647, not 0");
 }
 
+TEST(SceneFile, TellsAllThatIsWrongWithTheSettings) {
+  EXPECT_EQ(parseError(withCamera(
+                "\"background\": \"blue\",\n\"render\": {\"engine\": \"paths\", \"size\": [0, 4], "
+                "\"spp\": 0,\n\"depth\": 257, \"seed\": -1, \"shutter\": 3, \"lightSampler\": 1}")),
+            "dir/s.json:2:16+4: wrongType: `background` is a color, not a string\n"
+            "dir/s.json:4:38+1: wrongType: `shutter` is a list, not a number\n"
+            "dir/s.json:4:57+1: wrongType: `lightSampler` is a string, not a number\n"
+            "dir/s.json:3:23+5: notSupported: there is no engine `paths`; there are `classic`, "
+            "`programs`, `path`, `volume`, `occlusion`, `normals`, `depth`, `id`, `albedo`\n"
+            "dir/s.json:3:40+1: outOfRange: the width must be between 1 and 65536, not 0\n"
+            "dir/s.json:3:54+1: outOfRange: `spp` must be between 1 and 2147483647, not 0\n"
+            "dir/s.json:4:10+3: outOfRange: `depth` must be between 0 and 256, not 257\n"
+            "dir/s.json:4:23+2: outOfRange: `seed` must be between 0 and 4294967295, not -1");
+}
+
 TEST(SceneFile, StopsReadingBehindAHundredErrors) {
   std::string objects;
   for (int i = 0; i < 1000; ++i)

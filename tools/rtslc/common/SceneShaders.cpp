@@ -71,7 +71,8 @@ scene::SceneDescription readScene(const std::string &file,
 namespace {
 
 /// Says which classes of the scene no file has, before any code is made.
-void refuseUnknownClasses(const scene::SceneDescription &description, const typed::Module &module,
+void refuseUnknownClasses(const std::vector<scene::LocatedName> &mentions,
+                          const typed::Module &module,
                           const std::vector<std::string> &libraryModules, Messages &messages) {
   std::vector<std::string> names;
   for (const std::string &name : libraryModules) // files of unused classes are not read
@@ -79,7 +80,7 @@ void refuseUnknownClasses(const scene::SceneDescription &description, const type
   for (const auto &one : module.classes)
     names.push_back(one->name);
   LibraryNames library;
-  for (const scene::LocatedName &mention : scene::classMentions(description)) {
+  for (const scene::LocatedName &mention : mentions) {
     if (module.findClass(mention.text))
       continue;
     const SourceRange range = messages.rangeOf(mention.place);
@@ -129,12 +130,15 @@ void refuseUnknownEditable(const scene::SceneDescription &description, const typ
 std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,
                                            std::vector<std::string> *filesRead,
-                                           const std::vector<std::string> &takenNames) {
+                                           const std::vector<std::string> &takenNames,
+                                           const std::vector<scene::LocatedName> &otherMentions) {
   PreprocessorOptions preprocessor = options.preprocessor;
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
   shaders.renameInLibrary(takenNames);
-  for (const scene::LocatedName &mention : scene::classMentions(description))
+  std::vector<scene::LocatedName> mentions = scene::classMentions(description);
+  mentions.insert(mentions.end(), otherMentions.begin(), otherMentions.end());
+  for (const scene::LocatedName &mention : mentions)
     shaders.mention(mention.text);
   // What is used of a module is known when all files have been read.
   for (const scene::ImportDescription &import : description.imports)
@@ -145,7 +149,7 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
       shaders.addModule(import.name.text, messages.rangeOf(import.name.place));
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
   if (!messages.diagnostics.hasErrors())
-    refuseUnknownClasses(description, *module, shaders.modules(), messages);
+    refuseUnknownClasses(mentions, *module, shaders.modules(), messages);
   if (!messages.diagnostics.hasErrors())
     refuseUnknownEditable(description, *module, messages);
   if (messages.diagnostics.hasErrors())

@@ -19,11 +19,13 @@ scene::SceneDescription readScene(const std::string &file,
 
 /// Reads and checks the files that the scene imports; null if there were errors. They find what
 /// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
-/// files. `takenNames` are renamed in the library (SourceLoader.h).
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
-                                           const CommonOptions &options, Messages &messages,
-                                           std::vector<std::string> *filesRead = nullptr,
-                                           const std::vector<std::string> &takenNames = {});
+/// files. `takenNames` are renamed in the library (SourceLoader.h). `otherMentions`: classes that
+/// the scene does not use as it is described, but that are to be in the module, too.
+std::unique_ptr<typed::Module>
+loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
+            Messages &messages, std::vector<std::string> *filesRead = nullptr,
+            const std::vector<std::string> &takenNames = {},
+            const std::vector<scene::LocatedName> &otherMentions = {});
 
 /// All files that the scene is made of, for -MD and so that none is overwritten: `filesRead` and
 /// meshes, images and buffers.

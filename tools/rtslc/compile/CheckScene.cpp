@@ -63,13 +63,24 @@ void noteSharedNodes(const scene::SceneDescription &description, Messages &messa
   }
 }
 
+/// The classes of all cameras, with those of the objects that they refer to.
+std::vector<scene::LocatedName> classesOfCameras(scene::SceneDescription description) {
+  std::vector<scene::LocatedName> all;
+  for (const auto &[name, camera] : description.cameras) {
+    description.camera = camera;
+    const std::vector<scene::LocatedName> mentions = scene::classMentions(description);
+    all.insert(all.end(), mentions.begin(), mentions.end());
+  }
+  return all;
+}
+
 } // namespace
 
 void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
                 std::vector<std::string> &filesRead) {
   const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
-  const std::unique_ptr<typed::Module> module =
-      loadShaders(description, options.common, messages, &filesRead);
+  const std::unique_ptr<typed::Module> module = loadShaders(
+      description, options.common, messages, &filesRead, {}, classesOfCameras(description));
   if (!module)
     return;
   filesRead = withFiles(description, filesRead);
