@@ -395,6 +395,9 @@ private:
                   place);
       if (const std::string near = closestName(name, allNames()); !near.empty())
         error.fix(near);
+      for (const NodeMention &node : description.nodes)
+        if (node.name.text == name)
+          error.related(node.name.place, "a node, not an object");
       throw error;
     }
     const std::pair key(name, variables.takenBy(*object));

@@ -181,6 +181,15 @@ private:
     return light;
   }
 
+  /// Shows what else has the name: an object of another section.
+  void nameOtherKind(const std::string &name, Error &error) const {
+    for (const char *section : {"images", "helpers", "textures", "materials"})
+      if (const JsonValue *objects = root.find(section))
+        for (const auto &[key, object] : objects->members)
+          if (key.text == name)
+            error.related(object.place(key), fmt::format("one of the `{}`, not a node", section));
+  }
+
   /// A name, or a node in place.
   Edge readEdge(const JsonValue &value) {
     if (value.kind == Kind::Object) {
@@ -194,6 +203,7 @@ private:
     const auto found = numbers.find(value.string);
     if (found == numbers.end()) {
       Error error(message::noSuchNode(value.string), value.place());
+      nameOtherKind(value.string, error);
       std::vector<std::string> names;
       for (const auto &known : numbers)
         names.push_back(known.first);

@@ -81,6 +81,11 @@ static bool isWordOfBuffer(const typed::Expr &place) {
   }
 }
 
+static bool isComponent(const typed::Expr &place) {
+  const auto *index = dynCast<typed::IndexExpr>(&place);
+  return place.kind == typed::ExprKind::Swizzle || (index && index->base->type->isVector());
+}
+
 /// `atomicAdd(counts[i], 1)`: the old value.
 ExprPtr FunctionChecker::checkAtomic(const ast::CallExpr &expr, Builtin atomic) {
   const std::size_t count = typed::parameterCount(atomic);
@@ -100,6 +105,8 @@ ExprPtr FunctionChecker::checkAtomic(const ast::CallExpr &expr, Builtin atomic) 
     if (type->is(TypeKind::Float))
       diagnostic.note("a sum of floats would depend on the order; add whole numbers, such as "
                       "`int(round(value * 65536.0))`");
+    else if (isComponent(*place))
+      diagnostic.note("a component of a vector cannot be changed in one step; use an array");
     isBroken = true;
   }
   isBroken = isBroken || !requireTarget(*expr.args.front(), *place, "write to");

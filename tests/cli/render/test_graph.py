@@ -532,6 +532,13 @@ class Selectors(GraphCase):
         self.assert_message(
             self.mistakes(world(selector="pant", children=["b"])), "E0806", "`pant`"
         )
+        # What has the name although it is of another kind is shown.
+        for node, label in (
+            ({"selector": "b", "children": ["b"]}, "a node, not an object"),
+            ({"children": ["paint"]}, "one of the `materials`, not a node"),
+        ):
+            (mistake,) = self.mistakes(world(**node))
+            self.assertEqual([one["message"] for one in mistake["labels"]], [label])
         self.assert_message(self.mistakes(world(selector=3, children=["b"])), "E0804", "`selector`")
 
 

@@ -363,7 +363,7 @@ class Mistakes(MotionCase):
             ({"keys": [a]}, "needs at least two keys"),
             ({"keys": []}, "needs at least two keys"),
             ({"keys": 3}, "is a list"),
-            ({"keys": [a, b], "times": [0]}, "there are 1 times for 2 keys"),
+            ({"keys": [a, b], "times": [0]}, "the number of times is 1, and that of keys is 2"),
             ({"keys": [a, b], "times": [0.5, 0.5]}, "0.5 is not after 0.5"),
             ({"keys": [a, b], "times": [0.5, 0.25]}, "0.25 is not after 0.5"),
             (
