@@ -233,7 +233,7 @@ class Trace(Case):
                 "rays have 6 numbers, origin and direction, or 8",
             ),
             ("b.npy", npy("f", [6], [0.0] * 6), "E0906", "has the shape (6)"),
-            ("c.npy", npy("f", [0, 6], []), "E0805", "has 0 indices"),
+            ("c.npy", npy("f", [0, 6], []), "E0906", "`c.npy` has no rays"),
             ("d.npy", npy("f", [3, 6], [0.0] * 18)[:-4], "E0906", "it is truncated"),
             ("e.bin", b"", "E0906", "is neither .npy, .csv nor .ply"),
             ("f.csv", "1,2,3,4,5,6\n1,2,3\n", "E0906", "line 2 has 3 columns"),

@@ -51,6 +51,8 @@ std::vector<std::size_t> shapeOf(const TraceOptions &options) {
 /// How many numbers a ray of the file has: 6 or 8.
 std::size_t numbersOfRay(const TraceOptions &options) {
   const std::vector<std::size_t> shape = shapeOf(options);
+  if (!shape.empty() && shape[0] == 0)
+    throw Error(message::raysMissing(options.rays));
   if (shape.size() == 2 && (shape[1] == 6 || shape[1] == 8))
     return shape[1];
   throw Error(message::rayShape(options.rays, fmt::join(shape, ", ")));
