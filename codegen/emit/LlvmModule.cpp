@@ -4,6 +4,7 @@
 #include "codegen/emit/rewrites/DivideZeros.h"
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/FoldKnownCalls.h"
+#include "codegen/emit/rewrites/GpuConversions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/NarrowLoads.h"
 #include "codegen/emit/rewrites/PackRecords.h"
@@ -15,6 +16,7 @@
 #include "mlir/Target/LLVMIR/Dialect/LLVMIR/LLVMToLLVMIRTranslation.h"
 #include "mlir/Target/LLVMIR/Export.h"
 #include "llvm/ADT/StringSet.h"
+#include "llvm/Analysis/LoopInfo.h"
 #include "llvm/Bitcode/BitcodeReader.h"
 #include "llvm/IR/DiagnosticInfo.h"
 #include "llvm/IR/DiagnosticPrinter.h"
@@ -293,6 +295,18 @@ static void keepLoadsNarrow(llvm::PassInstrumentationCallbacks &callbacks) {
   });
 }
 
+/// Leaves the states of the megakernel in the loop that runs them (runStates in
+/// runtime/device/organisations/Megakernel.h), which is marked. To LLVM most of what a state
+/// computes is the same in each turn of that loop, and it would compute it before the loop, for
+/// lanes, too, that run no such state.
+static void keepStatesInLoop(llvm::PassInstrumentationCallbacks &callbacks) {
+  callbacks.registerShouldRunOptionalPassCallback([](llvm::StringRef pass, llvm::Any unit) {
+    const auto *loop = llvm::any_cast<const llvm::Loop *>(&unit);
+    return !loop || (pass != "LICMPass" && pass != "SimpleLoopUnswitchPass") ||
+           !llvm::findOptionMDForLoop(*loop, "llvm.loop.pipeline.disable");
+  });
+}
+
 /// Inlines calls that take addresses, and promotes the variables whose addresses they took. Twice,
 /// because functions that are passed to others are called directly once these are inlined, and
 /// addresses are in variables themselves.
@@ -337,12 +351,15 @@ static void addUnrolling(llvm::PassBuilder &builder) {
       });
 }
 
-/// Changes divisions after LLVM's simplification, which would move the division after the select.
-static void addDivisionOfZeros(llvm::PassBuilder &builder) {
+/// What a GPU computes in another way than LLVM expects: after LLVM's simplification, which would
+/// move a division after its select.
+static void addGpuRewrites(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
-        if (level != llvm::OptimizationLevel::O0)
-          passes.addPass(llvm::createModuleToFunctionPassAdaptor(DivideZerosPass()));
+        if (level == llvm::OptimizationLevel::O0)
+          return;
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(DivideZerosPass()));
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(GpuConversionsPass()));
       });
 }
 
@@ -369,8 +386,10 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   builder.crossRegisterProxies(loops, functions, components, modules);
 
   addScalarization(builder);
-  if (machine.getTargetTriple().isNVPTX())
-    addDivisionOfZeros(builder);
+  if (machine.getTargetTriple().isNVPTX()) {
+    addGpuRewrites(builder);
+    keepStatesInLoop(callbacks);
+  }
   if (module.getFunction("rtsl_run_state"))
     readLaunchAsVariable(module);
   if (options.optimization > 0)

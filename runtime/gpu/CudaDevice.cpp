@@ -196,7 +196,7 @@ int CudaDevice::blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) con
 }
 
 double CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
-                          void **arguments) {
+                          const void *const *arguments) {
   driver->check(driver->eventRecord(events[0], nullptr), "cuEventRecord");
   launchLater(kernel, blocks, threadsPerBlock, arguments);
   driver->check(driver->eventRecord(events[1], nullptr), "cuEventRecord");
@@ -208,9 +208,10 @@ double CudaDevice::launch(const Kernel &kernel, unsigned blocks, unsigned thread
 }
 
 void CudaDevice::launchLater(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
-                             void **arguments) {
+                             const void *const *arguments) {
   driver->check(driver->launch(kernel.function, blocks, 1, 1, threadsPerBlock, 1, 1,
-                               kernel.sharedBytes, nullptr, arguments, nullptr),
+                               kernel.sharedBytes, nullptr, const_cast<void **>(arguments),
+                               nullptr),
                 "cuLaunchKernel");
 }
 

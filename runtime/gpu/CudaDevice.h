@@ -79,11 +79,12 @@ public:
   int blocksAtOnce(const Kernel &kernel, unsigned threadsPerBlock) const;
   /// Runs a kernel and waits for it. `arguments` points to as many pointers to arguments as it has.
   /// Returns the seconds that the kernel took, by the device's clock.
-  double launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock, void **arguments);
+  double launch(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
+                const void *const *arguments);
   /// Runs a kernel after those launched before, without waiting for it. An error is reported by a
   /// later call.
   void launchLater(const Kernel &kernel, unsigned blocks, unsigned threadsPerBlock,
-                   void **arguments);
+                   const void *const *arguments);
   /// Waits for all kernels.
   void wait();
 

@@ -182,15 +182,15 @@ void GpuRenderer::fetchSums() {
   forEachList(fetch, *sums, sumsOnDevice);
 }
 
-double GpuRenderer::runLanes(Address job) {
+double GpuRenderer::runLanes(const RtslJob &job) {
   if (waves)
     return waves->run(job, raysAddress());
-  void *arguments[] = {&job};
+  const void *arguments[] = {&job};
   return device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
 }
 
-double GpuRenderer::addSamples(Address job) {
-  void *arguments[] = {&job};
+double GpuRenderer::addSamples(const RtslJob &job) {
+  const void *arguments[] = {&job};
   const std::uint64_t wanted = (pixelCount() + threadsPerBlock - 1) / threadsPerBlock;
   return device.launch(sumKernel, unsigned(std::min<std::uint64_t>(wanted, 1u << 20)),
                        threadsPerBlock, arguments);

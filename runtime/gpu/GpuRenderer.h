@@ -64,8 +64,8 @@ private:
   RtslPixelSums placeSums(PixelSums &sums) override;
   RtslPixelSums clearedSums(std::uint64_t pixels) override;
   void fetchSums() override;
-  double runLanes(Address job) override;
-  double addSamples(Address job) override;
+  double runLanes(const RtslJob &job) override;
+  double addSamples(const RtslJob &job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 

@@ -49,7 +49,8 @@ std::uint64_t GpuWaves::setSlots(std::uint64_t samples) {
   return memory.bytes();
 }
 
-void GpuWaves::launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, void **arguments) {
+void GpuWaves::launch(const CudaDevice::Kernel &kernel, std::uint64_t threads,
+                      const void *const *arguments) {
   const auto blocks = unsigned((threads + threadsPerBlock - 1) / threadsPerBlock);
   device.launchLater(kernel, blocks, threadsPerBlock, arguments);
 }
@@ -60,18 +61,18 @@ std::vector<CudaDevice::Kernel> GpuWaves::stepKernels() const {
   return kernels;
 }
 
-double GpuWaves::run(Address job, Address rays) {
+double GpuWaves::run(const RtslJob &job, Address rays) {
   const auto start = Clock::now();
   std::vector<std::uint32_t> counts(memory.queues);
   const std::size_t countBytes = counts.size() * sizeof counts[0];
   device.clear(rays, 2 * countBytes);
-  void *ofBegin[] = {&job};
+  const void *ofBegin[] = {&job};
   launch(begin, memory.slots, ofBegin);
   bool begins = true; // no sample is in flight, and the last turn was not to begin any
   for (std::uint32_t turn = 0;; turn ^= 1) {
     const Address countsOfTurn = rays + turn * countBytes;
     device.download(counts.data(), countsOfTurn, countBytes); // waits for the last turn
-    void *arguments[] = {&job, &turn};
+    const void *arguments[] = {&job, &turn};
     if (std::all_of(counts.begin(), counts.end(), [](std::uint32_t count) { return count == 0; })) {
       if (!begins)
         break;

@@ -37,13 +37,14 @@ public:
   std::uint64_t stackBytes() const { return memory.stackBytes; }
 
   /// Runs the job, with `rays` of the size that setSlots() returned. Returns the seconds.
-  double run(Address job, Address rays);
+  double run(const RtslJob &job, Address rays);
 
   /// The kernels in the order of the steps: traversal, the beginning of samples, and states.
   std::vector<CudaDevice::Kernel> stepKernels() const;
 
 private:
-  void launch(const CudaDevice::Kernel &kernel, std::uint64_t threads, void **arguments);
+  void launch(const CudaDevice::Kernel &kernel, std::uint64_t threads,
+              const void *const *arguments);
 
   CudaDevice &device;
   CudaDevice::Kernel begin, sampleKernel;

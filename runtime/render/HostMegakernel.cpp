@@ -76,16 +76,14 @@ RtslPixelSums HostMegakernel::clearedSums(std::uint64_t pixels) {
   return sums;
 }
 
-double HostMegakernel::runLanes(Address job) {
-  threads.run([&](unsigned lane) { code.runLane(reinterpret_cast<const RtslJob *>(job), lane); });
+double HostMegakernel::runLanes(const RtslJob &job) {
+  threads.run([&](unsigned lane) { code.runLane(&job, lane); });
   return 0;
 }
 
-double HostMegakernel::addSamples(Address job) {
+double HostMegakernel::addSamples(const RtslJob &job) {
   const unsigned lanes = threads.count();
-  threads.run([&](unsigned lane) {
-    device::addSamples(*reinterpret_cast<const RtslJob *>(job), lane, lanes);
-  });
+  threads.run([&](unsigned lane) { device::addSamples(job, lane, lanes); });
   return 0;
 }
 

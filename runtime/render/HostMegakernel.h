@@ -39,8 +39,8 @@ private:
   double launchSeconds() const override { return std::numeric_limits<double>::infinity(); }
   RtslPixelSums placeSums(PixelSums &sums) override { return sums.pointers(); }
   RtslPixelSums clearedSums(std::uint64_t pixels) override;
-  double runLanes(Address job) override;
-  double addSamples(Address job) override;
+  double runLanes(const RtslJob &job) override;
+  double addSamples(const RtslJob &job) override;
   std::uint64_t get(Address number) override;
   void set(Address number, std::uint32_t value) override;
 

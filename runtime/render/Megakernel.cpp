@@ -82,7 +82,6 @@ void Megakernel::prepare() {
   job.lanes = reinterpret_cast<std::uint8_t *>(allocate(raysBytes(job), "rays in flight"));
   if (options.prints)
     allocatePrinted();
-  jobAddress = allocate(sizeof job, "the launch");
   if (options.countedStates) {
     stepCounts.resize(options.countedStates + stepsBesideStates);
     job.stepCounts = reinterpret_cast<RtslStepCount *>(
@@ -116,8 +115,7 @@ void Megakernel::takePrinted() {
 void Megakernel::setWindow(const Window &window) {
   job.left = window.x0;
   job.top = window.y0;
-  job.width = window.width();
-  job.height = window.height();
+  device::setWindowSize(job, window.width(), window.height());
   windowPixels = window.pixels();
 }
 
@@ -190,7 +188,7 @@ void Megakernel::run(Watch &watch) {
   const auto share = [&](std::uint64_t samples) { return double(before + samples) / double(all); };
   while (leastTaken < samplesOfPixel && !watch.isStopped()) {
     job.firstSample = leastTaken;
-    job.sampleCount = std::min(samplesAtOnce(openPixels), samplesOfPixel - leastTaken);
+    device::setSampleCount(job, std::min(samplesAtOnce(openPixels), samplesOfPixel - leastTaken));
     job.taken = isUneven ? job.sums.taken : nullptr;
     runSlice(watch, share);
     const std::uint64_t whole = openPixels * job.sampleCount;
@@ -207,7 +205,6 @@ void Megakernel::run(Watch &watch) {
 /// Renders the slice of the job in short launches: a driver may abort long ones, and a GPU that
 /// also drives a screen must be able to refresh it.
 void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share) {
-  upload(jobAddress, &job, sizeof job);
   const std::uint64_t none = 0, all = openPixels * job.sampleCount;
   const Address next = statusAddress + offsetof(RtslStatus, nextSample);
   upload(next, &none, sizeof none);
@@ -219,7 +216,7 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
       const Watch::Poll poll(
           watch, launchSeconds(), [&] { return share(std::min(get(next), all)); },
           [&] { set(statusAddress + offsetof(RtslStatus, stop), 1); });
-      kernelSeconds += runLanes(jobAddress);
+      kernelSeconds += runLanes(job);
     }
     if (printedAddress)
       takePrinted();
@@ -231,7 +228,7 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
     samplesOfSlice = rendered;
   }
   if (options.wantsPicture && samplesOfSlice > 0)
-    kernelSeconds += addSamples(jobAddress);
+    kernelSeconds += addSamples(job);
 }
 
 RenderStatistics Megakernel::finish() {

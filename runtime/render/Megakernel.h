@@ -94,8 +94,8 @@ private:
   virtual RtslPixelSums clearedSums(std::uint64_t pixels) = 0;
   /// Run all lanes of the job and wait for them: for its samples, and to add these to the sums.
   /// Return RenderStatistics::kernelSeconds.
-  virtual double runLanes(Address job) = 0;
-  virtual double addSamples(Address job) = 0;
+  virtual double runLanes(const RtslJob &job) = 0;
+  virtual double addSamples(const RtslJob &job) = 0;
   // Read and write a number in the status while lanes run, from another thread.
   virtual std::uint64_t get(Address number) = 0;
   virtual void set(Address number, std::uint32_t value) = 0;
@@ -119,7 +119,7 @@ private:
   std::shared_ptr<DeviceTrees> deviceTrees;
   std::vector<FlatScene::Output> outputs;
   const std::uint32_t colorComponents;
-  Address statusAddress = 0, jobAddress = 0, placesAddress = 0;
+  Address statusAddress = 0, placesAddress = 0;
   Address printedAddress = 0; // if the program prints
   RtslPrintedLines printed{}; // what is there at the beginning of a launch
   RtslJob job{};

@@ -1,5 +1,6 @@
 #include "runtime/render/RenderOptions.h"
 
+#include "runtime/device/ray/Divisor.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
@@ -41,9 +42,7 @@ void addMet(RenderStatistics &&part, std::size_t most, RenderStatistics &met) {
 }
 
 void setLaunch(RtslLaunch &launch, const RenderOptions &options) {
-  launch.width = options.width;
-  launch.height = options.height / options.slices;
-  launch.slices = options.slices;
+  device::setLaunchSize(launch, options.width, options.height / options.slices, options.slices);
   launch.maxDepth = options.maxDepth;
   launch.seed = options.seed;
 }

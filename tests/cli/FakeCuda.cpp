@@ -101,7 +101,7 @@ void paint(const RtslJob &job, std::uint64_t sample) {
 
 /// With so many bytes for rays.
 int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t rays) {
-  if (!isAllocated(&job, sizeof job) || !isAllocated(job.launch, sizeof *job.launch))
+  if (!isAllocated(job.launch, sizeof *job.launch))
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
   const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
@@ -156,8 +156,7 @@ WaveTurn waveTurn(const RtslJob &job, std::uint32_t turn) {
 
 int beginWave(const RtslJob &job) {
   const std::uint64_t queues = 2 * (current->waveStates + 1) * sizeof(std::uint32_t);
-  if (!isAllocated(&job, sizeof job) || job.slots == 0 ||
-      !isAllocated(job.lanes, job.slots * (queues + job.laneBytes)))
+  if (job.slots == 0 || !isAllocated(job.lanes, job.slots * (queues + job.laneBytes)))
     return IllegalAddress;
   return Success;
 }
@@ -188,8 +187,7 @@ int sampleWave(const RtslJob &job, std::uint32_t turn) {
 
 /// The kernel of persistent blocks: their slots are in shared memory, apart from the stacks.
 int persist(const RtslJob &job, unsigned blocks, unsigned threads) {
-  if (!isAllocated(&job, sizeof job) || job.slots == 0 || job.slots % 32 != 0 ||
-      job.slots * 16 > current->sharedBytes)
+  if (job.slots == 0 || job.slots % 32 != 0 || job.slots * 16 > current->sharedBytes)
     return IllegalAddress;
   return render(job, blocks, threads, std::uint64_t(blocks) * job.slots * job.laneBytes);
 }
@@ -467,7 +465,7 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
                      **static_cast<const rtsl::device::build::TreeBuild **>(arguments[0]), count,
                      number(2), number(3), number(4));
   }
-  const RtslJob &job = **static_cast<RtslJob **>(arguments[0]);
+  const RtslJob &job = *static_cast<const RtslJob *>(arguments[0]);
   const std::string name = kernels[kernel];
   if (name == "rtsl_render")
     return render(job, blocks, threads, std::uint64_t(blocks) * threads * job.laneBytes);

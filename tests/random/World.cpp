@@ -362,9 +362,7 @@ void World::describeLaunch() {
     launch.ambient[i] = 0.125f * static_cast<float>(i + 3);
   }
   launch.colorComponents = code.colorComponents;
-  launch.width = 5;
-  launch.height = 3;
-  launch.slices = 1;
+  device::setLaunchSize(launch, 5, 3, 1);
   launch.seed = program.seed;
 }
 
@@ -573,9 +571,9 @@ void World::renderByLane(std::vector<float> &pixels) {
   job.laneBytes =
       (code.megakernel.laneBytes(launch.maxDepth, launch.referenceChain) + 15) / 16 * 16;
   job.lanes = static_cast<std::uint8_t *>(rtsl_machine_stack(job.laneBytes));
-  job.width = launch.width;
-  job.height = launch.height;
-  job.samplesPerPixel = job.sampleCount = 1;
+  device::setWindowSize(job, launch.width, launch.height);
+  job.samplesPerPixel = 1;
+  device::setSampleCount(job, 1);
   std::vector<float> samples(pixels.size());
   job.samples = samples.data();
   job.pixels = pixels.data();
@@ -586,8 +584,7 @@ void World::renderByLane(std::vector<float> &pixels) {
 
 void World::renderBySample(std::vector<float> &pixels) {
   RtslJob job{}; // the order of a lane, in which programs print
-  job.width = launch.width;
-  job.height = launch.height;
+  device::setWindowSize(job, launch.width, launch.height);
   for (std::uint32_t place = 0; place != launch.width * launch.height; ++place) {
     const device::Pixel pixel = device::pixelAt(job, place);
     float *color = &pixels[pixel.number(job) * code.colorComponents];

@@ -5,6 +5,7 @@
 #include "codegen/emit/Ptx.h"
 #include "codegen/emit/StepCosts.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
+#include "codegen/emit/rewrites/AlignMembers.h"
 #include "codegen/emit/rewrites/CheckNumbers.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
 #include "codegen/emit/rewrites/FastMath.h"
@@ -120,6 +121,9 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
     codegen::defineConstant(module, "rtsl_step_costs_low", std::uint32_t(costs));
     codegen::defineConstant(module, "rtsl_step_costs_high", std::uint32_t(costs >> 32));
   }
+  // A schedule that is asked for chooses each state; with Majority lanes gather for states, too.
+  const bool runsOn = !options.schedule && schedule != Schedule::Majority;
+  codegen::defineConstant(module, "rtsl_states_run_on", std::uint32_t(runsOn));
   codegen::defineForward(module, "rtsl_least_of_warp",
                          architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"
                                                          : "rtsl_least_by_exchange");
@@ -141,8 +145,10 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, options, program);
-  if (forGpu)
+  if (forGpu) {
+    codegen::alignMembers(*code.module);
     defineSchedule(*code.module, options, program);
+  }
   code.organisation = forGpu ? organisationFor(options, program, *code.module)
                              : options.organisation.value_or(Organisation::Megakernel);
   const bool keepsRecords = code.organisation != Organisation::Megakernel;

@@ -7,13 +7,25 @@
 
 namespace rtsl::codegen {
 
-/// An IEEE division of a difference, or of a sum.
+using namespace llvm::PatternMatch;
+
+/// A sum of squares, as that of a dot product of a vector with itself.
+static bool isSumOfSquares(const llvm::Value *value) {
+  const llvm::Value *a = nullptr, *b = nullptr;
+  if (match(value, m_FMul(m_Value(a), m_Deferred(a))))
+    return true;
+  return match(value, m_FAdd(m_Value(a), m_Value(b))) && isSumOfSquares(a) && isSumOfSquares(b);
+}
+
+/// An IEEE division of a difference, or of a sum that may be one.
 static bool mayOftenDivideZero(const llvm::Instruction &instruction) {
-  using namespace llvm::PatternMatch;
-  return instruction.getType()->isFloatTy() && !instruction.hasApproxFunc() &&
-         !instruction.hasAllowReciprocal() &&
-         (match(&instruction, m_FDiv(m_FSub(m_Value(), m_Value()), m_Value())) ||
-          match(&instruction, m_FDiv(m_FAdd(m_Value(), m_Value()), m_Value())));
+  const llvm::Value *numerator = nullptr;
+  if (!instruction.getType()->isFloatTy() || instruction.hasApproxFunc() ||
+      instruction.hasAllowReciprocal() ||
+      !match(&instruction, m_FDiv(m_Value(numerator), m_Value())))
+    return false;
+  return match(numerator, m_FSub(m_Value(), m_Value())) ||
+         (match(numerator, m_FAdd(m_Value(), m_Value())) && !isSumOfSquares(numerator));
 }
 
 static void selectZeros(llvm::Instruction &division) {

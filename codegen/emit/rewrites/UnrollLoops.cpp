@@ -24,7 +24,7 @@
 namespace rtsl::codegen {
 
 /// Longer loops, and those of more instructions when unrolled, calls counting as one, stay.
-static constexpr unsigned mostTrips = 32, mostInstructions = 4096;
+static constexpr unsigned mostTrips = 32, mostUnrolled = 4096;
 
 namespace {
 
@@ -42,7 +42,7 @@ public:
     unsigned instructions = 0;
     for (const llvm::BasicBlock *block : loop.blocks())
       instructions += unsigned(block->sizeWithoutDebug());
-    return trips >= 2 && trips <= mostTrips && trips * instructions <= mostInstructions;
+    return trips >= 2 && trips <= mostTrips && trips * instructions <= mostUnrolled;
   }
 
   bool hasKnownValues() {

@@ -15,6 +15,7 @@
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
+#include "runtime/device/ray/Divisor.h"
 #include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
@@ -170,7 +171,7 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
   const SampleNumbers numbers = beginRandomNumbers(state, x, y, index, launch.seed);
   state.Depth = 0;
   uint32_t needs = rtsl_needs(&launch);
-  const uint32_t slice = y / launch.height;
+  const uint32_t slice = quotient(y, launch.byHeight);
   const uint32_t row = y - slice * launch.height;
   if (needs & RTSL_NEEDS_LAUNCH) {
     state.LaunchIndex[0] = x;
@@ -181,8 +182,10 @@ inline void placeSample(RtslState &state, const RtslLaunch &launch, uint32_t x, 
     state.LaunchSize[2] = launch.slices;
   }
 
-  state.ScreenCoord[0] = (float(x) + numbers.pixel[0]) / float(launch.width);
-  state.ScreenCoord[1] = 1.0f - (float(row) + numbers.pixel[1]) / float(launch.height);
+  state.ScreenCoord[0] =
+      quotient(float(x) + numbers.pixel[0], float(launch.width), launch.inverseWidth);
+  state.ScreenCoord[1] =
+      1.0f - quotient(float(row) + numbers.pixel[1], float(launch.height), launch.inverseHeight);
   if (needs & RTSL_NEEDS_LENS) {
     state.LensCoord[0] = numbers.lens[0];
     state.LensCoord[1] = numbers.lens[1];

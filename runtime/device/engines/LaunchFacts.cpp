@@ -32,6 +32,9 @@ __attribute__((weak)) const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *)
 __attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
   return RTSL_SCHEDULE_MAJORITY;
 }
+__attribute__((weak)) uint32_t rtsl_states_run_on(const RtslLaunch *) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_counts_steps(const RtslLaunch *) {
   return 0;
 }

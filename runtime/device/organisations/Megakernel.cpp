@@ -57,12 +57,12 @@ static uint32_t threadNumber() {
 }
 
 /// The kernel: one thread per lane, in whole warps.
-__attribute__((nvptx_kernel)) void rtsl_render(const RtslJob *job) {
-  device::runLane(*job, threadNumber());
+__attribute__((nvptx_kernel)) void rtsl_render(const RtslJob job) {
+  device::runLane(job, threadNumber());
 }
 /// The kernel that adds its samples to the sums afterwards, with any number of threads.
-__attribute__((nvptx_kernel)) void rtsl_sum(const RtslJob *job) {
-  device::addSamples(*job, threadNumber(),
+__attribute__((nvptx_kernel)) void rtsl_sum(const RtslJob job) {
+  device::addSamples(job, threadNumber(),
                      __nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x());
 }
 #endif

@@ -50,7 +50,7 @@ inline bool hasLaneBytes(const RtslJob &job, uint64_t needed) {
 
 /// Starts a sample of the slice. False if it was rendered before.
 inline bool beginSample(const RtslJob &job, uint32_t sample, Rays &rays) {
-  const uint32_t place = sample / job.sampleCount;
+  const uint32_t place = quotient(sample, job.bySampleCount);
   const uint32_t number = job.firstSample + (sample - place * job.sampleCount);
   const Pixel pixel = pixelAt(job, place);
   if (job.taken && number < job.taken[pixel.number(job)])
@@ -65,6 +65,18 @@ inline void storeSample(const RtslJob &job, uint32_t sample, Rays &rays) {
   if (job.samples)
     copyColor(job.samples + uint64_t(sample) * rtsl_color_components(job.launch),
               rays.ray.state.SampleColor, rtsl_color_components(job.launch));
+}
+
+/// Runs states until the lane has to trace a ray, or its sample is over. The code generator
+/// recognises the loop by its mark (keepStatesInLoop in codegen/emit/LlvmModule.cpp).
+inline void runStates(const RtslJob &job, Rays &rays) {
+#ifdef __clang__
+#pragma clang loop unroll(disable) pipeline(disable)
+#endif
+  while (rays.next > 0) {
+    countState(job, rays.next);
+    runState(rays, rays.next);
+  }
 }
 
 /// rtsl_run_lane.
@@ -103,6 +115,8 @@ inline void runLane(const RtslJob &job, uint32_t number) {
       else
         runState(rays, choice);
     }
+    if (rtsl_states_run_on(job.launch) && takesPart)
+      runStates(job, rays);
   }
 }
 

@@ -43,16 +43,16 @@ extern "C" {
 /// The memory of a block; its size is decided when the kernel is launched.
 extern __attribute__((address_space(3), aligned(16))) uint8_t rtsl_block_memory[];
 
-/// One thread per lane; a block has job->slots slots.
-__attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob *job) {
-  const RtslLaunch &launch = *job->launch;
-  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
+/// One thread per lane; a block has job.slots slots.
+__attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob job) {
+  const RtslLaunch &launch = *job.launch;
+  if (!device::hasLaneBytes(job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return;
-  const device::BlockMemory size = {job->slots, rtsl_wave_steps(job->launch), rtsl_record_groups(),
-                                    job->laneBytes};
+  const device::BlockMemory size = {job.slots, rtsl_wave_steps(job.launch), rtsl_record_groups(),
+                                    job.laneBytes};
   uint8_t *stacks =
-      job->lanes + uint64_t(__nvvm_read_ptx_sreg_ctaid_x()) * job->slots * job->laneBytes;
-  runBlock(*job, device::Block(size, (uint8_t *)rtsl_block_memory, stacks),
+      job.lanes + uint64_t(__nvvm_read_ptx_sreg_ctaid_x()) * job.slots * job.laneBytes;
+  runBlock(job, device::Block(size, (uint8_t *)rtsl_block_memory, stacks),
            __nvvm_read_ptx_sreg_tid_x(), __nvvm_read_ptx_sreg_ntid_x());
 }
 

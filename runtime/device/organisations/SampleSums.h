@@ -45,10 +45,10 @@ struct PixelSum {
 };
 
 /// A sample that is not finite is left out of the pixel's mean, which would not be finite either.
-__attribute__((cold, noinline)) inline void leaveOut(const RtslJob &job, uint64_t pixel,
+__attribute__((cold, noinline)) inline void leaveOut(RtslStatus &status, uint64_t pixel,
                                                      uint32_t number) {
-  countUp(&job.status->samplesNotFinite);
-  noteNotFinite(*job.status, pixel << 32 | number);
+  countUp(&status.samplesNotFinite);
+  noteNotFinite(status, pixel << 32 | number);
 }
 
 /// Adds sample `number` to its pixel.
@@ -56,7 +56,7 @@ inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, uint32_
                       const float *color) {
   const uint32_t components = rtsl_color_components(job.launch);
   if (!isFiniteColor(color, components)) {
-    leaveOut(job, pixel, number);
+    leaveOut(*job.status, pixel, number);
     return;
   }
   if (!sum.isClosed) {

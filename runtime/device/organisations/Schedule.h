@@ -77,6 +77,22 @@ inline int32_t chooseLeastWaste(const RtslLaunch *launch, int32_t next) {
   return stepOfLeast(next, next == Step::nothing ? noLane : key);
 }
 
+/// The step that wastes the least, of traversal and new samples.
+inline int32_t chooseOfTwo(const RtslLaunch *launch, int32_t next) {
+  const uint32_t rays = warp::lanesWhere(next == Step::trace);
+  const uint32_t samples = warp::lanesWhere(next == Step::sample);
+  if (!rays)
+    return samples ? Step::sample : Step::nothing;
+  if (!samples)
+    return Step::trace;
+  if (rtsl_schedule(launch) != RTSL_SCHEDULE_LEAST_WASTE)
+    return Step::trace;
+  const auto wasteOf = [&](int32_t step, uint32_t idle) {
+    return uint32_t(__builtin_popcount(idle)) << costOf(launch, step);
+  };
+  return wasteOf(Step::trace, samples) <= wasteOf(Step::sample, rays) ? Step::trace : Step::sample;
+}
+
 /// Each step in its turn.
 inline int32_t chooseInTurn(int32_t next, int32_t &last) {
   for (int round = 0; round < 2; ++round) {
@@ -97,6 +113,8 @@ inline int32_t chooseNaively(int32_t next) {
 /// The next step of the warp; Step::nothing if no lane needs any other. All lanes call together.
 /// `last` is the last choice.
 inline int32_t chooseStep(const RtslLaunch *launch, int32_t next, int32_t last) {
+  if (rtsl_states_run_on(launch))
+    return chooseOfTwo(launch, next);
   switch (rtsl_schedule(launch)) {
   case RTSL_SCHEDULE_PRIORITIZED:
     return chooseByPriority(next);

@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Divisor.h"
 #include "runtime/device/ray/Warp.h"
 
 namespace rtsl::device {
@@ -32,16 +33,32 @@ inline uint32_t numberInHalf(uint32_t number, uint32_t halves) {
   return halves == 1 ? number : number / 2 + number % 2 * RTSL_SECOND_HALF;
 }
 
+constexpr uint32_t rowsOfBand = 4;
+
+/// Sets the size of the window of a job, which has less than 2^32 pixels. If a band would have
+/// more, the window is within the first one.
+inline void setWindowSize(RtslJob &job, uint32_t width, uint32_t height) {
+  const uint64_t band = uint64_t(rowsOfBand) * width;
+  job.width = width;
+  job.height = height;
+  job.byBand = makeDivisor(band < 0xffffffffu ? uint32_t(band) : 0xffffffffu);
+}
+
+inline void setSampleCount(RtslJob &job, uint32_t ofPixel) {
+  job.sampleCount = ofPixel;
+  job.bySampleCount = makeDivisor(ofPixel);
+}
+
 /// Pixels are numbered in bands of four rows, and in a band column by column.
 inline Pixel pixelAt(const RtslJob &job, uint32_t place) {
-  constexpr uint32_t rows = 4;
   if (job.places)
     place = job.places[place];
-  const uint32_t band = place / (rows * job.width), inBand = place - band * rows * job.width;
-  const uint32_t left = job.height - band * rows; // the last band may have fewer rows
-  if (left >= rows)
-    return {inBand / rows, band * rows + inBand % rows};
-  return {inBand / left, band * rows + inBand % left};
+  const uint32_t band = quotient(place, job.byBand);
+  const uint32_t inBand = place - band * rowsOfBand * job.width;
+  const uint32_t left = job.height - band * rowsOfBand; // the last band may have fewer rows
+  if (left >= rowsOfBand)
+    return {inBand / rowsOfBand, band * rowsOfBand + inBand % rowsOfBand};
+  return {inBand / left, band * rowsOfBand + inBand % left};
 }
 
 inline uint32_t samplesOfSlice(const RtslJob &job) {

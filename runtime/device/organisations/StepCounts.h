@@ -34,4 +34,20 @@ inline void countStep(const RtslJob &job, int32_t step, bool takesPart) {
   __atomic_fetch_add(&count.lanes, lanes, __ATOMIC_RELAXED);
 }
 
+inline void countState(const RtslJob &job, int32_t state) {
+  if (!rtsl_counts_steps(job.launch))
+    return;
+#ifdef __NVPTX__
+  const uint32_t lanes = __nvvm_match_any_sync_i32(__nvvm_activemask(), uint32_t(state));
+  if (lanes & __nvvm_read_ptx_sreg_lanemask_lt())
+    return;
+  const auto count = uint64_t(__builtin_popcount(lanes));
+#else
+  const uint64_t count = 1;
+#endif
+  RtslStepCount &sum = job.stepCounts[placeOfStep(state)];
+  __atomic_fetch_add(&sum.steps, uint64_t(1), __ATOMIC_RELAXED);
+  __atomic_fetch_add(&sum.lanes, count, __ATOMIC_RELAXED);
+}
+
 } // namespace rtsl::device

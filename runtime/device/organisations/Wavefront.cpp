@@ -46,24 +46,24 @@ device::Wave waveOf(const RtslJob &job) {
 
 extern "C" {
 
-__attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob *job) {
-  device::beginWave(waveOf(*job), threadNumber(), threadCount());
+__attribute__((nvptx_kernel)) void rtsl_wave_begin(const RtslJob job) {
+  device::beginWave(waveOf(job), threadNumber(), threadCount());
 }
 
-__attribute__((nvptx_kernel)) void rtsl_wave_trace(const RtslJob *job, uint32_t turn) {
-  device::traceWave(*job, waveOf(*job), turn, threadNumber(), threadCount());
+__attribute__((nvptx_kernel)) void rtsl_wave_trace(const RtslJob job, uint32_t turn) {
+  device::traceWave(job, waveOf(job), turn, threadNumber(), threadCount());
 }
 
-__attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob *job, uint32_t turn) {
-  const RtslLaunch &launch = *job->launch;
-  if (!device::hasLaneBytes(*job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
+__attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob job, uint32_t turn) {
+  const RtslLaunch &launch = *job.launch;
+  if (!device::hasLaneBytes(job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return; // no sample begins, and the job is over
-  device::sampleWave(*job, waveOf(*job), turn, threadNumber(), threadCount());
+  device::sampleWave(job, waveOf(job), turn, threadNumber(), threadCount());
 }
 
-__attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob *job, uint32_t turn,
+__attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob job, uint32_t turn,
                                                    int32_t number) {
-  device::stateWave(*job, waveOf(*job), turn, number, threadNumber(), threadCount(),
+  device::stateWave(job, waveOf(job), turn, number, threadNumber(), threadCount(),
                     device::RunThisState());
 }
 

@@ -199,6 +199,11 @@ typedef struct RtslLightNode {
 #define RTSL_WHOLE_EMITTER 0xfffffffeu
 #define RTSL_NO_LIGHT_LEAF 0xffffffffu
 
+/// Divides by a number without a division (runtime/device/ray/Divisor.h).
+typedef struct RtslDivisor {
+  uint32_t multiplier, increment, shift;
+} RtslDivisor;
+
 /// What all rays of a launch share.
 typedef struct RtslLaunch {
   uint8_t *records; // object records; the first 4 bytes of each are its class id
@@ -229,6 +234,8 @@ typedef struct RtslLaunch {
   uint32_t referenceChain;
   uint32_t width, height;
   uint32_t slices; // of three dimensions: as many parts of `height` rows, one after the other
+  RtslDivisor byHeight;
+  float inverseWidth, inverseHeight; // rounded to nearest
   uint32_t seed;
   uint32_t needs;           // RTSL_NEEDS_*: what the classes of the scene read
   const RtslBvhNode *nodes; // device traversal, the root first; null if the host's own is used
@@ -328,6 +335,8 @@ typedef struct RtslJob {
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice
+  // by sampleCount, and by the pixels of a band (runtime/device/organisations/Slice.h)
+  RtslDivisor bySampleCount, byBand;
   float *samples;     // colorComponents for each sample of the slice; null: not wanted
   RtslPixelSums sums; // of the samples before this slice; all null: there are none
   // the places of the pixels that take samples, ascending, and their number; null: all pixels
@@ -532,6 +541,9 @@ const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
 #define RTSL_SCHEDULE_NAIVE 3u
 #define RTSL_SCHEDULE_LEAST_WASTE 4u
 uint32_t rtsl_schedule(const RtslLaunch *launch);
+/// Whether a lane runs its states one after the other, until it traces a ray or its sample is over:
+/// then warps only choose between traversal and new samples.
+uint32_t rtsl_states_run_on(const RtslLaunch *launch);
 /// What the steps of the megakernel cost, as powers of two: 4 bits for each of traversal, the
 /// beginning of samples, and the states in the order of their numbers; the last for all that
 /// follow. Of RTSL_SCHEDULE_LEAST_WASTE only.

@@ -3,6 +3,7 @@
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/accel/FlatScene.h"
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/render/HostMegakernel.h"
@@ -130,8 +131,9 @@ public:
     job.lanes = lane.data()->bytes;
     job.laneBytes = flat->laneBytes();
     job.samples = pixel.data();
-    job.width = job.height = 1;
-    job.samplesPerPixel = job.sampleCount = 1;
+    device::setWindowSize(job, 1, 1);
+    job.samplesPerPixel = 1;
+    device::setSampleCount(job, 1);
   }
 
   Color look(std::uint32_t seed) override {
@@ -178,7 +180,6 @@ class GpuEye : public Eye {
 public:
   explicit GpuEye(const std::string &ptx) : ptx(ptx) {
     kernel = device.kernel("rtsl_render", device.compile(ptx.c_str()));
-    jobAddress = device.allocate(sizeof(RtslJob), "the launch");
   }
 
   void turnTo(const runtime::Scene &scene) override {
@@ -189,21 +190,21 @@ public:
     answerAddress = blockAddress + answerPlace;
     flat->place(blockAddress,
                 reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status)));
-    RtslJob job{};
+    job = {};
     job.launch = reinterpret_cast<const RtslLaunch *>(blockAddress);
     job.status = reinterpret_cast<RtslStatus *>(answerAddress + offsetof(Answer, status));
     job.laneBytes = flat->laneBytes();
     job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
     job.samples = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
-    job.width = job.height = 1;
-    job.samplesPerPixel = job.sampleCount = 1;
-    device.upload(jobAddress, &job, sizeof job);
+    device::setWindowSize(job, 1, 1);
+    job.samplesPerPixel = 1;
+    device::setSampleCount(job, 1);
   }
 
   Color look(std::uint32_t seed) override {
     std::memcpy(block.data(), flat->update(seed), flat->size());
     device.upload(blockAddress, block.data(), block.size());
-    void *arguments[] = {&jobAddress};
+    const void *arguments[] = {&job};
     device.launch(kernel, 1, warp, arguments);
     Answer answer;
     device.download(&answer, answerAddress, sizeof answer);
@@ -232,7 +233,8 @@ private:
   std::optional<FlatCopy> flat;
   // the scene, and behind it an Answer that is empty: both go up at once
   std::vector<std::uint8_t> block;
-  runtime::CudaDevice::Address blockAddress = 0, answerAddress = 0, jobAddress = 0;
+  runtime::CudaDevice::Address blockAddress = 0, answerAddress = 0;
+  RtslJob job{};
 };
 
 } // namespace

@@ -18,10 +18,10 @@ class Pixel {
 public:
   explicit Pixel(std::uint32_t samples) {
     launch.colorComponents = 1;
-    launch.width = launch.height = 1;
+    device::setLaunchSize(launch, 1, 1, 1);
     job.launch = &launch;
     job.status = &status;
-    job.width = job.height = 1;
+    device::setWindowSize(job, 1, 1);
     job.samplesPerPixel = samples;
     job.pixels = &value;
     job.sums = {&sum, &squares, &counted, &taken, nullptr, nullptr, nullptr};
@@ -43,7 +43,7 @@ private:
   void addSlice() {
     job.samples = slice.data();
     job.firstSample = taken;
-    job.sampleCount = std::uint32_t(slice.size());
+    device::setSampleCount(job, std::uint32_t(slice.size()));
     status.nextSample = slice.size();
     device::addSamples(job, 0, 1);
     slice.clear();

@@ -71,6 +71,9 @@ TEST(DivideZeros, QuotientsStayTheSame) {
 
 TEST(DivideZeros, OtherDivisionsStay) {
   EXPECT_FALSE(Divided("%q = fdiv float %a, %c\nret float %q\n").hasChanged);
+  EXPECT_FALSE(Divided("%aa = fmul float %a, %a\n%bb = fmul float %b, %b\n"
+                       "%d = fadd float %aa, %bb\n%q = fdiv float %d, %c\nret float %q\n")
+                   .hasChanged);
   EXPECT_FALSE(
       Divided("%d = fsub float %a, %b\n%q = fdiv afn float %d, %c\nret float %q\n").hasChanged);
 }

@@ -7,6 +7,7 @@
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/Split.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Divisor.h"
 #include "runtime/program/DeviceBitcode.h"
 
 #include "mlir/IR/MLIRContext.h"
@@ -149,7 +150,7 @@ public:
     launch.needs = RTSL_NEEDS_NORMALS;
     launch.colorComponents = 3;
     launch.maxDepth = maxDepth;
-    launch.width = launch.height = 4;
+    rtsl::device::setLaunchSize(launch, 4, 4, 1);
     launch.seed = 7;
     std::vector<uint32_t> bits;
     for (uint32_t pixel = 0; pixel < 16; ++pixel) {

@@ -16,9 +16,9 @@ namespace device = rtsl::device;
 
 RtslJob window(std::uint32_t width, std::uint32_t height) {
   RtslJob job{};
-  job.width = width;
-  job.height = height;
-  job.samplesPerPixel = job.sampleCount = 1;
+  device::setWindowSize(job, width, height);
+  job.samplesPerPixel = 1;
+  device::setSampleCount(job, 1);
   return job;
 }
 
@@ -43,13 +43,22 @@ struct OnePixel {
     job.samples = samples.data();
     job.samplesPerPixel = all;
     job.firstSample = taken;
-    job.sampleCount = static_cast<std::uint32_t>(samples.size() / 3);
+    device::setSampleCount(job, static_cast<std::uint32_t>(samples.size() / 3));
     status.nextSample = job.sampleCount;
     device::addSamples(job, 0, 1);
   }
 };
 
 } // namespace
+
+TEST(Slice, BandsMayHaveMorePixelsThanAWordCounts) {
+  const RtslJob job = window(0x50000000u, 3);
+  for (const std::uint32_t place : {0u, 1u, 0x12345678u, 0xefffffffu}) {
+    const device::Pixel pixel = device::pixelAt(job, place);
+    EXPECT_EQ(pixel.x, place / 3);
+    EXPECT_EQ(pixel.y, place % 3);
+  }
+}
 
 TEST(Slice, NumbersEachPixelOnce) {
   for (const auto &[width, height] : std::vector<std::pair<std::uint32_t, std::uint32_t>>{
@@ -123,7 +132,8 @@ TEST(SampleSums, AddOnlyWhatWasTaken) {
   job.status = &status;
   job.samples = samples.data();
   job.pixels = means.data();
-  job.samplesPerPixel = job.sampleCount = 2;
+  job.samplesPerPixel = 2;
+  device::setSampleCount(job, 2);
   samples[4] = 3;
   status.nextSample = 5; // the first sample of the third pixel is the last
   device::addSamples(job, 0, 2);

@@ -1,0 +1,46 @@
+#include "codegen/emit/rewrites/GpuConversions.h"
+
+#include "llvm/AsmParser/Parser.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicInst.h"
+#include "llvm/IR/IntrinsicsNVPTX.h"
+#include "llvm/IR/LLVMContext.h"
+#include "llvm/IR/Module.h"
+#include "llvm/IR/PassManager.h"
+#include "llvm/Support/SourceMgr.h"
+
+#include <gtest/gtest.h>
+
+using namespace rtsl::codegen;
+
+namespace {
+
+/// The intrinsic that converts after the pass.
+llvm::Intrinsic::ID converted(const std::string &to, const std::string &function,
+                              const std::string &from) {
+  llvm::LLVMContext context;
+  llvm::SMDiagnostic diagnostic;
+  const auto module =
+      llvm::parseAssemblyString("declare " + to + " @llvm." + function + "(" + from + ")\ndefine " +
+                                    to + " @f(" + from + " %x) {\n%i = call " + to + " @llvm." +
+                                    function + "(" + from + " %x)\nret " + to + " %i\n}\n",
+                                diagnostic, context);
+  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+  llvm::Function &f = *module->getFunction("f");
+  llvm::FunctionAnalysisManager analyses;
+  GpuConversionsPass().run(f, analyses);
+  return llvm::cast<llvm::IntrinsicInst>(*llvm::instructions(f).begin()).getIntrinsicID();
+}
+
+} // namespace
+
+TEST(GpuConversions, SaturatingOnesOfAWordAreAnInstruction) {
+  EXPECT_EQ(converted("i32", "fptosi.sat.i32.f32", "float"), llvm::Intrinsic::nvvm_f2i_rz);
+  EXPECT_EQ(converted("i32", "fptoui.sat.i32.f32", "float"), llvm::Intrinsic::nvvm_f2ui_rz);
+}
+
+/// Of a double, PTX converts a NaN to another number.
+TEST(GpuConversions, OthersStay) {
+  EXPECT_EQ(converted("i32", "fptosi.sat.i32.f64", "double"), llvm::Intrinsic::fptosi_sat);
+  EXPECT_EQ(converted("i64", "fptosi.sat.i64.f32", "float"), llvm::Intrinsic::fptosi_sat);
+}
