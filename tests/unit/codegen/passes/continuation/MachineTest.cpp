@@ -222,11 +222,19 @@ func.func @rtsl_rt_Material_closestHit_payload(%o: !rtsl.ref<"rt_Material">) att
   func.call @A.closestHit.P(%a) : (!rtsl.ref<"A">) -> ()
   rtsl.return
 }
+func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"object">) attributes {rtsl.export} {
+  %direction = rtsl.state "RayDirection" : !rtsl.ptr<vector<3xf32>>
+  %screen = rtsl.state "ScreenCoord" : !rtsl.ptr<vector<2xf32>>
+  %at = rtsl.load %screen : !rtsl.ptr<vector<2xf32>>
+  %one = arith.constant dense<1.0> : vector<2xf32>
+  %d = vector.shuffle %at, %one [0, 1, 2] : vector<2xf32>, vector<2xf32>
+  rtsl.store %d, %direction : !rtsl.ptr<vector<3xf32>>
+  rtsl.return
+}
 )";
   // As linking makes them where no class has the method: they do nothing.
   for (const char *slot : {"rt_Exception_exception", "rt_Miss_miss", "rt_Miss_miss_payload",
-                           "rt_RayGeneration_generate", "rt_Camera_generateRay",
-                           "rt_Primitive_computeNormal", "rt_Primitive_computeTextureCoordinates",
+                           "rt_RayGeneration_generate", "rt_Primitive_computeNormal", "rt_Primitive_computeTextureCoordinates",
                            "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
     text += std::string("func.func @rtsl_") + slot +
             "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
