@@ -61,13 +61,20 @@ private:
     eraseIfDead(before.getDefiningOp());
   }
 
-  static void eraseIfDead(mlir::Operation *op) {
-    if (!op || !mlir::isOpTriviallyDead(op))
-      return;
-    const llvm::SmallVector<mlir::Value> operands(op->getOperands());
-    op->erase();
-    for (const mlir::Value operand : operands)
-      eraseIfDead(operand.getDefiningOp());
+  /// Erases the operation if nothing uses it, and what it alone has used. An operation is listed
+  /// once, however often an erased one has used it; when it is erased itself, no operation is left
+  /// that could list it again.
+  static void eraseIfDead(mlir::Operation *first) {
+    llvm::SmallSetVector<mlir::Operation *, 8> candidates;
+    candidates.insert(first);
+    while (!candidates.empty()) {
+      mlir::Operation *op = candidates.pop_back_val();
+      if (!op || !mlir::isOpTriviallyDead(op))
+        continue;
+      for (const mlir::Value operand : op->getOperands())
+        candidates.insert(operand.getDefiningOp());
+      op->erase();
+    }
   }
 
   llvm::MapVector<mlir::Operation *, llvm::SmallVector<CallOp>> calls; // by callee

@@ -25,6 +25,9 @@ func.func @shade() -> f32 {
   %change = rtsl.load %width : !rtsl.ptr<f32>
   %distance = rtsl.state "HitDistance" : !rtsl.ptr<f32>
   %value = rtsl.load %distance : !rtsl.ptr<f32>
-  %result = call @outer(%value, %change) : (f32, f32) -> f32
+  %square = arith.mulf %change, %change : f32
+  %twice = arith.addf %square, %square : f32
+  %sum = arith.addf %twice, %square : f32
+  %result = call @outer(%value, %sum) : (f32, f32) -> f32
   return %result : f32
 }
