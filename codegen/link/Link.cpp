@@ -127,8 +127,11 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.slots.features = request.features;
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
-  program.needs =
-      (request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL : needs) & ~linking::needsLeftOut(context);
+  // The camera's ray cannot be kept where `generate` does not read it: if it has no direction, the
+  // sample ends before `generate` (state.no-ray).
+  const std::uint32_t kept =
+      request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL & ~RTSL_NEEDS_CAMERA_RAY : 0;
+  program.needs = (kept | needs) & ~linking::needsLeftOut(context);
   program.keepsMeshes = request.keep.has(Item::Meshes);
   program.keepsMeshAttributes = request.keep.has(Item::MeshAttributes);
   return true;
