@@ -32,9 +32,10 @@ __global__ void render(Vec *pixels) {
       const Vec light = {dot(lamp, u), dot(lamp, v), dot(lamp, n)};
       if (light.z <= 0 || eye.z <= 0)
         continue;
-      const Vec h = light + eye, stretched = {h.x / alpha, h.y / alpha, h.z};
-      const float root = dot(h, h) / dot(stretched, stretched);
-      const float distribution = root * root / (3.1415927f * alpha * alpha);
+      const float area = alpha * alpha;
+      const Vec h = light + eye, stretched = {alpha * h.x, alpha * h.y, area * h.z};
+      const float root = area * dot(h, h) / dot(stretched, stretched);
+      const float distribution = root * root * (0.31830987f * area);
       const Vec lightStretched = {alpha * light.x, alpha * light.y, light.z};
       const float hidden =
           eyeHidden * light.z + sqrtf(dot(lightStretched, lightStretched)) * eye.z;
