@@ -234,7 +234,8 @@ func.func @rtsl_rt_Camera_generateRay(%o: !rtsl.ref<"object">) attributes {rtsl.
 )";
   // As linking makes them where no class has the method: they do nothing.
   for (const char *slot : {"rt_Exception_exception", "rt_Miss_miss", "rt_Miss_miss_payload",
-                           "rt_RayGeneration_generate", "rt_Primitive_computeNormal", "rt_Primitive_computeTextureCoordinates",
+                           "rt_RayGeneration_generate", "rt_Primitive_computeNormal",
+                           "rt_Primitive_computeTextureCoordinates",
                            "rt_Primitive_computeDerivatives", "rt_Light_illumination"})
     text += std::string("func.func @rtsl_") + slot +
             "(%o: !rtsl.ref<\"object\">) attributes {rtsl.export} {\n  rtsl.return\n}\n";
