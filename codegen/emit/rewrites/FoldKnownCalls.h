@@ -11,7 +11,8 @@
 
 namespace rtsl::codegen {
 
-/// Replaces calls of the functions of math/ElementaryFunctions.def with constants by their results.
+/// Replaces calls of the functions of math/ElementaryFunctions.def, and of their approximations for
+/// `--fp=fast`, with constants by the correctly rounded results.
 struct FoldKnownCallsPass : llvm::PassInfoMixin<FoldKnownCallsPass> {
   llvm::PreservedAnalyses run(llvm::Function &function, llvm::FunctionAnalysisManager &analyses);
 };
