@@ -1,4 +1,5 @@
-// The elementary functions and `refract` under C names, for compiled shaders to call.
+// The elementary functions and `refract` under C names, for compiled shaders to call. LLVM does not
+// see through all that they call that they depend on their arguments alone; so they say so.
 #include "math/Elementary.h"
 #include "math/Refraction.h"
 
@@ -7,7 +8,7 @@
 #endif
 
 #define RTSL_EXPORT_UNARY(name)                                                                    \
-  float rtsl_##name(float x) {                                                                     \
+  [[gnu::const]] float rtsl_##name(float x) {                                                      \
     return rtsl::device::name(x);                                                                  \
   }
 /// For vectors with that number of components.
@@ -17,7 +18,7 @@
     rtsl::device::refract<count>(incident, normal, eta, refracted);                                \
   }
 #define RTSL_EXPORT_BINARY(name)                                                                   \
-  float rtsl_##name(float x, float y) {                                                            \
+  [[gnu::const]] float rtsl_##name(float x, float y) {                                             \
     return rtsl::device::name(x, y);                                                               \
   }
 
@@ -70,7 +71,7 @@ RTSL_EXPORT_REFRACT(3)
 RTSL_EXPORT_REFRACT(4)
 
 #if defined(__AVX2__) && defined(__FMA__)
-__m128 rtsl_pow4(__m128 x, __m128 y) {
+[[gnu::const]] __m128 rtsl_pow4(__m128 x, __m128 y) {
   return rtsl::device::pow(x, y);
 }
 #endif

@@ -9,7 +9,7 @@ namespace rtsl::device {
 namespace detail {
 
 /// e^x if plain double does not decide, or the result is not a normal float.
-[[gnu::cold, gnu::noinline]] inline float carefulExponential(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float carefulExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();
   if (x > 89.0f) // e^89 > 2^128
@@ -31,7 +31,7 @@ inline BinaryReduction reduceBinary(double x) {
 }
 
 /// 2^x if plain double does not decide, or the result is not a normal float.
-[[gnu::cold, gnu::noinline]] inline float carefulBinaryExponential(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float carefulBinaryExponential(float x) {
   if (isNaN(x))
     return canonicalNaN();
   if (x >= 128.0f)

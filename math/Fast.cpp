@@ -4,11 +4,11 @@
 extern "C" {
 
 #define RTSL_FAST_UNARY(name)                                                                      \
-  float rtsl_fast_##name(float x) {                                                                \
+  [[gnu::const]] float rtsl_fast_##name(float x) {                                                 \
     return rtsl::device::fast::name(x);                                                            \
   }
 #define RTSL_FAST_BINARY(name)                                                                     \
-  float rtsl_fast_##name(float x, float y) {                                                       \
+  [[gnu::const]] float rtsl_fast_##name(float x, float y) {                                        \
     return rtsl::device::fast::name(x, y);                                                         \
   }
 #include "math/FastFunctions.def"

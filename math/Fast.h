@@ -162,16 +162,16 @@ inline float firstQuadrantAngle(float y, float x) {
 
 // ---- rare cases
 
-[[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialPower(float x, float y) {
   return device::pow(x, y);
 }
-[[gnu::cold, gnu::noinline]] inline float specialSineOfPi(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialSineOfPi(float x) {
   return device::sinpi(x);
 }
-[[gnu::cold, gnu::noinline]] inline float specialCosineOfPi(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialCosineOfPi(float x) {
   return device::cospi(x);
 }
-[[gnu::cold, gnu::noinline]] inline float specialAngle(float y, float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialAngle(float y, float x) {
   return device::atan2(y, x);
 }
 

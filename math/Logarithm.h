@@ -14,11 +14,11 @@ inline float specialLogarithm(float x) {
 }
 
 /// For x that is not normal, or if plain double does not decide.
-[[gnu::cold, gnu::noinline]] inline float carefulNaturalLogarithm(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float carefulNaturalLogarithm(float x) {
   return x > 0.0f && x < infinity() ? roundToFloat(naturalLogarithm({x, 0.0}))
                                     : specialLogarithm(x);
 }
-[[gnu::cold, gnu::noinline]] inline float carefulBinaryLogarithm(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float carefulBinaryLogarithm(float x) {
   return x > 0.0f && x < infinity() ? roundToFloat(binaryLogarithm(x)) : specialLogarithm(x);
 }
 

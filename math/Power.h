@@ -58,7 +58,8 @@ inline Double2 accuratePower(double x, double y) {
 }
 
 /// x^y if plain double does not decide, or the result is subnormal or zero.
-[[gnu::cold, gnu::noinline]] inline float carefulPower(double x, double y, double exponent) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float carefulPower(double x, double y,
+                                                                   double exponent) {
   if (exponent < -104.0) // e^-104 < 2^-150
     return 0.0f;
   double exact;
@@ -71,7 +72,7 @@ inline Double2 accuratePower(double x, double y) {
 /// otherwise `pow` would not be small enough to be inlined, with its logarithm, where x is a
 /// constant.
 #ifndef __NVPTX__
-[[gnu::noinline]]
+[[gnu::const, gnu::noinline]]
 #endif
 inline float powerOfExponent(double x, double y, double exponent) {
   if (exponent > 89.0) // e^89 > 2^128
@@ -99,7 +100,7 @@ inline Parity parityOf(float y) {
 }
 
 /// pow() of zero, subnormal, negative and infinite numbers and NaN.
-[[gnu::cold, gnu::noinline]] inline float specialPower(float x, float y) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialPower(float x, float y) {
   if (y == 0.0f || x == 1.0f)
     return 1.0f;
   if (isNaN(x) || isNaN(y))

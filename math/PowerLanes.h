@@ -55,7 +55,7 @@ inline bool roundSafely(DoubleLanes y) {
   return allTrue(_mm256_cmpgt_epi64(distance, _mm256_set1_epi64x(2 * plainMargin)));
 }
 
-[[gnu::cold, gnu::noinline]] inline __m128 powerOneByOne(__m128 x, __m128 y) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline __m128 powerOneByOne(__m128 x, __m128 y) {
   alignas(16) float bases[4], exponents[4];
   _mm_store_ps(bases, x);
   _mm_store_ps(exponents, y);

@@ -16,7 +16,8 @@ namespace detail {
 
 /// k to about 2^-100, for vectors whose lengths are near 1.
 template <int count, typename T>
-[[gnu::cold, gnu::noinline]] inline double carefulRadicand(const T *i, const T *n, T eta) {
+[[gnu::cold, gnu::pure, gnu::noinline]] inline double carefulRadicand(const T *i, const T *n,
+                                                                      T eta) {
   constexpr Double2 one = {1.0, 0.0};
   Double2 d = twoProduct(double(n[0]), double(i[0]));
   for (int c = 1; c < count; ++c)

@@ -50,7 +50,7 @@ inline Double2 cosineKernel(Double2 r) {
 }
 
 /// Sine and cosine of x, correctly rounded, in double with a low part.
-[[gnu::cold, gnu::noinline]] inline SineAndCosine carefulSineAndCosine(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline SineAndCosine carefulSineAndCosine(float x) {
   QuadrantReduction reduced = reduceToQuadrant(absolute(x));
   Double2 sine = sineKernel(reduced.rest), cosine = cosineKernel(reduced.rest);
   bool odd = (reduced.quadrant & 1) != 0;

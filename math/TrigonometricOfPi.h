@@ -31,7 +31,7 @@ inline SineAndCosine halfTurnsOutside(float x) {
   return {0.0f, odd ? -1.0f : 1.0f};
 }
 
-[[gnu::cold, gnu::noinline]] inline SineAndCosine carefulSineAndCosineOfPi(float x) {
+[[gnu::cold, gnu::const, gnu::noinline]] inline SineAndCosine carefulSineAndCosineOfPi(float x) {
   HalfTurnReduction reduced = reduceHalfTurns(absolute(x));
   Double2 angle = multiply({reduced.rest, 0.0}, pi);
   Double2 sine = sineKernel(angle), cosine = cosineKernel(angle);

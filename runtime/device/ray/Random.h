@@ -86,8 +86,8 @@ inline float floatOfFraction(const uint32_t words[5]) {
 
 /// numberOfWord() if the first word does not have 24 significant bits, as happens once in 512
 /// draws.
-__attribute__((cold, noinline)) inline float smallRandomNumber(uint32_t keyX, uint32_t keyY,
-                                                               uint32_t dimension, uint32_t first) {
+__attribute__((cold, const, noinline)) inline float
+smallRandomNumber(uint32_t keyX, uint32_t keyY, uint32_t dimension, uint32_t first) {
   const Words4 more = hash4(keyX, keyY, dimension, 0x5bd1e995u);
   const uint32_t words[5] = {first, more.x, more.y, more.z, more.w};
   return floatOfFraction(words);

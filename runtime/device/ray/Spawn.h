@@ -138,8 +138,8 @@ inline RayStart startInSpace(uint32_t primitive, Vec3 origin, Vec3 direction) {
 
 /// startOf for origins that are not the hit point. It is passed values, so that a state in
 /// registers stays there.
-__attribute__((cold, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
-                                                               Vec3 direction) {
+__attribute__((cold, const, noinline)) inline RayStart startElsewhere(LeftHit hit, Vec3 origin,
+                                                                      Vec3 direction) {
   RayStart start = startInSpace(hit.primitive, origin, direction);
   float foreign = foreignError(origin), length = largest(direction);
   if (hit.instance == RTSL_NO_HIT || !(length > 0 && length < infinity))

@@ -106,7 +106,7 @@ inline float scaledBy(float a, int exponent) {
 /// The depth of a hit so near that the rounding of the differences would matter, such as at the
 /// triangle that a ray leaves. Computed in double, from the plane, times `scale`; exact to some
 /// units of itself over the cosine. `depth` is the result if the ray is parallel to the plane.
-__attribute__((cold, noinline)) inline float
+__attribute__((cold, pure, noinline)) inline float
 depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, float depth) {
   const Vec3 o = alongRay(ray, ray.origin), a = alongRay(ray, v0), b = alongRay(ray, v1),
              c = alongRay(ray, v2);
