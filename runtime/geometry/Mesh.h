@@ -32,6 +32,9 @@ struct Mesh {
   void apply(const Transform &transform);
 };
 
+/// Throws FileNotFound or FileUnreadable unless the file is there, can be read and is not empty.
+void checkMeshFile(const std::string &path);
+
 /// Reads an OBJ, PLY or glTF file (or another format of the installed assimp). All meshes of the
 /// file become one; polygons are triangulated, points and lines left out. Throws Error:
 /// FileNotFound, FileUnreadable, UnsupportedFormat, BadMesh.

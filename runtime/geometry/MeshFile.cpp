@@ -27,9 +27,7 @@
 
 namespace rtsl::runtime {
 
-namespace {
-
-void checkReadable(const std::string &path) {
+void checkMeshFile(const std::string &path) {
   struct stat status;
   if (::stat(path.c_str(), &status) != 0)
     throw Error(errno == ENOENT || errno == ENOTDIR
@@ -45,6 +43,8 @@ void checkReadable(const std::string &path) {
   if (S_ISREG(status.st_mode) && status.st_size == 0)
     throw Error(message::meshEmpty(path), Place{path});
 }
+
+namespace {
 
 /// The extension with the dot, in lower case.
 std::string extensionOf(const std::string &path) {
@@ -85,7 +85,7 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
 } // namespace
 
 Mesh loadMesh(const std::string &path, const MeshRequest &request) {
-  checkReadable(path);
+  checkMeshFile(path);
   const std::string extension = extensionOf(path);
   try {
     if (std::optional<Mesh> mesh = readPlain(path, extension, request)) {
@@ -102,7 +102,7 @@ Mesh loadMesh(const std::string &path, const MeshRequest &request) {
 }
 
 std::vector<MeshGroup> loadMeshGroups(const std::string &path) {
-  checkReadable(path);
+  checkMeshFile(path);
   try {
     if (isPipe(path))
       throw Error(message::meshUnreadableFromPipe(path), Place{path});

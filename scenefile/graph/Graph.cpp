@@ -223,7 +223,11 @@ private:
       attempt([&] { addRoot({"root", one->place()}, *one); });
     if (!several)
       return;
-    attempt([&] { expect(*several, Kind::Object, "`roots`"); });
+    attempt([&] {
+      expect(*several, Kind::Object, "`roots`");
+      if (several->members.empty())
+        throw Error(message::rootsEmpty(), several->place());
+    });
     for (const auto &[key, member] : several->members)
       attempt([&, &key = key, &member = member] {
         if (roots.size() == mostRoots)

@@ -86,6 +86,12 @@ TEST(SceneGraph, MayBeVeryDeep) {
   EXPECT_EQ(position(scene.objects[0].placements[0]), "10000 0 0");
 }
 
+TEST(SceneGraph, NeedsARoot) {
+  EXPECT_EQ(parseError("\"nodes\": {" + leaf + "}, \"roots\": {}"),
+            "s.json:2:62+1: outOfRange: `roots` is empty: it needs at least one name with its "
+            "node, such as {\"world\": \"house\"}");
+}
+
 TEST(SceneGraph, TellsAllMistakes) {
   EXPECT_EQ(parseError(R"("nodes": {"a": {"mesh": "a.ply"},
 "b": {"children": []},

@@ -7,6 +7,7 @@
 #include "codegen/driver/sources/StandardLibrary.h"
 #include "runtime/buffers/NumberFiles.h"
 #include "runtime/buffers/PlyColumns.h"
+#include "runtime/geometry/Mesh.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 #include "tools/rtslc/common/Messages.h"
@@ -62,6 +63,7 @@ int trace(TraceOptions options) {
   RunOptions &run = options.run;
   run.scene = fmt::format("{}/queries/{}.json", libraryFolder(), options.isAny ? "any" : "nearest");
   try {
+    runtime::checkMeshFile(options.mesh); // before it is a value of the scene that nobody wrote
     const char *const rays = numbersOfRay(options) == 8 ? "rays" : "lines";
     nlohmann::json buffer = {{"buffer", options.rays}};
     if (!options.columns.empty())
