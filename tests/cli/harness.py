@@ -16,10 +16,6 @@ RTSLC = os.environ["RTSLC"]
 RTSL_RUN = os.environ["RTSL_RUN"]
 EXAMPLES = pathlib.Path(os.environ["EXAMPLES"])
 
-# Memory that is freed is overwritten, and new memory is not zero: a program that reads either
-# fails, where it might pass by chance.
-os.environ.setdefault("MALLOC_PERTURB_", "165")
-
 FINE, DIAGNOSED, USAGE, INTERNAL = 0, 1, 2, 3
 SECONDS = 300  # far beyond what any of these takes: only a hang ends there
 
