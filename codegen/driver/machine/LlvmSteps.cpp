@@ -121,7 +121,7 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
     codegen::defineConstant(module, "rtsl_step_costs_low", std::uint32_t(costs));
     codegen::defineConstant(module, "rtsl_step_costs_high", std::uint32_t(costs >> 32));
   }
-  // A schedule that is asked for chooses each state; with Majority lanes gather for states, too.
+  // With --schedule, or Majority, a warp chooses before each state, so that lanes gather for it.
   const bool runsOn = !options.schedule && schedule != Schedule::Majority;
   codegen::defineConstant(module, "rtsl_states_run_on", std::uint32_t(runsOn));
   codegen::defineForward(module, "rtsl_least_of_warp",
