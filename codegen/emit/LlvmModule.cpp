@@ -1,15 +1,16 @@
 //===- LlvmModule.cpp - LLVM IR: translation, linking, optimisation -------===//
 #include "codegen/emit/LlvmModule.h"
 
-#include "codegen/emit/rewrites/DivideZeros.h"
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/FoldKnownCalls.h"
-#include "codegen/emit/rewrites/GpuConversions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/NarrowLoads.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 #include "codegen/emit/rewrites/UnrollLoops.h"
+#include "codegen/emit/rewrites/gpu/Approximations.h"
+#include "codegen/emit/rewrites/gpu/Conversions.h"
+#include "codegen/emit/rewrites/gpu/DivideZeros.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"
@@ -352,14 +353,15 @@ static void addUnrolling(llvm::PassBuilder &builder) {
 }
 
 /// What a GPU computes in another way than LLVM expects: after LLVM's simplification, which would
-/// move a division after its select.
+/// move a division after its select, and knows nothing of instructions of PTX.
 static void addGpuRewrites(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
         if (level == llvm::OptimizationLevel::O0)
           return;
         passes.addPass(llvm::createModuleToFunctionPassAdaptor(DivideZerosPass()));
-        passes.addPass(llvm::createModuleToFunctionPassAdaptor(GpuConversionsPass()));
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(ConversionsPass()));
+        passes.addPass(llvm::createModuleToFunctionPassAdaptor(ApproximationsPass()));
       });
 }
 

@@ -5,12 +5,12 @@
 #include "codegen/emit/Ptx.h"
 #include "codegen/emit/StepCosts.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
-#include "codegen/emit/rewrites/AlignMembers.h"
 #include "codegen/emit/rewrites/CheckNumbers.h"
 #include "codegen/emit/rewrites/DoublePrecision.h"
 #include "codegen/emit/rewrites/FastMath.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/WaveStates.h"
+#include "codegen/emit/rewrites/gpu/AlignMembers.h"
 #include "codegen/link/Link.h"
 #include "runtime/program/DeviceBitcode.h"
 

@@ -1,4 +1,4 @@
-#include "codegen/emit/rewrites/AlignMembers.h"
+#include "codegen/emit/rewrites/gpu/AlignMembers.h"
 
 #include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"

@@ -1,4 +1,4 @@
-#include "codegen/emit/rewrites/DivideZeros.h"
+#include "codegen/emit/rewrites/gpu/DivideZeros.h"
 #include "codegen/emit/Jit.h"
 
 #include "llvm/AsmParser/Parser.h"

@@ -1,5 +1,5 @@
 //===- AlignMembers.cpp - loads of members on a GPU -----------------------===//
-#include "codegen/emit/rewrites/AlignMembers.h"
+#include "codegen/emit/rewrites/gpu/AlignMembers.h"
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"

@@ -1,4 +1,4 @@
-//===- GpuConversions.h - floats to integers on a GPU ---------------------===//
+//===- Conversions.h - floats to integers on a GPU ---------------------===//
 //
 // A conversion to an integer saturates, and 0 is the result for a NaN. Where an instruction need
 // not do so, LLVM adds six others around it. That of PTX does ("cvt" in its manual).
@@ -14,7 +14,7 @@
 
 namespace rtsl::codegen {
 
-struct GpuConversionsPass : llvm::PassInfoMixin<GpuConversionsPass> {
+struct ConversionsPass : llvm::PassInfoMixin<ConversionsPass> {
   llvm::PreservedAnalyses run(llvm::Function &function, llvm::FunctionAnalysisManager &analyses);
 };
 

@@ -1,4 +1,4 @@
-#include "codegen/emit/rewrites/GpuConversions.h"
+#include "codegen/emit/rewrites/gpu/Conversions.h"
 
 #include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
@@ -28,19 +28,19 @@ llvm::Intrinsic::ID converted(const std::string &to, const std::string &function
   EXPECT_TRUE(module) << diagnostic.getMessage().str();
   llvm::Function &f = *module->getFunction("f");
   llvm::FunctionAnalysisManager analyses;
-  GpuConversionsPass().run(f, analyses);
+  ConversionsPass().run(f, analyses);
   return llvm::cast<llvm::IntrinsicInst>(*llvm::instructions(f).begin()).getIntrinsicID();
 }
 
 } // namespace
 
-TEST(GpuConversions, SaturatingOnesOfAWordAreAnInstruction) {
+TEST(Conversions, SaturatingOnesOfAWordAreAnInstruction) {
   EXPECT_EQ(converted("i32", "fptosi.sat.i32.f32", "float"), llvm::Intrinsic::nvvm_f2i_rz);
   EXPECT_EQ(converted("i32", "fptoui.sat.i32.f32", "float"), llvm::Intrinsic::nvvm_f2ui_rz);
 }
 
 /// Of a double, PTX converts a NaN to another number.
-TEST(GpuConversions, OthersStay) {
+TEST(Conversions, OthersStay) {
   EXPECT_EQ(converted("i32", "fptosi.sat.i32.f64", "double"), llvm::Intrinsic::fptosi_sat);
   EXPECT_EQ(converted("i64", "fptosi.sat.i64.f32", "float"), llvm::Intrinsic::fptosi_sat);
 }

@@ -1,5 +1,5 @@
-//===- GpuConversions.cpp - floats to integers on a GPU -------------------===//
-#include "codegen/emit/rewrites/GpuConversions.h"
+//===- Conversions.cpp - floats to integers on a GPU -------------------===//
+#include "codegen/emit/rewrites/gpu/Conversions.h"
 
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/InstIterator.h"
@@ -20,8 +20,8 @@ static llvm::Intrinsic::ID instructionFor(const llvm::IntrinsicInst &conversion)
                                            : llvm::Intrinsic::nvvm_f2ui_rz;
 }
 
-llvm::PreservedAnalyses GpuConversionsPass::run(llvm::Function &function,
-                                                llvm::FunctionAnalysisManager &) {
+llvm::PreservedAnalyses ConversionsPass::run(llvm::Function &function,
+                                             llvm::FunctionAnalysisManager &) {
   bool changed = false;
   for (llvm::Instruction &instruction : llvm::make_early_inc_range(llvm::instructions(function))) {
     auto *conversion = llvm::dyn_cast<llvm::IntrinsicInst>(&instruction);

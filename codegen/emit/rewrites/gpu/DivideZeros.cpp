@@ -1,5 +1,5 @@
 //===- DivideZeros.cpp - differences that are 0, divided on a GPU ---------===//
-#include "codegen/emit/rewrites/DivideZeros.h"
+#include "codegen/emit/rewrites/gpu/DivideZeros.h"
 
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/InstIterator.h"

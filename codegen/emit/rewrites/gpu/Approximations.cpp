@@ -1,0 +1,58 @@
+//===- Approximations.cpp - division and square root on a GPU -------------===//
+#include "codegen/emit/rewrites/gpu/Approximations.h"
+
+#include "llvm/IR/IRBuilder.h"
+#include "llvm/IR/InstIterator.h"
+#include "llvm/IR/IntrinsicsNVPTX.h"
+#include "llvm/IR/PatternMatch.h"
+
+namespace rtsl::codegen {
+
+using namespace llvm::PatternMatch;
+
+static bool mayBeApproximate(const llvm::Instruction &instruction) {
+  return instruction.getType()->isFloatTy() && llvm::isa<llvm::FPMathOperator>(instruction) &&
+         instruction.hasAllowReciprocal();
+}
+
+static llvm::Value *approximateRoot(llvm::Instruction &root) {
+  llvm::Value *square = nullptr;
+  if (!mayBeApproximate(root) || !match(&root, m_Sqrt(m_Value(square))))
+    return nullptr;
+  return llvm::IRBuilder<>(&root).CreateIntrinsic(llvm::Intrinsic::nvvm_sqrt_approx_f, {square});
+}
+
+static llvm::Value *approximateQuotient(llvm::Instruction &division) {
+  llvm::Value *a = nullptr, *b = nullptr, *square = nullptr;
+  if (!mayBeApproximate(division) || !match(&division, m_FDiv(m_Value(a), m_Value(b))))
+    return nullptr;
+  llvm::IRBuilder<> builder(&division);
+  builder.setFastMathFlags(division.getFastMathFlags());
+  auto *root = llvm::dyn_cast<llvm::Instruction>(b);
+  if (!root || !mayBeApproximate(*root) || !match(root, m_Sqrt(m_Value(square))))
+    return builder.CreateIntrinsic(llvm::Intrinsic::nvvm_div_full, {a, b});
+  return builder.CreateFMul(
+      a, builder.CreateIntrinsic(llvm::Intrinsic::nvvm_rsqrt_approx_f, {square}));
+}
+
+/// Replaces each instruction for which there is an approximation. True if there was any.
+static bool replaceAll(llvm::Function &function,
+                       llvm::function_ref<llvm::Value *(llvm::Instruction &)> approximate) {
+  bool changed = false;
+  for (llvm::Instruction &instruction : llvm::make_early_inc_range(llvm::instructions(function)))
+    if (llvm::Value *value = approximate(instruction)) {
+      instruction.replaceAllUsesWith(value);
+      instruction.eraseFromParent();
+      changed = true;
+    }
+  return changed;
+}
+
+llvm::PreservedAnalyses ApproximationsPass::run(llvm::Function &function,
+                                                llvm::FunctionAnalysisManager &) {
+  bool changed = replaceAll(function, approximateQuotient); // first, by roots that are roots still
+  changed |= replaceAll(function, approximateRoot);
+  return changed ? llvm::PreservedAnalyses::none() : llvm::PreservedAnalyses::all();
+}
+
+} // namespace rtsl::codegen

@@ -1,0 +1,25 @@
+//===- Approximations.h - division and square root on a GPU ---------------===//
+//
+// A GPU has instructions that approximate 1/x and 1/sqrt(x); the nearest float takes eight more and
+// a branch. With --fp=fast the code of shaders uses what PTX has for numbers of any size, so that
+// infinities, NaNs and subnormal numbers stay what they are ("div", "sqrt" and "rsqrt" in its
+// manual). The bounds in units in the last place were measured (docs/fast.md).
+//
+//   fdiv fast %a, %b             =>  div.full                       3 units
+//   fdiv fast %a, (sqrt fast %b) =>  %a times rsqrt.approx of %b    3
+//   sqrt fast %a                 =>  sqrt.approx                    1
+//
+// "fast" stands for the flags of FastMath.h, which no code of the runtime has.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "llvm/IR/PassManager.h"
+
+namespace rtsl::codegen {
+
+struct ApproximationsPass : llvm::PassInfoMixin<ApproximationsPass> {
+  llvm::PreservedAnalyses run(llvm::Function &function, llvm::FunctionAnalysisManager &analyses);
+};
+
+} // namespace rtsl::codegen
