@@ -252,6 +252,16 @@ private:
     throw Error(message::bufferSizeMissing(what, member.type.name), place);
   }
 
+  /// A buffer of `buffers`, whose elements all members that use it share.
+  Value makeBuffer(const JsonValue &value, const ValueType &type, const std::string &name) {
+    const std::string what = fmt::format("the buffer `{}`", name);
+    if (const auto found = description.bufferValues.find(&value);
+        found != description.bufferValues.end())
+      return bufferOf(found->second, type, what, value.place());
+    return runtime::blockOf(type, convert(value, &type, what), program.colorComponents, what,
+                            value.place());
+  }
+
   /// The buffer of this name, made on first use.
   Value namedBuffer(const JsonValue &json, const ValueType &type, const std::string &what) {
     const auto described = description.buffers.find(json.string);
@@ -266,13 +276,9 @@ private:
     }
     auto made = buffers.made.find(json.string);
     if (made == buffers.made.end()) {
-      const JsonValue &value = *described->second;
       made = buffers.made
-                 .emplace(json.string,
-                          NamedBuffers::Buffer{type,
-                                               bufferOf(description.bufferValues.at(&value), type,
-                                                        fmt::format("the buffer `{}`", json.string),
-                                                        value.place())})
+                 .emplace(json.string, NamedBuffers::Buffer{type, makeBuffer(*described->second,
+                                                                             type, json.string)})
                  .first;
     }
     if (made->second.type.name != type.name)

@@ -280,7 +280,7 @@ private:
       expect(value, Kind::Object, "`buffers`");
       for (const auto &[key, member] : value.members)
         errors.attempt([&, &key = key, &member = member] {
-          if (!isBuffer(member))
+          if (member.kind != Kind::Array && !isBuffer(member))
             throw Error(message::namedBufferSourceMissing(key.text), member.place());
           scene.buffers[key.text] = &member;
         });

@@ -147,6 +147,8 @@ struct RenderSettings {
   std::uint32_t width = 960, height = 540; // of all slices
   std::uint32_t slices = 1;                // of a launch of three dimensions
   std::string sizeBuffer;                  // the name of the buffer that gives the size; or empty
+  std::string sizeFile; // its file, while the number of elements is unknown (LaunchSizes.h)
+  Place sizePlace;
   std::uint32_t samplesPerPixel = 16;
   bool hasSamples = false; // the scene gives samplesPerPixel
   std::uint32_t depth = 8;

@@ -11,26 +11,37 @@ namespace rtsl::scene {
 
 using Kind = JsonValue::Kind;
 
-/// The number of elements of a buffer, by its name in `buffers` or as a member of the ray
-/// generation.
-static std::uint32_t lengthOfBuffer(const JsonValue &name, const SceneDescription &scene,
-                                    const JsonValue *rayGeneration) {
+std::uint32_t launchSize(const std::string &buffer, std::size_t length) {
+  if (length == 0 || length > runtime::mostLaunchWidth)
+    throw Error(message::launchSizeOutOfRange(buffer, length, runtime::mostLaunchWidth));
+  return static_cast<std::uint32_t>(length);
+}
+
+/// A launch with an index for each element of a buffer, by its name in `buffers` or as a member of
+/// the ray generation. How many a file without a format has, setLaunchSizes() finds out.
+static void readBufferSize(const JsonValue &name, RenderSettings &render,
+                           const SceneDescription &scene, const JsonValue *rayGeneration) {
   const JsonValue *value = rayGeneration && rayGeneration->kind == Kind::Object
                                ? rayGeneration->find(name.string)
                                : nullptr;
   const std::string &called = value && value->kind == Kind::String ? value->string : name.string;
   if (const auto named = scene.buffers.find(called); named != scene.buffers.end())
     value = named->second;
-  if (value && value->kind == Kind::Array && !value->elements.empty())
-    return static_cast<std::uint32_t>(value->elements.size());
+  render.sizeBuffer = name.string;
+  render.sizePlace = name.place();
+  render.height = 1;
+  if (value && value->kind == Kind::Array && !value->elements.empty()) {
+    render.width = static_cast<std::uint32_t>(value->elements.size());
+    return;
+  }
   const auto buffer = value ? scene.bufferValues.find(value) : scene.bufferValues.end();
   if (buffer == scene.bufferValues.end())
     throw Error(message::noSuchSizeBuffer(name.string), name.place());
   try {
-    const std::size_t length = lengthOf(buffer->second);
-    if (length == 0 || length > runtime::mostLaunchWidth)
-      throw Error(message::launchSizeOutOfRange(name.string, length, runtime::mostLaunchWidth));
-    return static_cast<std::uint32_t>(length);
+    if (const std::optional<std::size_t> length = lengthOf(buffer->second))
+      render.width = launchSize(name.string, *length);
+    else
+      render.sizeFile = buffer->second.file;
   } catch (Error &error) {
     error.place = name.place();
     throw;
@@ -58,10 +69,10 @@ static void readSlices(const JsonValue &size, RenderSettings &render) {
 static void readSize(const JsonValue &size, RenderSettings &render, const SceneDescription &scene,
                      const JsonValue *rayGeneration) {
   render.slices = 1;
-  render.sizeBuffer = size.kind == Kind::String ? size.string : "";
+  render.sizeBuffer.clear();
+  render.sizeFile.clear();
   if (size.kind == Kind::String) {
-    render.width = lengthOfBuffer(size, scene, rayGeneration);
-    render.height = 1;
+    readBufferSize(size, render, scene, rayGeneration);
   } else if (size.kind == Kind::Array && size.elements.size() == 1) {
     render.width = readInteger(size.elements[0], 1, runtime::mostLaunchWidth, "the size");
     render.height = 1;

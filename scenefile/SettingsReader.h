@@ -12,4 +12,7 @@ namespace rtsl::scene {
 void readSettings(const JsonValue &value, RenderSettings &render, const SceneDescription &scene,
                   const JsonValue *rayGeneration, ErrorCollector &errors);
 
+/// The size of a launch with an index for each element of a buffer. Throws OutOfRange.
+std::uint32_t launchSize(const std::string &buffer, std::size_t length);
+
 } // namespace rtsl::scene

@@ -257,7 +257,7 @@ Value readBuffer(const BufferDescription &buffer, const ValueType &type,
                       sizesOf(array.shape, type.bufferRank, what));
 }
 
-std::size_t lengthOf(const BufferDescription &buffer) {
+std::optional<std::size_t> lengthOf(const BufferDescription &buffer) {
   if (!buffer.shape.empty())
     return buffer.shape.front();
   const std::string extension = extensionOf(buffer);
@@ -269,7 +269,7 @@ std::size_t lengthOf(const BufferDescription &buffer) {
     return readCsv(buffer.file, buffer.columns).shape.front();
   if (extension == ".ply")
     return plyCount(buffer.file, buffer.element);
-  throw Error(message::shapeMissing(buffer.file));
+  return std::nullopt;
 }
 
 } // namespace rtsl::runtime

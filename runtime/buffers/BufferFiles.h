@@ -9,6 +9,7 @@
 #include "runtime/scene/Value.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,9 @@ std::string extensionOf(const BufferDescription &buffer);
 Value readBuffer(const BufferDescription &buffer, const ValueType &type,
                  std::uint32_t colorComponents, const std::string &what);
 
-/// The number of elements along the first dimension, which is that of a file if it says so. Throws
-/// MissingKey, BadBuffer, and the errors of reading a file.
-std::size_t lengthOf(const BufferDescription &buffer);
+/// The number of elements along the first dimension; none for a file that does not say, because it
+/// has no format. Throws BadBuffer, and the errors of reading a file.
+std::optional<std::size_t> lengthOf(const BufferDescription &buffer);
 
 /// Zeros for a member of this type.
 Value zeros(const std::vector<std::uint32_t> &sizes, const ValueType &type,

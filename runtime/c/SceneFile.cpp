@@ -1,6 +1,7 @@
 //===- SceneFile.cpp - scenes of scene files, for C -----------------------===//
 #include "runtime/c/SceneFile.h"
 #include "runtime/c/Handle.h"
+#include "scenefile/LaunchSizes.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -61,13 +62,25 @@ RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
           render.slices};
 }
 
+/// The bytes of an element of a buffer of one dimension; 0: the class has none of this name.
+std::uint64_t elementBytes(const runtime::ClassInfo *one, const std::string &name) {
+  if (one)
+    for (const runtime::MemberInfo &member : one->members)
+      if (member.name == name)
+        return member.type.bufferRank == 1 ? member.type.elementSize : 0;
+  return 0;
+}
+
 /// The scene of a file with these settings.
 RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std::string &file,
                const char *const *settings, std::size_t count) {
   try {
-    const scene::SceneDescription description =
+    scene::SceneDescription description =
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
     rtsl::c::requireLibraryClasses(description, *program);
+    scene::setLaunchSizes(description, [&](const std::string &name, const std::string &member) {
+      return elementBytes(program->find(name), member);
+    });
     RtslScene made(scene::buildScene(description, program));
     made.file = file;
     made.program = program;

@@ -282,4 +282,23 @@ void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,
   Store(context, what, fallback).whole(type, value, to);
 }
 
+Value blockOf(const ValueType &type, const Value &value, std::uint32_t colorComponents,
+              const std::string &what, const std::optional<Place> &fallback) {
+  std::shared_ptr<Value::Words> words;
+  StoreContext context;
+  context.colorComponents = colorComponents;
+  context.allocate = [&](std::size_t bytes) {
+    words = std::make_shared<Value::Words>(bytes / 4);
+    return reinterpret_cast<std::uint8_t *>(words->data());
+  };
+  context.keep = [&](const std::shared_ptr<Value::Words> &block, bool) {
+    words = block;
+    return true;
+  };
+  context.classMismatch = [](RtslRef, const std::string &) { return nullptr; };
+  RtslBuffer header{};
+  storeValue(type, value, reinterpret_cast<std::uint8_t *>(&header), context, what, fallback);
+  return Value::block(std::move(words), {header.size, header.size + type.bufferRank});
+}
+
 } // namespace rtsl::runtime

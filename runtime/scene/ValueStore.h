@@ -34,4 +34,9 @@ void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,
                 const StoreContext &context, const std::string &what,
                 const std::optional<Place> &fallback);
 
+/// The elements of a buffer that holds no references, of a list or a block, as a block of the sizes
+/// of all dimensions. Throws what storeValue() throws.
+Value blockOf(const ValueType &type, const Value &value, std::uint32_t colorComponents,
+              const std::string &what, const std::optional<Place> &fallback);
+
 } // namespace rtsl::runtime

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 
 namespace rtsl::scene {
 
@@ -106,22 +105,9 @@ NamedAttribute attributeFrom(const AttributeDescription &description, const Valu
   if (needed != 0 && (attribute.components != needed || type.kind != ValueType::Kind::Float))
     throw Error(message::spaceNeedsVector(what, type.name, nameOf(description.space), needed),
                 description.place);
-  runtime::StoreContext context;
-  context.colorComponents = colorComponents;
-  std::vector<std::unique_ptr<std::uint32_t[]>> memory;
-  context.allocate = [&](std::size_t bytes) {
-    memory.push_back(std::make_unique<std::uint32_t[]>(bytes / 4 + 1));
-    return reinterpret_cast<std::uint8_t *>(memory.back().get());
-  };
-  context.keep = [](const std::shared_ptr<runtime::Value::Words> &, bool) { return true; };
-  RtslBuffer buffer{};
-  storeValue(bufferOfAttribute(type), values, reinterpret_cast<std::uint8_t *>(&buffer), context,
-             what, description.place);
-  attribute.words.resize(std::size_t(buffer.size[0]) * attribute.components);
-  const std::uint64_t address = std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
-  if (!attribute.words.empty())
-    std::memcpy(attribute.words.data(), reinterpret_cast<const void *>(address),
-                4 * attribute.words.size());
+  const runtime::Value block =
+      blockOf(bufferOfAttribute(type), values, colorComponents, what, description.place);
+  attribute.words.assign(block.words->data(), block.words->data() + block.words->size());
   return attribute;
 }
 

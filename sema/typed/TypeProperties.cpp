@@ -31,11 +31,11 @@ static std::uint64_t sumOverParts(const Type *type, const Leaf &leaf) {
   return sum;
 }
 
-std::uint64_t sizeInBytes(const Type *type) {
-  return sumOverParts(type, [](const Type *part) -> std::uint64_t {
+std::uint64_t sizeInBytes(const Type *type, std::uint32_t colorComponents) {
+  return sumOverParts(type, [colorComponents](const Type *part) -> std::uint64_t {
     switch (part->kind) {
     case TypeKind::Color:
-      return 12;
+      return 4ull * colorComponents;
     case TypeKind::Class:
       return 4;
     case TypeKind::Buffer:

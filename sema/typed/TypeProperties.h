@@ -7,9 +7,9 @@
 
 namespace rtsl {
 
-/// Bytes of a value in memory: every scalar takes 4, vectors and matrices are packed, a color
-/// counts as three floats. Saturates at 2^62, so that the sizes of all arrays can be compared.
-std::uint64_t sizeInBytes(const Type *type);
+/// Bytes of a value in memory: every scalar takes 4, vectors and matrices are packed. Saturates at
+/// 2^62, so that the sizes of all arrays can be compared.
+std::uint64_t sizeInBytes(const Type *type, std::uint32_t colorComponents = 3);
 
 /// Scalars of a value known at compile time; a color counts as 0, because the target chooses its
 /// number of components.

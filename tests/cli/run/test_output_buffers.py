@@ -356,7 +356,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
                 "objects": [],
                 "materials": {},
                 "buffers": {
-                    "counts": {"size": [7]},
+                    "counts": [0] * 7,
                     "seen": {"size": [100]},
                     "below": {"size": [7]},
                 },
@@ -458,6 +458,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         )
         self.write("a.npy", npy("f", [5], [1, 2, 3, 4, 5.5]))
         self.write("a.csv", "1\n2\n3\n")
+        self.write("a.raw", struct.pack("<6f", *range(6)))
         changes = {
             "import": ["one.rtsl"],
             "objects": [],
@@ -468,6 +469,10 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
             ([1, 2, 3, 4], {}, [], 4),
             ({"buffer": "a.npy"}, {}, [], 5),
             ("b", {"b": {"buffer": "a.csv"}}, [], 3),
+            ({"buffer": "a.raw"}, {}, [], 6),
+            ("b", {"b": {"buffer": "a.raw"}}, [], 6),
+            (None, {}, ["--in=a=a.raw"], 6),
+            ("b", {"b": {"size": [7]}}, ["--in=b=a.raw"], 6),
             (None, {}, ["--in=a=a.npy"], 5),
             ("b", {"b": {"size": [7]}}, ["--in=b=a.csv"], 3),
         ):
@@ -508,7 +513,7 @@ class Double : rt_RayGeneration { public inout int below[]; void generate() { be
         )
         refused("`size` takes 1 to 3 numbers", "E0805", start={**start, "distance": {"size": []}})
         refused(
-            "needs a `size`, or a file",
+            "is a list, or has a `size`, or a file",
             "E0803",
             buffers={"histogram": {"shape": [6]}, "most": {"buffer": "initial.npy"}},
         )

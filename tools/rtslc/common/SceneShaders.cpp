@@ -5,8 +5,10 @@
 #include "codegen/driver/sources/StandardLibrary.h"
 #include "frontend/preprocessor/FileSearch.h"
 #include "runtime/scene/Scene.h"
+#include "scenefile/LaunchSizes.h"
 #include "scenefile/SceneParts.h"
 #include "scenefile/gltf/File.h"
+#include "sema/typed/TypeProperties.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
@@ -125,9 +127,21 @@ void refuseUnknownEditable(const scene::SceneDescription &description, const typ
   }
 }
 
+/// The bytes of an element of a buffer of one dimension; 0: the class has none of this name.
+std::uint64_t elementBytes(const typed::Class *one, const std::string &name,
+                           std::uint32_t colorComponents) {
+  for (; one; one = one->base)
+    for (const auto &member : one->members)
+      if (member->name == name)
+        return member->type->is(TypeKind::Buffer) && member->type->count == 1
+                   ? sizeInBytes(member->type->element, colorComponents)
+                   : 0;
+  return 0;
+}
+
 } // namespace
 
-std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &description,
+std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,
                                            std::vector<std::string> *filesRead,
                                            const std::vector<std::string> &takenNames,
@@ -154,6 +168,9 @@ std::unique_ptr<typed::Module> loadShaders(const scene::SceneDescription &descri
     refuseUnknownEditable(description, *module, messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
+  scene::setLaunchSizes(description, [&](const std::string &className, const std::string &member) {
+    return elementBytes(module->findClass(className), member, options.compile.colorComponents);
+  });
   if (filesRead) {
     *filesRead = {description.file};
     const std::vector<std::string> &files = shaders.filesRead();

@@ -20,10 +20,11 @@ scene::SceneDescription readScene(const std::string &file,
 /// Reads and checks the files that the scene imports; null if there were errors. They find what
 /// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
 /// files. `takenNames` are renamed in the library (SourceLoader.h). `otherMentions`: classes that
-/// the scene does not use as it is described, but that are to be in the module, too.
+/// the scene does not use as it is described, but that are to be in the module, too. Sizes of
+/// launches that depend on their types are set (LaunchSizes.h).
 std::unique_ptr<typed::Module>
-loadShaders(const scene::SceneDescription &description, const CommonOptions &options,
-            Messages &messages, std::vector<std::string> *filesRead = nullptr,
+loadShaders(scene::SceneDescription &description, const CommonOptions &options, Messages &messages,
+            std::vector<std::string> *filesRead = nullptr,
             const std::vector<std::string> &takenNames = {},
             const std::vector<scene::LocatedName> &otherMentions = {});
 

@@ -78,7 +78,7 @@ std::vector<scene::LocatedName> classesOfCameras(scene::SceneDescription descrip
 
 void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
                 std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
+  scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
   const std::unique_ptr<typed::Module> module = loadShaders(
       description, options.common, messages, &filesRead, {}, classesOfCameras(description));
   if (!module)

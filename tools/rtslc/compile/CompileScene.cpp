@@ -10,7 +10,7 @@ namespace rtsl::tool {
 
 std::optional<std::string> translateScene(const CompileCommandOptions &options, Messages &messages,
                                           std::vector<std::string> &filesRead) {
-  const scene::SceneDescription description =
+  scene::SceneDescription description =
       readScene(options.files.front(), options.overrides, messages, "compile");
   const std::unique_ptr<typed::Module> module =
       loadShaders(description, options.common, messages, &filesRead);

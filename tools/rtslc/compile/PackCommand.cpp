@@ -73,7 +73,7 @@ std::vector<runtime::PackageBuffer> buffersOf(const runtime::Scene &scene,
 
 void packScene(const PackOptions &options, Messages &messages) {
   checkOutputs(options.output, options.common.dependencies, {options.scene});
-  const scene::SceneDescription description =
+  scene::SceneDescription description =
       readScene(options.scene, options.overrides, messages, "pack");
   std::vector<std::string> filesRead;
   const std::unique_ptr<typed::Module> module =

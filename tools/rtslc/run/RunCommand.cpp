@@ -350,7 +350,7 @@ void runScene(const RunOptions &options, Messages &messages) {
     files.push_back(options.picture);
   for (const std::string &file : files)
     checkFileWritable(file);
-  const scene::SceneDescription description = readInputs(options, messages);
+  scene::SceneDescription description = readInputs(options, messages);
   std::vector<std::string> filesRead;
   const std::unique_ptr<typed::Module> module =
       loadShaders(description, options.common, messages, &filesRead);
