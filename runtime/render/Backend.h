@@ -37,10 +37,11 @@ public:
   Image render(RenderStatistics *statistics = nullptr);
 
   /// As render(), but in passes, which continue `rendering` if it has sums; at the end it is the
-  /// state that they have reached. `progress` is called after each pass; RenderOptions::progress is
-  /// not called. RenderOptions::cancel ends it after the pass, of which there is at least one; see
-  /// also PassOptions::checkpoint. Throws OutOfRange if `rendering` has more samples than the
-  /// options allow, or sums of another size, and what the functions of `passes` throw.
+  /// state that they have reached. `progress` is called after each pass; the share that is done is
+  /// that of RenderOptions::samplesPerPixel. RenderOptions::cancel ends it after the pass, or
+  /// within a long one (PassOptions::secondsToEndPass). Throws OutOfRange if `rendering` has more
+  /// samples than the options allow, or sums of another size, and what the functions of `passes`
+  /// throw.
   Image renderInPasses(const PassOptions &passes,
                        const std::function<void(const PassState &)> &progress,
                        PartialRendering &rendering, RenderStatistics *statistics = nullptr);
@@ -82,11 +83,12 @@ private:
   virtual void uploadSums() {}
   virtual void fetchSums() {}
 
-  void takeSums(PartialRendering &rendering);
+  SampleCounts takeSums(PartialRendering &rendering, const PassOptions &passes);
   void measure(const PassOptions &passes, PartialRendering &rendering);
-  bool runPass(const PassOptions &passes, Clock::time_point pause, RenderStatistics &met);
+  bool runPass(const PassOptions &passes, const PassState &state, Clock::time_point pause,
+               RenderStatistics &met);
   void runPasses(const PassOptions &passes, const std::function<void(const PassState &)> &progress,
-                 PartialRendering &rendering);
+                 const SampleCounts &before, PartialRendering &rendering);
 };
 
 } // namespace rtsl::runtime

@@ -69,11 +69,8 @@ Megakernel::Address HostMegakernel::clearedPixels() {
 }
 
 RtslPixelSums HostMegakernel::clearedSums(std::uint64_t pixels) {
-  ownSums = PixelSums::make(pixels, channels());
-  ownSums.squares.clear();
-  RtslPixelSums sums = ownSums.pointers();
-  sums.squares = nullptr;
-  return sums;
+  ownSums = PixelSums::make(pixels, channels(), false, false);
+  return ownSums.pointers();
 }
 
 double HostMegakernel::runLanes(const RtslJob &job) {

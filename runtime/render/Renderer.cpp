@@ -62,7 +62,8 @@ struct PixelSum {
   void load(const PixelSums &from, std::size_t pixel, std::uint32_t half, Count components) {
     const std::size_t at = pixel * from.halves() + half;
     std::copy_n(&from.colors[at * components], std::uint32_t(components), colors);
-    squares = from.squares[at];
+    if (from.isMeasured())
+      squares = from.squares[at];
     counted = from.counted[at];
     if (from.isAdaptive()) {
       values = from.values[at];
@@ -76,7 +77,8 @@ struct PixelSum {
   void store(PixelSums &to, std::size_t pixel, std::uint32_t half, Count components) const {
     const std::size_t at = pixel * to.halves() + half;
     std::copy_n(colors, std::uint32_t(components), &to.colors[at * components]);
-    to.squares[at] = squares;
+    if (to.isMeasured())
+      to.squares[at] = squares;
     to.counted[at] = counted;
     if (to.isAdaptive()) {
       to.values[at] = values;
@@ -114,7 +116,7 @@ struct Renderer::Implementation {
 
   template <typename Count>
   void renderTile(std::uint64_t tile, Worker &worker, Count components);
-  template <typename Count>
+  template <std::uint32_t halves, typename Count>
   void renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker, Count components);
   void work();
   void add(Worker &worker);
@@ -191,17 +193,18 @@ bool isFinite(const float *color, Count components) {
 
 /// The sums of a pixel are taken in the order of its samples, on whichever thread. A sample that is
 /// not finite is left out, because one such sample would make the mean of the pixel not finite. The
-/// number of components is a template argument so that compilers unroll the loops over them.
-template <typename Count>
+/// numbers of halves and of components are template arguments so that compilers unroll the loops
+/// over them.
+template <std::uint32_t halves, typename Count>
 void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker,
                                            Count components) {
   const auto sample = scene.program().sample;
   const std::uint32_t column = x - window.x0, row = y - window.y0;
   const std::size_t index = std::size_t(row) * window.width() + column;
-  const std::uint32_t halves = sums ? sums->halves() : 1;
-  PixelSum parts[2];
+  PixelSum parts[halves];
   for (std::uint32_t half = 0; sums && half < halves; ++half)
     parts[half].load(*sums, index, half, components);
+  const bool isMeasured = sums && sums->isMeasured();
   const std::uint32_t before = sums ? sums->taken[index] : 0;
   std::uint32_t taken = before;
   for (; taken < samplesOfPixel && !watch->isStopped(); ++taken) {
@@ -215,7 +218,7 @@ void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Wor
     }
     if (!sum.isClosed)
       sum.add(color, components);
-    if (sums && !sum.hasDecided)
+    if (isMeasured && !sum.hasDecided)
       sum.decide(color, components);
   }
   worker.samples += taken - before;
@@ -246,7 +249,8 @@ void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Co
       if (sums && !sums->isOpen(index))
         ++worker.pixels;
       else
-        renderPixel(x, y, worker, components);
+        sums && sums->isAdaptive() ? renderPixel<2>(x, y, worker, components)
+                                   : renderPixel<1>(x, y, worker, components);
     }
 }
 

@@ -49,11 +49,25 @@ std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statist
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options) {
   const double pixels = double(windowOf(options).pixels());
+  return message::pictureUnfinished(
+      nameOfStop(), 100 * double(statistics.samples) / (pixels * options.samplesPerPixel),
+      statistics.pixels, pixels);
+}
+
+const char *nameOfStop() {
   const char *const signal = interruption();
-  return message::pictureUnfinished(signal ? signal : "the caller",
-                                    100 * double(statistics.samples) /
-                                        (pixels * options.samplesPerPixel),
-                                    statistics.pixels, pixels);
+  return signal ? signal : "the caller";
+}
+
+std::string unfinishedPassesText(const runtime::PassState &state,
+                                 const runtime::RenderStatistics &statistics,
+                                 const runtime::RenderOptions &options, bool isOpenEnded) {
+  return fmt::format("stopped by {} after {}{} samples per pixel{}", nameOfStop(),
+                     state.samplesPerPixel,
+                     isOpenEnded ? "" : fmt::format(" of {}", options.samplesPerPixel),
+                     !statistics.isUnfinished    ? ""
+                     : state.samplesPerPixel > 0 ? "; some pixels have more"
+                                                 : "; some pixels have more, the others are black");
 }
 
 const char *nameOf(runtime::TreeKind kind) {

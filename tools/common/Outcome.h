@@ -3,6 +3,7 @@
 
 #include "runtime/gpu/GpuRenderer.h"
 #include "runtime/render/RenderOptions.h"
+#include "runtime/render/passes/Passes.h"
 
 #include <string>
 #include <vector>
@@ -30,6 +31,15 @@ std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statist
 /// "stopped by SIGINT after 12.5 % of the samples: 100 of 800 pixels are done, ..."
 std::string unfinishedText(const runtime::RenderStatistics &statistics,
                            const runtime::RenderOptions &options);
+
+/// "SIGINT", or "the caller" if no signal has come.
+const char *nameOfStop();
+
+/// The same of a rendering in passes: "stopped by SIGINT after 12 of 64 samples per pixel".
+/// `isOpenEnded`: no number of samples was requested.
+std::string unfinishedPassesText(const runtime::PassState &state,
+                                 const runtime::RenderStatistics &statistics,
+                                 const runtime::RenderOptions &options, bool isOpenEnded);
 
 /// "fast" or "good"
 const char *nameOf(runtime::TreeKind kind);

@@ -2,6 +2,7 @@
 #include "PictureOptions.h"
 
 #include "OptionValues.h"
+#include "support/Error.h"
 
 #include <cstdio>
 #include <string>
@@ -86,6 +87,14 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format) 
     throw CLI::ValidationError(
         "--output", "a picture's name ends in .png or .exr, unless --format selects that of `" +
                         output + "` is to be");
+}
+
+void writePictureSoFar(const std::string &output, const runtime::Image &image,
+                       runtime::PictureFormat format) {
+  try {
+    runtime::writeImage(output, image, format);
+  } catch (const Error &) {
+  }
 }
 
 void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree) {

@@ -36,6 +36,11 @@ CLI::Option *addPictureOption(CLI::App &command, std::string &output,
 /// options are read.
 void checkPictureName(const std::string &output, runtime::PictureFormat format);
 
+/// Replaces the file of a picture that is still rendered. What fails is not reported, because it
+/// fails again with the last picture, or no longer matters.
+void writePictureSoFar(const std::string &output, const runtime::Image &image,
+                       runtime::PictureFormat format);
+
 /// Adds --tree.
 void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree);
 

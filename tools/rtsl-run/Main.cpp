@@ -127,9 +127,10 @@ std::string toJson(const runtime::Package &package, const runtime::RenderOptions
 }
 
 /// What makes the picture wrong although it was rendered; --quiet does not hide it.
-void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics) {
-  if (statistics.isUnfinished)
-    fmt::print(stderr, "{}\n", tool::unfinishedText(statistics, render));
+void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics,
+          const std::string &unfinished) {
+  if (!unfinished.empty())
+    fmt::print(stderr, "{}\n", unfinished);
   if (statistics.samplesNotFinite) {
     fmt::print(stderr, "{}\n", tool::notFiniteText(statistics));
     for (const runtime::SampleId &one : statistics.notFinite)
@@ -142,8 +143,8 @@ void warn(const runtime::RenderOptions &render, const runtime::RenderStatistics 
 
 void report(const Options &options, const runtime::Package &package,
             const runtime::RenderOptions &render, const runtime::RenderStatistics &statistics,
-            const std::vector<runtime::GpuStatistics> &gpus) {
-  warn(render, statistics);
+            const std::vector<runtime::GpuStatistics> &gpus, const std::string &unfinished) {
+  warn(render, statistics, unfinished);
   if (options.json)
     return tool::printOut(toJson(package, render, statistics, gpus));
   if (options.quiet)
@@ -225,6 +226,39 @@ void readBuffers(const Options &options, runtime::LaunchBuffers &buffers,
   buffers.setSize(render);
 }
 
+/// What a rendering gives.
+struct Result {
+  runtime::Image image;
+  runtime::RenderStatistics statistics;
+  std::string unfinished; // why it is; empty: it is complete
+};
+
+/// A picture with several samples is rendered in passes: it is written at intervals, and all of it
+/// has samples when it is stopped. Several GPUs would copy the sums of all pixels in each pass.
+Result renderWith(runtime::Backend &backend, const Options &options,
+                  const runtime::RenderOptions &render) {
+  Result result;
+  if (!render.wantsPicture || render.samplesPerPixel == 1 || options.gpu.count != 1) {
+    result.image = backend.render(&result.statistics);
+    if (result.statistics.isUnfinished)
+      result.unfinished = tool::unfinishedText(result.statistics, render);
+    return result;
+  }
+  runtime::PassOptions passes;
+  if (options.output != "-")
+    passes.picture = [&](const runtime::Image &image) {
+      tool::writePictureSoFar(options.output, image, options.format);
+    };
+  runtime::PartialRendering rendering;
+  result.image = backend.renderInPasses(passes, nullptr, rendering, &result.statistics);
+  if (rendering.state.samplesPerPixel < render.samplesPerPixel) {
+    result.unfinished =
+        tool::unfinishedPassesText(rendering.state, result.statistics, render, false);
+    result.statistics.isUnfinished = true;
+  }
+  return result;
+}
+
 int render(const Options &options) {
   checkOutputs(options);
   runtime::Package package = runtime::readPackage(options.package);
@@ -236,9 +270,8 @@ int render(const Options &options) {
     buffers.find(output.name, "--out");
   readBuffers(options, buffers, render);
   const std::optional<runtime::Image> reference = readReference(options, package, render);
-  runtime::RenderStatistics statistics;
   std::vector<runtime::GpuStatistics> gpus;
-  runtime::Image image;
+  Result result;
   if (options.target == Target::Gpu) {
     runtime::Gpus devices(options.gpu.count);
     const runtime::GpuCode code = {
@@ -246,12 +279,14 @@ int render(const Options &options) {
         options.gpu.maxRegisters ? options.gpu.maxRegisters : package.registers, package.wave};
     const std::unique_ptr<runtime::Backend> backend =
         devices.prepare(code, buffers.scene(), render);
-    image = backend->render(&statistics);
+    result = renderWith(*backend, options, render);
     gpus = devices.statistics();
   } else {
     const runtime::NativeCode code(package.host);
-    image = runtime::HostMegakernel(code.entries(), buffers.scene(), render).render(&statistics);
+    runtime::HostMegakernel backend(code.entries(), buffers.scene(), render);
+    result = renderWith(backend, options, render);
   }
+  const auto &[image, statistics, unfinished] = result;
   if (statistics.samples == 0)
     throw Error(message::stoppedBeforeFirstSample());
   if (!options.output.empty())
@@ -259,7 +294,7 @@ int render(const Options &options) {
   if (!statistics.isUnfinished)
     for (const tool::BufferFile &output : options.outputs)
       runtime::writeBuffer(output.file, buffers.output(buffers.find(output.name, "--out")));
-  report(options, package, render, statistics, gpus);
+  report(options, package, render, statistics, gpus, unfinished);
   return !reference || compare(image, *reference, options) ? Fine : Refused;
 }
 

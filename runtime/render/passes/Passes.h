@@ -45,14 +45,17 @@ struct PassOptions {
 
   double secondsBetweenCheckpoints = 30;
   /// Called with a rendering that can be resumed: at these intervals, and at the end with true.
-  /// Passes are interrupted for it. With it, RenderOptions::cancel ends a rendering at once, not
-  /// after the pass.
+  /// Passes are interrupted for it.
   std::function<void(const PartialRendering &, bool isLast)> checkpoint;
+
+  /// How long a pass may go on after RenderOptions::cancel was set, so that all pixels have the
+  /// same number of samples, and none is black. Without effect on what a checkpoint resumes.
+  double secondsToEndPass() const { return checkpoint ? 0 : 2; }
 };
 
 /// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are
-/// short, so that the limits are met and Ctrl-C need not wait, and long enough that starting
-/// threads costs nothing. None passes a number of samples at which the error is measured.
+/// short, so that the limits are met and Ctrl-C need not wait, and long enough, and so few, that
+/// starting threads costs nothing. None passes a number of samples at which the error is measured.
 std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes, std::uint32_t most);
 
 /// The next number of samples at which the error is measured: 16, 20, 25, ...

@@ -10,12 +10,14 @@
 
 namespace rtsl::runtime {
 
-PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive) {
+PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive,
+                          bool isMeasured) {
   PixelSums sums;
   const std::uint64_t halves = isAdaptive ? 2 * pixels : pixels;
   try {
     sums.colors.resize(halves * components);
-    sums.squares.resize(halves);
+    if (isMeasured)
+      sums.squares.resize(halves);
     sums.counted.resize(halves);
     sums.taken.resize(pixels);
     if (isAdaptive) {
@@ -55,7 +57,7 @@ void PixelSums::putPart(std::size_t first, const PixelSums &part) {
 RtslPixelSums PixelSums::pointers() {
   RtslPixelSums sums{};
   sums.colors = colors.data();
-  sums.squares = squares.data();
+  sums.squares = isMeasured() ? squares.data() : nullptr;
   sums.counted = counted.data();
   sums.taken = taken.data();
   if (isAdaptive()) {
@@ -88,7 +90,11 @@ SampleCounts countSamples(const PixelSums &sums) {
       continue;
     ++counts.openPixels;
     leastOpen = std::min(leastOpen, taken);
-    mostOpen = std::max(mostOpen, taken);
+    if (taken > mostOpen) {
+      mostOpen = taken;
+      counts.pixelsWithMost = 0;
+    }
+    counts.pixelsWithMost += taken == mostOpen;
   }
   counts.least = counts.openPixels ? leastOpen : most;
   counts.most = counts.openPixels ? mostOpen : most;

@@ -15,7 +15,8 @@ namespace rtsl::runtime {
 /// samples of an adaptive rendering are in two halves.
 struct PixelSums {
   std::vector<double> colors;         // as many as a color has components
-  std::vector<double> squares;        // of the values of samples: the means of their components
+  std::vector<double> squares;        // of the values of samples: the means of their components.
+                                      // Empty if no error will be measured
   std::vector<std::uint32_t> counted; // finite samples in `colors`
   std::vector<std::uint32_t> taken;   // all samples
 
@@ -27,7 +28,8 @@ struct PixelSums {
   static constexpr std::uint32_t allClosed = 3;
 
   /// Sums without samples. Throws OutOfMemory.
-  static PixelSums make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive = false);
+  static PixelSums make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive = false,
+                        bool isMeasured = true);
 
   /// A copy of those of `count` pixels from `first` on. Throws OutOfMemory.
   PixelSums part(std::size_t first, std::size_t count) const;
@@ -38,6 +40,7 @@ struct PixelSums {
   std::size_t pixels() const { return taken.size(); }
   bool isEmpty() const { return taken.empty(); }
   bool isAdaptive() const { return !closed.empty(); }
+  bool isMeasured() const { return !squares.empty(); }
   std::uint32_t halves() const { return isAdaptive() ? 2 : 1; }
   /// Whether the pixel takes samples.
   bool isOpen(std::size_t pixel) const { return !isAdaptive() || closed[pixel] != allClosed; }
@@ -62,7 +65,8 @@ struct SampleCounts {
   std::uint64_t samples = 0, notFinite = 0, pixelsWithoutSample = 0;
   // Of a pixel that takes samples; of any pixel, if none does.
   std::uint32_t least = 0, most = 0;
-  std::uint64_t openPixels = 0; // that take samples
+  std::uint64_t openPixels = 0;     // that take samples
+  std::uint64_t pixelsWithMost = 0; // of these
 };
 SampleCounts countSamples(const PixelSums &sums);
 

@@ -25,11 +25,13 @@ Clock::time_point after(Clock::time_point from, double seconds) {
                     std::chrono::duration<double>(std::min(seconds, longest)));
 }
 
-/// While it exists, sets `stop` at a time, or when `cancel` is set.
+/// While it exists, sets `stop` at a time, or `secondsToEnd` after `cancel` was set.
 class Pause {
 public:
-  Pause(std::atomic<bool> &stop, const std::atomic<bool> *cancel, Clock::time_point time)
-      : stop(stop), cancel(cancel), time(time), thread([this] { run(); }) {}
+  Pause(std::atomic<bool> &stop, const std::atomic<bool> *cancel, Clock::time_point time,
+        double secondsToEnd)
+      : stop(stop), cancel(cancel), secondsToEnd(secondsToEnd), time(time),
+        thread([this] { run(); }) {}
   ~Pause() {
     {
       std::lock_guard<std::mutex> lock(mutex);
@@ -44,16 +46,22 @@ public:
 private:
   void run() {
     constexpr std::chrono::milliseconds moment(10); // to notice that it is cancelled
+    bool isCancelled = false;
     std::unique_lock<std::mutex> lock(mutex);
     while (!isOver && !stop) {
-      stop = Clock::now() >= time || (cancel && *cancel);
+      if (!isCancelled && cancel && *cancel) {
+        isCancelled = true;
+        time = std::min(time, after(Clock::now(), secondsToEnd));
+      }
+      stop = Clock::now() >= time;
       ended.wait_until(lock, std::min(time, Clock::now() + moment), [this] { return isOver; });
     }
   }
 
   std::atomic<bool> &stop;
   const std::atomic<bool> *cancel;
-  const Clock::time_point time;
+  const double secondsToEnd;
+  Clock::time_point time;
   std::mutex mutex;
   std::condition_variable ended;
   bool isOver = false;
@@ -67,36 +75,47 @@ bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdap
 
 } // namespace
 
-/// Allocates the sums of a rendering that begins.
-void Backend::takeSums(PartialRendering &rendering) {
-  if (rendering.sums.isEmpty())
-    rendering.sums = PixelSums::make(pixelCount(), channels(), options.isAdaptive);
+/// Allocates the sums of a rendering that begins. Gives the samples that there are.
+SampleCounts Backend::takeSums(PartialRendering &rendering, const PassOptions &passes) {
+  const bool isMeasured = passes.error > 0 || passes.checkpoint; // or may be when it is resumed
+  if (rendering.sums.isEmpty()) {
+    rendering.sums = PixelSums::make(pixelCount(), channels(), options.isAdaptive, isMeasured);
+    return {};
+  }
   if (rendering.sums.pixels() != pixelCount() ||
       rendering.sums.isAdaptive() != options.isAdaptive ||
       rendering.sums.colors.size() != pixelCount() * channels() * rendering.sums.halves())
     throw Error(message::sumsOfOtherPixels());
-  const std::uint32_t most = countSamples(rendering.sums).most;
-  if (most > options.samplesPerPixel)
-    throw Error(message::tooManySamplesAlready(most, options.samplesPerPixel));
+  if (isMeasured && !rendering.sums.isMeasured())
+    throw Error(message::sumsNotMeasured());
+  const SampleCounts counts = countSamples(rendering.sums);
+  if (counts.most > options.samplesPerPixel)
+    throw Error(message::tooManySamplesAlready(counts.most, options.samplesPerPixel));
+  return counts;
 }
 
-/// Renders until each pixel has `samplesOfPixel` samples, or, if there are checkpoints, until it is
-/// cancelled or time for one. Gives whether the pass is done.
-bool Backend::runPass(const PassOptions &passes, Clock::time_point pause, RenderStatistics &met) {
+/// Renders until each pixel has `samplesOfPixel` samples, or it is time for a checkpoint, or some
+/// time after it was cancelled. Gives whether the pass is done.
+bool Backend::runPass(const PassOptions &passes, const PassState &state, Clock::time_point pause,
+                      RenderStatistics &met) {
   std::atomic<bool> stop{false};
   RenderOptions ofPass = options;
-  ofPass.progress = nullptr;
-  ofPass.cancel = passes.checkpoint ? &stop : nullptr;
+  ofPass.cancel = &stop;
+  if (options.progress)
+    ofPass.progress = [&](double share) {
+      const double samples =
+          state.samplesPerPixel + share * double(samplesOfPixel - state.samplesPerPixel);
+      options.progress(samples / options.samplesPerPixel);
+    };
   begin();
   {
-    std::optional<Pause> pausing;
-    if (passes.checkpoint)
-      pausing.emplace(stop, options.cancel, pause);
+    const Pause pausing(stop, options.cancel, pause, passes.secondsToEndPass());
     Watch watch(ofPass);
     run(watch);
   }
   RenderStatistics said = finish();
   const bool isDone = said.pixels == pixelCount();
+  met.kernelSeconds += said.kernelSeconds;
   addMet(std::move(said), options.mostNotFinite, met);
   return isDone;
 }
@@ -114,9 +133,8 @@ void Backend::measure(const PassOptions &passes, PartialRendering &rendering) {
 
 void Backend::runPasses(const PassOptions &passes,
                         const std::function<void(const PassState &)> &progress,
-                        PartialRendering &rendering) {
+                        const SampleCounts &before, PartialRendering &rendering) {
   PassState &state = rendering.state;
-  const SampleCounts before = countSamples(rendering.sums);
   state.samplesPerPixel = before.least;
   std::uint32_t next = before.most; // the end of a pass that was interrupted
   const double secondsBefore = state.seconds;
@@ -125,15 +143,17 @@ void Backend::runPasses(const PassOptions &passes,
   uploadSums();
   do {
     if (next == state.samplesPerPixel) {
-      const bool isAnyLeft =
-          next < options.samplesPerPixel && countSamples(rendering.sums).openPixels > 0;
+      const bool isAnyLeft = next < options.samplesPerPixel &&
+                             (!options.isAdaptive || countSamples(rendering.sums).openPixels > 0);
       if (!isAnyLeft || (next > 0 && isGoodEnough(state, passes, options.isAdaptive)))
         break;
       next += samplesOfPass(state, passes, options.samplesPerPixel);
     }
     samplesOfPixel = next;
-    const bool isDone =
-        runPass(passes, after(saved, passes.secondsBetweenCheckpoints), rendering.met);
+    const Clock::time_point pause = passes.checkpoint
+                                        ? after(saved, passes.secondsBetweenCheckpoints)
+                                        : Clock::time_point::max();
+    const bool isDone = runPass(passes, state, pause, rendering.met);
     state.seconds = secondsBefore + secondsSince(start);
     if (isDone) {
       const bool isMeasured = passes.error > 0 && next == nextMeasurement(state.samplesPerPixel);
@@ -163,13 +183,13 @@ void Backend::runPasses(const PassOptions &passes,
 Image Backend::renderInPasses(const PassOptions &passes,
                               const std::function<void(const PassState &)> &progress,
                               PartialRendering &rendering, RenderStatistics *statistics) {
-  takeSums(rendering);
+  const SampleCounts before = takeSums(rendering, passes);
   if (picture.pixels.empty())
     makePicture(channels());
   sums = &rendering.sums;
   const double processorStart = processorSeconds();
   try {
-    runPasses(passes, progress, rendering);
+    runPasses(passes, progress, before, rendering);
     if (passes.checkpoint)
       passes.checkpoint(rendering, true);
   } catch (...) {
@@ -187,12 +207,12 @@ Image Backend::renderInPasses(const PassOptions &passes,
   said.samplesNotFinite = counts.notFinite;
   said.pixelsWithoutSample = counts.pixelsWithoutSample;
   said.openPixels = options.isAdaptive ? counts.openPixels : 0;
-  for (std::size_t pixel = 0; pixel < rendering.sums.pixels(); ++pixel)
-    said.pixels += !rendering.sums.isOpen(pixel) || rendering.sums.taken[pixel] == counts.most;
+  said.pixels = pixelCount() - counts.openPixels + counts.pixelsWithMost;
   said.isUnfinished = counts.least < counts.most || counts.least == 0;
   said.renderSeconds = rendering.state.seconds;
   said.processorSeconds = processor;
   said.buildSeconds = buildSeconds;
+  said.tree = trees;
   said.isRefitted = isRefitted;
   if (statistics)
     *statistics = std::move(said);

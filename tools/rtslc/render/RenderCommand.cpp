@@ -127,7 +127,7 @@ void rejectWithFrames(const RenderCommandOptions &options) {
                                "a JSON document describes one picture, not several; leave it out");
 }
 
-/// Rejects what cannot be done with passes.
+/// Rejects what cannot be done with --time, --noise and --checkpoint.
 void rejectInPasses(const RenderCommandOptions &options) {
   if (options.watches && options.isOpenEnded())
     throw CLI::ValidationError(options.seconds ? "--time" : "--noise",
@@ -192,8 +192,7 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
                                              "give the wanted one to `--noise`");
   if (command.count("--checkpoint-every") && options.checkpoint.file.empty())
     throw CLI::ValidationError("--checkpoint-every", "there is no `--checkpoint`");
-  if (options.isInPasses())
-    rejectInPasses(options);
+  rejectInPasses(options);
   if (options.frames)
     rejectWithFrames(options);
   if (options.watches) {

@@ -46,8 +46,14 @@ struct RenderCommandOptions {
   CheckpointOptions checkpoint;
   TevOptions tev;
   bool isOpenEnded() const { return seconds || noise > 0; }
-  bool isInPasses() const {
-    return isOpenEnded() || !checkpoint.file.empty() || (!tev.host.empty() && !watches);
+  bool isLayer = false; // a view of --aov, which is no picture of its own
+  /// Whether there are pictures so far. They cost the sums of all pixels; one sample needs none.
+  /// Several GPUs copy these sums in each pass. --watch never shows an unfinished picture, and
+  /// --lane-use counts the steps of one pass.
+  bool isInPasses(std::uint32_t samplesPerPixel) const {
+    const bool isUsual =
+        samplesPerPixel > 1 && gpu.count == 1 && !watches && !isLayer && !countsSteps;
+    return isUsual || isOpenEnded() || !checkpoint.file.empty() || (!tev.host.empty() && !watches);
   }
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;

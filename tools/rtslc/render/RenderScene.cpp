@@ -69,20 +69,6 @@ std::optional<Preview> readInput(const RenderCommandOptions &options, Messages &
       {}};
 }
 
-const char *nameOfStop() {
-  const char *const signal = interruption();
-  return signal ? signal : "the caller";
-}
-
-std::string unfinishedPassesText(const runtime::PassState &state, std::uint32_t requested,
-                                 const runtime::RenderStatistics &statistics, bool isOpenEnded) {
-  return fmt::format("stopped by {} after {}{} samples per pixel{}", nameOfStop(),
-                     state.samplesPerPixel, isOpenEnded ? "" : fmt::format(" of {}", requested),
-                     !statistics.isUnfinished    ? ""
-                     : state.samplesPerPixel > 0 ? "; some pixels have more"
-                                                 : "; some pixels have more, the others are black");
-}
-
 /// A distance is one number, the same in all components.
 runtime::Layer layerOf(const std::string &view, runtime::Image image) {
   if (view != "depth")
@@ -146,6 +132,7 @@ private:
       ofView.isAdaptive = false;
       ofView.checkpoint = {};
       ofView.tev = {};
+      ofView.isLayer = true;
       ofView.prints = false;
       if (options.keptTrees) {
         ofView.keptTrees = options.keptTrees->ofViews[name];
@@ -275,7 +262,7 @@ private:
       render.countedStates = summary.stateNames.size();
     }
     Progress progress(what);
-    if (!options.quiet)
+    if (!options.quiet && !options.isOpenEnded())
       render.progress = [&](double share) { progress.update(share); };
     const Clock::time_point begin = Clock::now();
     auto building = showPhase("building trees");
@@ -283,8 +270,9 @@ private:
         target->prepare(*scene, render, options.keptTrees.get());
     building.reset();
     const double seconds = secondsSince(begin);
-    runtime::Image image = options.isInPasses() ? renderInPasses(*backend, progress)
-                                                : backend->render(&summary.statistics);
+    runtime::Image image = options.isInPasses(render.samplesPerPixel)
+                               ? renderInPasses(*backend, progress)
+                               : backend->render(&summary.statistics);
     if (summary.statistics.isUnfinished && summary.unfinished.empty())
       summary.unfinished = unfinishedText(summary.statistics, render);
     summary.statistics.buildSeconds = seconds;
@@ -309,28 +297,25 @@ private:
           viewer->show(image);
         if (options.output == "-" || secondsSince(written) < secondsBetweenFiles)
           return;
-        try {
-          runtime::writeImage(options.output, image, options.format);
-        } catch (const Error &) { // it is reported if the last picture fails too
-        }
+        writePictureSoFar(options.output, image, options.format);
         written = Clock::now();
       };
     runtime::PartialRendering rendering;
     if (!options.checkpoint.file.empty())
       rendering = resume(passes);
     const auto show = [&](const runtime::PassState &state) {
-      if (!options.quiet)
+      if (!options.quiet && options.isOpenEnded())
         progress.update(fmt::format(
             "{} spp, {:.0f} s{}", state.samplesPerPixel, state.seconds,
             std::isfinite(state.error) ? fmt::format(", noise {:.4f}", state.error) : ""));
     };
     runtime::Image image = backend.renderInPasses(passes, show, rendering, &summary.statistics);
     const runtime::PassState &state = rendering.state;
-    const std::uint32_t requested = summary.render.samplesPerPixel;
-    const bool isShort = !options.isOpenEnded() && state.samplesPerPixel < requested;
+    const bool isShort =
+        !options.isOpenEnded() && state.samplesPerPixel < summary.render.samplesPerPixel;
     if (summary.statistics.isUnfinished || isShort)
       summary.unfinished =
-          unfinishedPassesText(state, requested, summary.statistics, options.isOpenEnded());
+          unfinishedPassesText(state, summary.statistics, summary.render, options.isOpenEnded());
     summary.statistics.isUnfinished |= isShort;
     summary.render.samplesPerPixel = state.samplesPerPixel;
     summary.error = state.error;

@@ -86,7 +86,7 @@ std::string toJson(const RenderCommandOptions &options, const PictureSummary &su
                             {"openPixels", statistics.openPixels}};
   if (summary.resumedAt)
     document["resumedAt"] = summary.resumedAt;
-  if (statistics.isUnfinished || (options.isInPasses() && interruption()))
+  if (statistics.isUnfinished || (options.isOpenEnded() && interruption()))
     document["stoppedBy"] = interruption();
   if (options.prints)
     document["printed"] = summary.printed;

@@ -190,6 +190,29 @@ TEST(Passes, EvenOutWhatAnInterruptionHasLeft) {
   EXPECT_EQ(parts.sums.taken, whole.sums.taken);
 }
 
+TEST(Passes, KeepSquaresOnlyWhereTheErrorIsMeasured) {
+  PartialRendering plain, measured;
+  PassOptions withError;
+  withError.error = 1e-9;
+  RenderStatistics statistics;
+  EXPECT_EQ(inPasses(withSamples(20), plain, {}, &statistics).pixels,
+            inPasses(withSamples(20), measured, withError).pixels);
+  EXPECT_EQ(statistics.pixels, 200u);
+  EXPECT_TRUE(plain.sums.squares.empty());
+  EXPECT_EQ(measured.sums.squares.size(), 200u);
+  EXPECT_THROW(inPasses(withSamples(30), plain, withError), Error);
+}
+
+TEST(Passes, ShowTheShareOfAllSamples) {
+  RenderOptions options = withSamples(300);
+  std::vector<double> shares;
+  options.progress = [&](double share) { shares.push_back(share); };
+  PartialRendering rendering;
+  inPasses(options, rendering);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+  EXPECT_LE(shares.back(), 1);
+}
+
 TEST(Passes, RefuseSumsThatCannotBeTheirs) {
   PartialRendering more, larger;
   inPasses(withSamples(4), more);
