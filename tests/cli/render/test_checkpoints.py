@@ -110,6 +110,31 @@ class Resuming(Checkpoints):
                     self.assertEqual(whole[count], resumed[count], count)
                 (self.folder / "a.ckpt").unlink()
 
+    def test_resume_needs_a_checkpoint(self):
+        """It goes on as --checkpoint does, and never begins anew."""
+        messages = self.diagnose(*self.arguments("a.exr", "--resume=a.ckpt"))
+        self.assert_message(messages, "E0907", "cannot resume from `a.ckpt`: there is no such file")
+        self.assertEqual(self.inode(), 0)
+        self.render("a.exr", "--spp=2", "--checkpoint=a.ckpt")
+        self.assertEqual(self.render("a.exr", "--spp=3", "--resume=a.ckpt")["resumedAt"], 2)
+        same = self.render("a.exr", "--spp=4", "--resume=a.ckpt", "--checkpoint=a.ckpt")
+        self.assertEqual(same["resumedAt"], 3)
+        self.render("whole.exr", "--spp=4")
+        self.assert_same_bits("a.exr", "whole.exr")
+        for options, part in (
+            (["--resume=a.ckpt", "--seed=2"], "the seed is 1 there and 2 here"),
+            (["--resume=scene.json"], "`scene.json` is an input and would be overwritten"),
+        ):
+            messages = self.diagnose(*self.arguments("a.exr", *options))
+            self.assertIn(part, messages[0]["message"])
+        for options, part in (
+            (["--resume=a.ckpt", "--checkpoint=b.ckpt"], "leave out `--checkpoint`"),
+            (["--resume=%04d.ckpt", "--frames=0..1"], "frames that were not begun"),
+        ):
+            name = "%04d.exr" if "--frames=0..1" in options else "a.exr"
+            _, error = self.run_rtslc(*self.arguments(name, *options), status=USAGE)
+            self.assertIn(part, error)
+
     def test_another_backend_goes_on(self):
         ways = (
             ["--traversal=device"],

@@ -16,6 +16,10 @@ void addCheckpointOptions(CLI::App &command, CheckpointOptions &options) {
                   "save the rendering in this file, and resume from it if it exists")
       ->type_name("FILE");
   command
+      .add_option("--resume", options.resumed,
+                  "the same with a file that must exist: the checkpoint of an earlier rendering")
+      ->type_name("FILE");
+  command
       .add_option_function<std::string>(
           "--checkpoint-every",
           [&options](const std::string &text) {
@@ -23,6 +27,16 @@ void addCheckpointOptions(CLI::App &command, CheckpointOptions &options) {
           },
           "the time between checkpoints (default: 30s)")
       ->type_name("TIME");
+}
+
+void completeCheckpointOptions(CheckpointOptions &options) {
+  if (options.resumed.empty())
+    return;
+  if (options.file.empty())
+    options.file = options.resumed;
+  if (options.file != options.resumed)
+    throw CLI::ValidationError(
+        "--resume", "the rendering is saved in the same file again; leave out `--checkpoint`");
 }
 
 /// Where a file lies or will lie.
@@ -43,6 +57,9 @@ void checkCheckpointFile(const CheckpointOptions &options, const std::string &ou
   if (file.empty())
     return;
   std::error_code unknown;
+  if (!options.resumed.empty() && !std::filesystem::exists(file, unknown))
+    throw Error(message::noCheckpoint(file), Place{file})
+        .note("`--checkpoint` begins a rendering, and resumes it if the file exists");
   if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown) &&
       !std::filesystem::is_directory(file, unknown))
     throw Error(message::checkpointNotRegular(file), Place{file});

@@ -1,4 +1,4 @@
-//===- CheckpointFile.h - rtslc render --checkpoint ------------------------===//
+//===- CheckpointFile.h - rtslc render --checkpoint and --resume -----------===//
 #pragma once
 
 #include "runtime/render/passes/Checkpoint.h"
@@ -13,14 +13,17 @@
 namespace rtsl::tool {
 
 struct CheckpointOptions {
-  std::string file; // empty: there is none
+  std::string file;    // empty: there is none
+  std::string resumed; // the same, if it must exist; otherwise empty
   double seconds = 30;
 };
 
-/// Adds --checkpoint and --checkpoint-every.
+/// Adds --checkpoint, --resume and --checkpoint-every.
 void addCheckpointOptions(CLI::App &command, CheckpointOptions &options);
+/// When all options are read. Throws CLI::ValidationError if there are two files.
+void completeCheckpointOptions(CheckpointOptions &options);
 
-/// Throws FileUnwritable or OverwritesInput if checkpoints cannot be written, or would replace the
+/// Throws BadCheckpoint if there is no checkpoint that must exist. Throws FileUnwritable or OverwritesInput if checkpoints cannot be written, or would replace the
 /// output (or its dependency file) or an input. As checkOutputs().
 void checkCheckpointFile(const CheckpointOptions &options, const std::string &output,
                          const DependencyOptions &dependencies,

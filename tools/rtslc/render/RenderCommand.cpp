@@ -117,6 +117,9 @@ void rejectWithFrames(const RenderCommandOptions &options) {
   checkFrameName("--output", options.output);
   if (!options.checkpoint.file.empty())
     checkFrameName("--checkpoint", options.checkpoint.file);
+  if (!options.checkpoint.resumed.empty())
+    throw CLI::ValidationError("--resume", "frames that were not begun have no checkpoint; "
+                                           "`--checkpoint` resumes those that have one");
   if (options.frame)
     throw CLI::ValidationError("--frames", "`--frame` is one frame; give one of the two");
   if (options.watches)
@@ -190,6 +193,7 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
   if (options.isAdaptive && !command.count("--noise"))
     throw CLI::ValidationError("--adaptive", "the error decides which pixels take more samples; "
                                              "give the wanted one to `--noise`");
+  completeCheckpointOptions(options.checkpoint);
   if (command.count("--checkpoint-every") && options.checkpoint.file.empty())
     throw CLI::ValidationError("--checkpoint-every", "there is no `--checkpoint`");
   rejectInPasses(options);
