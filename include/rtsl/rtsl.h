@@ -4,8 +4,9 @@
  * (rtsl/runtime.h) with handles in place of classes. Shaders come from `rtslc compile --emit=cpp`,
  * which exports `const RtslShaders *name_shaders(void)`.
  *
- * A function that fails returns 0 (or a null pointer), and rtslError returns the reason. Handles
- * may be used by one thread at a time.
+ * A function that fails returns 0 (or a null pointer), and rtslError returns the reason. Pointers
+ * that are not said to be optional must not be null, unless they are to 0 elements: that is an
+ * error, too. Handles may be used by one thread at a time.
  *
 \*===------------------------------------------------------------------------===*/
 #ifndef RTSL_RTSL_H
@@ -336,7 +337,8 @@ uint32_t rtslScenePasses(const RtslScene *scene);
 int rtslSceneSetPass(RtslScene *scene, uint32_t pass);
 
 /* Runs the ray generation once for each sample, and makes no picture: what it computes is in its
- * output buffers. One rendering of a scene after the other uses the trees of the one before. */
+ * output buffers, which have the memory that rtslMemberBuffer gave them. `settings` null, here and
+ * below: the defaults. One rendering of a scene after the other uses the trees of the one before. */
 int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings);
 
 /* Renders into `pixels`: width * height * slices * channels floats of linear light, rows from the

@@ -60,17 +60,24 @@ extern "C" {
 RtslBufferNumber rtslSceneLoadBuffer(RtslScene *scene, const char *path, const char *className,
                                      const char *member, const RtslBufferFile *file,
                                      uint32_t sizes[3]) {
-  return guarded<RtslBufferNumber>(0, [&] {
-    const runtime::Program &program = scene->scene.program();
-    const runtime::ValueType &type = memberOf(program, className, member).type;
-    const runtime::Value read =
-        runtime::readBuffer(describe(path, file), type, program.colorComponents,
-                            fmt::format("member `{}` of `{}`", member, className));
-    std::fill_n(sizes, 3, 1u);
-    std::copy(read.sizes.begin(), read.sizes.end(), sizes);
-    scene->buffers.push_back(read.words);
-    return RtslBufferNumber(scene->buffers.size());
-  });
+  return guarded<RtslBufferNumber>(0,
+                                   {{scene, "scene"},
+                                    {path, "path"},
+                                    {className, "className"},
+                                    {member, "member"},
+                                    {sizes, "sizes"}},
+                                   [&] {
+                                     const runtime::Program &program = scene->scene.program();
+                                     const runtime::ValueType &type =
+                                         memberOf(program, className, member).type;
+                                     const runtime::Value read = runtime::readBuffer(
+                                         describe(path, file), type, program.colorComponents,
+                                         fmt::format("member `{}` of `{}`", member, className));
+                                     std::fill_n(sizes, 3, 1u);
+                                     std::copy(read.sizes.begin(), read.sizes.end(), sizes);
+                                     scene->buffers.push_back(read.words);
+                                     return RtslBufferNumber(scene->buffers.size());
+                                   });
 }
 
 } // extern "C"

@@ -48,6 +48,17 @@ std::string &lastError() {
   return message;
 }
 
+void requireAll(std::initializer_list<Needed> needed) {
+  for (const Needed &one : needed)
+    if (!one.pointer && one.count != 0)
+      throw Error(message::argumentIsNull(one.name));
+}
+
+void requireChoice(unsigned number, unsigned count, const char *what) {
+  if (number >= count)
+    throw Error(message::noChoiceNumbered(what, number));
+}
+
 runtime::Value valueOf(const double *numbers, std::size_t count) {
   if (count == 1)
     return runtime::Value(numbers[0]);

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <string>
@@ -94,11 +95,22 @@ namespace rtsl::c {
 
 std::string &lastError();
 
+/// A pointer that must not be null, unless it is to 0 elements, and its name for the message.
+struct Needed {
+  const void *pointer;
+  const char *name;
+  std::size_t count = 1;
+};
+
+/// Throws NotSettable for the first that is null.
+void requireAll(std::initializer_list<Needed> needed);
+
 /// Runs `work`; what it throws becomes the error, and `failed` the result.
 template <typename Result, typename Work>
-Result guarded(Result failed, Work work) {
+Result guarded(Result failed, std::initializer_list<Needed> needed, Work work) {
   lastError().clear();
   try {
+    requireAll(needed);
     return work();
   } catch (const std::exception &error) {
     lastError() = error.what();
@@ -107,6 +119,10 @@ Result guarded(Result failed, Work work) {
   }
   return failed;
 }
+
+/// One of `count` enumerators, which are numbered from 0. `what` is for messages. Throws
+/// NotSupported.
+void requireChoice(unsigned number, unsigned count, const char *what);
 
 /// The value of one number, or of a list of numbers.
 runtime::Value valueOf(const double *numbers, std::size_t count);

@@ -11,16 +11,25 @@
 
 namespace runtime = rtsl::runtime;
 using rtsl::c::guarded;
+using rtsl::c::requireChoice;
 
 namespace {
 
 runtime::Sampling samplingOf(const RtslSampling &given) {
   runtime::Sampling sampling;
+  requireChoice(given.filter, RTSL_ANISOTROPIC + 1, "filter");
   sampling.filter = static_cast<runtime::Filter>(given.filter);
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    requireChoice(given.wrap[axis], RTSL_BLACK + 1, "wrap");
     sampling.wrap[axis] = static_cast<runtime::Wrap>(given.wrap[axis]);
+  }
   sampling.anisotropy = std::clamp(given.anisotropy, 1u, 256u);
   return sampling;
+}
+
+runtime::ColorSpace colorSpaceOf(const RtslSampling &given) {
+  requireChoice(given.colorSpace, RTSL_SRGB + 1, "color space");
+  return static_cast<runtime::ColorSpace>(given.colorSpace);
 }
 
 RtslObject addImage(RtslScene *scene, runtime::Texels texels, const RtslSampling &given,
@@ -47,8 +56,7 @@ runtime::Texels texelsOf(const RtslTexelShape &shape) {
   constexpr runtime::TexelFormat formats[] = {
       runtime::TexelFormat::Unorm8, runtime::TexelFormat::Unorm16, runtime::TexelFormat::Float16,
       runtime::TexelFormat::Float32};
-  if (unsigned(shape.format) >= std::size(formats))
-    throw rtsl::Error(rtsl::message::noTexelFormatNumbered(unsigned(shape.format)));
+  requireChoice(shape.format, unsigned(std::size(formats)), "format of texels");
   const std::uint32_t channels = shape.channels;
   if (shape.width < 1 || shape.height < 1 || (channels != 1 && channels != 2 && channels != 4))
     throw rtsl::Error(rtsl::message::texelShape(shape.width, shape.height, channels));
@@ -72,31 +80,30 @@ RtslSampling rtslSamplingDefaults(void) {
 
 RtslObject rtslSceneAddImage(RtslScene *scene, const char *const *files, size_t count, int isVolume,
                              const RtslSampling *sampling) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {files, "files"}}, [&] {
     if (count < 1 || (count > 1 && !isVolume))
       throw rtsl::Error(rtsl::message::imageFileCount(count));
     const RtslSampling given = sampling ? *sampling : rtslSamplingDefaults();
     std::vector<runtime::Pixels> slices;
     for (std::size_t i = 0; i < count; ++i)
-      slices.push_back(
-          runtime::readPixels(files[i], static_cast<runtime::ColorSpace>(given.colorSpace)));
+      slices.push_back(runtime::readPixels(files[i], colorSpaceOf(given)));
     return addImage(scene, runtime::texelsOf(slices), given, isVolume != 0);
   });
 }
 
 RtslObject rtslSceneAddImagePart(RtslScene *scene, const char *path, const char *part,
                                  const RtslSampling *sampling) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {path, "path"}, {part, "part"}}, [&] {
     const RtslSampling given = sampling ? *sampling : rtslSamplingDefaults();
-    const runtime::Pixels pixels = rtsl::scene::gltf::readImage(
-        scene->openModels()->open(path), part, static_cast<runtime::ColorSpace>(given.colorSpace));
+    const runtime::Pixels pixels =
+        rtsl::scene::gltf::readImage(scene->openModels()->open(path), part, colorSpaceOf(given));
     return addImage(scene, runtime::texelsOf({pixels}), given, false);
   });
 }
 
 RtslObject rtslSceneAddRawImage(RtslScene *scene, const char *file, const RtslTexelShape *shape,
                                 const RtslSampling *sampling) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {file, "file"}, {shape, "shape"}}, [&] {
     return addImage(scene, runtime::readRawTexels(file, texelsOf(*shape)),
                     sampling ? *sampling : rtslSamplingDefaults(), shape->depth != 0);
   });
@@ -104,7 +111,7 @@ RtslObject rtslSceneAddRawImage(RtslScene *scene, const char *file, const RtslTe
 
 RtslObject rtslSceneAddRawTexels(RtslScene *scene, const void *texels, const RtslTexelShape *shape,
                                  const RtslSampling *sampling) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {texels, "texels"}, {shape, "shape"}}, [&] {
     return addImage(scene, runtime::texelsOfBytes(texels, texelsOf(*shape)),
                     sampling ? *sampling : rtslSamplingDefaults(), shape->depth != 0);
   });

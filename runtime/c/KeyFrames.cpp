@@ -9,9 +9,8 @@ using rtsl::c::guarded;
 
 extern "C" int rtslAtFrame(double frame, const double *frames, const double *numbers, uint32_t keys,
                            size_t count, RtslInterpolation interpolation, double *result) {
-  return guarded(0, [&] {
-    if (interpolation != RTSL_LINEAR_FRAMES && interpolation != RTSL_STEP_FRAMES)
-      throw rtsl::Error(rtsl::message::noInterpolationNumbered(unsigned(interpolation)));
+  return guarded(0, {{frames, "frames"}, {numbers, "numbers", count}, {result, "result"}}, [&] {
+    rtsl::c::requireChoice(interpolation, RTSL_STEP_FRAMES + 1, "interpolation");
     if (keys == 0)
       throw rtsl::Error(rtsl::message::noFrames());
     for (std::uint32_t i = 1; i < keys; ++i)

@@ -80,7 +80,7 @@ extern "C" {
 //===----------------------------------------------------------------------===//
 
 RtslBufferNumber rtslSceneAddBuffer(RtslScene *scene, size_t words) {
-  return guarded<RtslBufferNumber>(0, [&] {
+  return guarded<RtslBufferNumber>(0, {{scene, "scene"}}, [&] {
     try {
       scene->buffers.push_back(std::make_shared<runtime::Value::Words>(words));
     } catch (const std::bad_alloc &) {
@@ -92,7 +92,7 @@ RtslBufferNumber rtslSceneAddBuffer(RtslScene *scene, size_t words) {
 
 int rtslMemberBuffer(RtslScene *scene, const char *member, RtslBufferNumber buffer,
                      const uint32_t *sizes, uint32_t dimensions) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {member, "member"}, {sizes, "sizes", dimensions}}, [&] {
     bufferOf(scene, buffer);
     if (dimensions < 1 || dimensions > 3)
       throw rtsl::Error(rtsl::message::bufferRank(dimensions));
@@ -103,14 +103,14 @@ int rtslMemberBuffer(RtslScene *scene, const char *member, RtslBufferNumber buff
 }
 
 void *rtslMapBuffer(RtslScene *scene, RtslBufferNumber buffer) {
-  return guarded<void *>(nullptr, [&]() -> void * {
+  return guarded<void *>(nullptr, {{scene, "scene"}}, [&]() -> void * {
     bufferOf(scene, buffer);
     return scene->buffers[buffer - 1]->data();
   });
 }
 
 int rtslUnmapBuffer(RtslScene *scene, RtslBufferNumber buffer) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     bufferOf(scene, buffer); // on this machine launches read and write it where it is
     return 1;
   });
@@ -122,28 +122,28 @@ int rtslUnmapBuffer(RtslScene *scene, RtslBufferNumber buffer) {
 
 int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const double *numbers,
                   size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {member, "member"}, {numbers, "numbers", count}}, [&] {
     scene->scene.setMember(object, {member, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
 
 int rtslSetMemberObject(RtslScene *scene, RtslObject object, const char *member, RtslObject value) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {member, "member"}}, [&] {
     scene->scene.setMember(object, {member, runtime::Value::reference(value)});
     return 1;
   });
 }
 
 float *rtslMapVertices(RtslScene *scene, int32_t mesh) {
-  return guarded<float *>(nullptr, [&] {
+  return guarded<float *>(nullptr, {{scene, "scene"}}, [&] {
     const std::vector<float> &positions = scene->scene.positions(std::uint32_t(mesh));
     return scene->mappedVertices.try_emplace(std::uint32_t(mesh), positions).first->second.data();
   });
 }
 
 int rtslUnmapVertices(RtslScene *scene, int32_t mesh) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     const auto mapped = scene->mappedVertices.find(std::uint32_t(mesh));
     if (mapped == scene->mappedVertices.end())
       throw rtsl::Error(rtsl::message::noSuchMesh(mesh));
@@ -165,11 +165,12 @@ RtslRenderSettings rtslRenderDefaults(void) {
 }
 
 uint32_t rtslSceneChannels(const RtslScene *scene) {
-  return scene->scene.program().colorComponents;
+  return guarded<std::uint32_t>(0, {{scene, "scene"}},
+                                [&] { return scene->scene.program().colorComponents; });
 }
 
 int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float *pixels) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {pixels, "pixels"}}, [&] {
     const runtime::Image image = render(scene, settings, true);
     std::copy(image.pixels.begin(), image.pixels.end(), pixels);
     return 1;
@@ -177,14 +178,14 @@ int rtslRender(const RtslScene *scene, const RtslRenderSettings *settings, float
 }
 
 int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     render(scene, settings, false);
     return 1;
   });
 }
 
 int rtslRenderToFile(const RtslScene *scene, const RtslRenderSettings *settings, const char *path) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {path, "path"}}, [&] {
     runtime::checkWritable(path);
     runtime::writeImage(path, render(scene, settings, true));
     return 1;
@@ -197,7 +198,7 @@ RtslRenderFacts rtslLastRendering(void) {
 
 int rtslTakePrinted(const RtslScene *scene, void (*take)(const char *line, void *context),
                     void *context) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {reinterpret_cast<const void *>(take), "take"}}, [&] {
     for (const std::string &line : runtime::takePrintLog().texts(scene->scene.program().prints))
       take(line.c_str(), context);
     return 1;

@@ -78,7 +78,7 @@ void moveLight(const char *className, std::vector<runtime::NamedValue> &members,
 extern "C" {
 
 int rtslSceneAddModel(RtslScene *scene, const char *path, const RtslAnimation *animation) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {path, "path"}}, [&] {
     const runtime::Placement placement = scene->takePlacement();
     scene::InstanceDescription above;
     static_cast<runtime::Placement &>(above) = scene->inNode(placement);
@@ -97,7 +97,7 @@ int rtslSceneAddModel(RtslScene *scene, const char *path, const RtslAnimation *a
 
 RtslObject rtslSceneAddModelCamera(RtslScene *scene, const char *path, const char *name,
                                    const RtslAnimation *animation) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {path, "path"}}, [&] {
     const runtime::MovingTransform transform = scene->inNode(scene->takePlacement().transform);
     if (transform.moves())
       throw rtsl::Error(rtsl::message::movingCamera());
@@ -112,7 +112,7 @@ RtslObject rtslSceneAddModelCamera(RtslScene *scene, const char *path, const cha
 }
 
 RtslObject rtslSceneAddNodeLight(RtslScene *scene, const char *className) {
-  return guarded<RtslObject>(0, [&]() -> RtslObject {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {className, "className"}}, [&]() -> RtslObject {
     const runtime::MovingTransform toWorld = scene->inNode(scene->takePlacement().transform);
     runtime::ObjectValues values;
     values.members = std::exchange(scene->members, {});

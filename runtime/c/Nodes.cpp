@@ -49,7 +49,7 @@ void RtslScene::addVariables(const char *className, runtime::ObjectValues &value
 extern "C" {
 
 RtslNode rtslEnter(RtslScene *scene) {
-  return guarded<RtslNode>(0, [&] {
+  return guarded<RtslNode>(0, {{scene, "scene"}}, [&] {
     scene->nodes.push_back({scene->entered, scene->takePlacement().transform});
     scene->variables.emplace_back();
     return scene->entered = RtslNode(scene->nodes.size());
@@ -57,7 +57,7 @@ RtslNode rtslEnter(RtslScene *scene) {
 }
 
 int rtslLeave(RtslScene *scene) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     if (scene->entered == 0)
       throw rtsl::Error(rtsl::message::noNodeToLeave());
     scene->entered = scene->nodes[scene->entered - 1].parent;
@@ -67,21 +67,21 @@ int rtslLeave(RtslScene *scene) {
 }
 
 int rtslVariable(RtslScene *scene, const char *name, const double *numbers, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {name, "name"}, {numbers, "numbers", count}}, [&] {
     scene->variables.back().push_back({name, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
 
 int rtslVariableObject(RtslScene *scene, const char *name, RtslObject object) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {name, "name"}}, [&] {
     scene->variables.back().push_back({name, runtime::Value::reference(object)});
     return 1;
   });
 }
 
 int rtslMoveNode(RtslScene *scene, RtslNode node) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     const runtime::MovingTransform transform = scene->takePlacement().transform;
     if (node == 0 || node > scene->nodes.size())
       throw rtsl::Error(rtsl::message::noNodeOfNumber(node));
@@ -109,7 +109,7 @@ int rtslMoveNode(RtslScene *scene, RtslNode node) {
 }
 
 int rtslMoveInstance(RtslScene *scene, uint32_t instance) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     const runtime::MovingTransform transform = scene->takePlacement().transform;
     const auto found = scene->inNodes.find(instance);
     if (found == scene->inNodes.end()) {

@@ -44,29 +44,37 @@ extern "C" {
 
 int32_t rtslSceneLoadMeshPart(RtslScene *scene, const char *path, const char *part,
                               const double *weights, size_t targets) {
-  return guarded<int32_t>(-1, [&] {
-    runtime::Mesh mesh = loadPart(*scene, path, part, {weights, weights + targets});
-    scene->giveAttributes(mesh, path);
-    return static_cast<int32_t>(scene->scene.addMesh(std::move(mesh), path));
-  });
+  return guarded<int32_t>(
+      -1, {{scene, "scene"}, {path, "path"}, {part, "part"}, {weights, "weights", targets}}, [&] {
+        runtime::Mesh mesh = loadPart(*scene, path, part, {weights, weights + targets});
+        scene->giveAttributes(mesh, path);
+        return static_cast<int32_t>(scene->scene.addMesh(std::move(mesh), path));
+      });
 }
 
 int32_t rtslSceneLoadMovingMeshPart(RtslScene *scene, const char *path, const char *part,
                                     const double *weights, size_t targets, const float *times,
                                     uint32_t count) {
-  return guarded<int32_t>(-1, [&] {
-    std::vector<float> ofKeys = rtsl::c::keyTimes("a mesh", times, count, sizeof *times);
-    std::vector<runtime::Mesh> keys;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const double *ofKey = weights + i * targets;
-      keys.push_back(loadPart(*scene, path, part, {ofKey, ofKey + targets}));
-    }
-    scene->giveAttributes(keys.front(), path);
-    return static_cast<int32_t>(
-        scene->scene.addMesh(runtime::movingMesh(std::move(keys), std::move(ofKeys),
-                                                 std::vector<std::string>(count, path)),
-                             path));
-  });
+  return guarded<int32_t>(
+      -1,
+      {{scene, "scene"},
+       {path, "path"},
+       {part, "part"},
+       {weights, "weights", targets},
+       {times, "times"}},
+      [&] {
+        std::vector<float> ofKeys = rtsl::c::keyTimes("a mesh", times, count, sizeof *times);
+        std::vector<runtime::Mesh> keys;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const double *ofKey = weights + i * targets;
+          keys.push_back(loadPart(*scene, path, part, {ofKey, ofKey + targets}));
+        }
+        scene->giveAttributes(keys.front(), path);
+        return static_cast<int32_t>(
+            scene->scene.addMesh(runtime::movingMesh(std::move(keys), std::move(ofKeys),
+                                                     std::vector<std::string>(count, path)),
+                                 path));
+      });
 }
 
 } // extern "C"

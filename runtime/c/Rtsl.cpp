@@ -24,7 +24,7 @@ const char *rtslError(void) {
 }
 
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
-  return guarded<RtslScene *>(nullptr, [&] {
+  return guarded<RtslScene *>(nullptr, {}, [&] {
     if (!shaders)
       throw rtsl::Error(rtsl::message::noShaders());
     return new RtslScene(rtsl::program(shaders));
@@ -36,35 +36,35 @@ void rtslSceneDestroy(RtslScene *scene) {
 }
 
 int rtslArgument(RtslScene *scene, const char *parameter, const double *numbers, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {parameter, "parameter"}, {numbers, "numbers", count}}, [&] {
     scene->arguments.push_back({parameter, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
 
 int rtslArgumentObject(RtslScene *scene, const char *parameter, RtslObject object) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {parameter, "parameter"}}, [&] {
     scene->arguments.push_back({parameter, runtime::Value::reference(object)});
     return 1;
   });
 }
 
 int rtslMember(RtslScene *scene, const char *member, const double *numbers, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {member, "member"}, {numbers, "numbers", count}}, [&] {
     scene->members.push_back({member, rtsl::c::valueOf(numbers, count)});
     return 1;
   });
 }
 
 int rtslMemberObject(RtslScene *scene, const char *member, RtslObject object) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {member, "member"}}, [&] {
     scene->members.push_back({member, runtime::Value::reference(object)});
     return 1;
   });
 }
 
 RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {className, "className"}}, [&] {
     runtime::ObjectValues values;
     if (!scene->arguments.empty())
       values.constructor = std::move(scene->arguments);
@@ -77,7 +77,7 @@ RtslObject rtslSceneAddObject(RtslScene *scene, const char *className) {
 }
 
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->placement.transform = rtsl::c::finiteTransform(transform);
     scene->placement.mask = mask;
     return 1;
@@ -86,7 +86,7 @@ int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask) {
 
 int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *times, uint32_t count,
                     uint32_t mask) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {transforms, "transforms"}, {times, "times"}}, [&] {
     runtime::MotionFactor factor;
     factor.times = keyTimes("a transform", times, count, sizeof *times);
     for (std::uint32_t i = 0; i < count; ++i)
@@ -99,7 +99,7 @@ int rtslPlaceMoving(RtslScene *scene, const double *transforms, const float *tim
 
 int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t count,
                      uint32_t mask) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {keys, "keys"}}, [&] {
     runtime::MotionFactor scale, rotation, translation;
     const std::vector<float> times = keyTimes("a transform", &keys->time, count, sizeof *keys);
     scale.times = rotation.times = translation.times = times;
@@ -126,7 +126,7 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
 }
 
 int rtslSceneSetShutter(RtslScene *scene, float open, float close) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setShutter(open, close);
     scene->hasShutter = true;
     return 1;
@@ -134,7 +134,7 @@ int rtslSceneSetShutter(RtslScene *scene, float open, float close) {
 }
 
 int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->placement.id = id;
     scene->placement.selection = selection;
     return 1;
@@ -142,21 +142,21 @@ int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
 }
 
 int rtslSetRoots(RtslScene *scene, uint32_t roots) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->roots = roots;
     return 1;
   });
 }
 
 int rtslSetBarycentric(RtslScene *scene, int areBarycentric) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->areBarycentric = areBarycentric != 0;
     return 1;
   });
 }
 
 int rtslSetBackFaces(RtslScene *scene, int areHit) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->placement.hasBackFaces = areHit != 0;
     return 1;
   });
@@ -164,7 +164,7 @@ int rtslSetBackFaces(RtslScene *scene, int areHit) {
 
 uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t children,
                               const double *transform, uint32_t above) {
-  return guarded<uint32_t>(0, [&] {
+  return guarded<uint32_t>(0, {{scene, "scene"}}, [&] {
     return scene->scene.addSelector(selector, children,
                                     scene->inNode(rtsl::c::finiteTransform(transform)), above);
   });
@@ -172,7 +172,8 @@ uint32_t rtslSceneAddSelector(RtslScene *scene, RtslObject selector, uint32_t ch
 
 int rtslMeshAttribute(RtslScene *scene, const char *name, uint32_t components, const float *values,
                       size_t count, int ofFaces, RtslAttributeSpace space) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {name, "name"}, {values, "values", count}}, [&] {
+    rtsl::c::requireChoice(space, RTSL_TANGENT + 1, "space of attributes");
     runtime::NamedAttribute attribute =
         runtime::floatAttribute(name, components, {values, values + count * components});
     attribute.ofTriangles = ofFaces != 0;
@@ -183,7 +184,7 @@ int rtslMeshAttribute(RtslScene *scene, const char *name, uint32_t components, c
 }
 
 int rtslMeshAttributeInts(RtslScene *scene, const char *name, const int32_t *values, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {name, "name"}, {values, "values", count}}, [&] {
     runtime::NamedAttribute attribute;
     attribute.name = name;
     attribute.kind = runtime::NamedAttribute::Kind::Int;
@@ -200,7 +201,7 @@ int rtslSceneAddPrimitive(RtslScene *scene, RtslObject primitive, RtslObject mat
 
 int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t count,
                            RtslObject material) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     const runtime::Placement placement = scene->takePlacement();
     scene->noteInstance(
         scene->scene.addPrimitive(primitive, material, scene->inNode(placement), count), placement);
@@ -210,7 +211,7 @@ int rtslSceneAddPrimitives(RtslScene *scene, RtslObject primitive, uint32_t coun
 
 int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *transform,
                          RtslObject material) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {path, "path"}}, [&] {
     runtime::Mesh mesh = scene->loadMesh(path);
     scene->giveAttributes(mesh, path);
     if (transform)
@@ -221,7 +222,7 @@ int rtslSceneAddMeshFile(RtslScene *scene, const char *path, const double *trans
 }
 
 int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
-  return guarded<int32_t>(-1, [&] {
+  return guarded<int32_t>(-1, {{scene, "scene"}, {path, "path"}}, [&] {
     runtime::Mesh mesh = scene->loadMesh(path);
     scene->giveAttributes(mesh, path);
     return static_cast<int32_t>(scene->scene.addMesh(std::move(mesh), path));
@@ -230,7 +231,7 @@ int32_t rtslSceneLoadMesh(RtslScene *scene, const char *path) {
 
 int32_t rtslSceneLoadMovingMesh(RtslScene *scene, const char *const *paths, const float *times,
                                 uint32_t count) {
-  return guarded<int32_t>(-1, [&] {
+  return guarded<int32_t>(-1, {{scene, "scene"}, {paths, "paths"}, {times, "times"}}, [&] {
     std::vector<float> ofKeys = keyTimes("a mesh", times, count, sizeof *times);
     std::vector<runtime::Mesh> keys;
     for (std::uint32_t i = 0; i < count; ++i)
@@ -242,7 +243,7 @@ int32_t rtslSceneLoadMovingMesh(RtslScene *scene, const char *const *paths, cons
 }
 
 int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->addMeshInstance(static_cast<std::uint32_t>(mesh), material);
     return 1;
   });
@@ -250,72 +251,75 @@ int rtslSceneAddMeshInstance(RtslScene *scene, int32_t mesh, RtslObject material
 
 int rtslSceneAddTriangles(RtslScene *scene, const float *positions, size_t vertexCount,
                           const uint32_t *indices, size_t triangleCount, RtslObject material) {
-  return guarded(0, [&] {
-    runtime::Mesh mesh;
-    mesh.positions.assign(positions, positions + 3 * vertexCount);
-    mesh.indices.assign(indices, indices + 3 * triangleCount);
-    mesh.order = {true, vertexCount, triangleCount, {}, {}};
-    scene->giveAttributes(mesh, "the mesh");
-    scene->addMeshInstance(scene->scene.addMesh(std::move(mesh)), material);
-    return 1;
-  });
+  return guarded(0,
+                 {{scene, "scene"},
+                  {positions, "positions", vertexCount},
+                  {indices, "indices", triangleCount}},
+                 [&] {
+                   runtime::Mesh mesh;
+                   mesh.positions.assign(positions, positions + 3 * vertexCount);
+                   mesh.indices.assign(indices, indices + 3 * triangleCount);
+                   mesh.order = {true, vertexCount, triangleCount, {}, {}};
+                   scene->giveAttributes(mesh, "the mesh");
+                   scene->addMeshInstance(scene->scene.addMesh(std::move(mesh)), material);
+                   return 1;
+                 });
 }
 
 int rtslSceneAddLight(RtslScene *scene, RtslObject light) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.addLight(light);
     return 1;
   });
 }
 
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setCamera(camera);
     return 1;
   });
 }
 
 int rtslSceneSetRayGeneration(RtslScene *scene, RtslObject rayGeneration) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setRayGeneration(rayGeneration);
     return 1;
   });
 }
 
 int rtslSceneSetLightSampler(RtslScene *scene, RtslLightSampler sampler) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     constexpr runtime::LampChoice choices[] = {
         runtime::LampChoice::Automatic, runtime::LampChoice::ByPower, runtime::LampChoice::ByTree};
-    if (unsigned(sampler) >= std::size(choices))
-      throw rtsl::Error(rtsl::message::noLightSamplerNumbered(unsigned(sampler)));
+    rtsl::c::requireChoice(sampler, unsigned(std::size(choices)), "light sampler");
     scene->scene.setLampChoice(choices[sampler]);
     return 1;
   });
 }
 
 int rtslSceneSetException(RtslScene *scene, RtslObject exception) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setException(exception);
     return 1;
   });
 }
 
 int rtslSceneSetBackground(RtslScene *scene, RtslObject miss) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setBackground(miss);
     return 1;
   });
 }
 
 int rtslSceneSetBackgroundColor(RtslScene *scene, const float *color, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {color, "color", count}}, [&] {
     scene->scene.setBackgroundColor({color, color + count});
     return 1;
   });
 }
 
 int rtslSceneSetAmbient(RtslScene *scene, const float *color, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {color, "color", count}}, [&] {
     scene->scene.setAmbient({color, color + count});
     return 1;
   });

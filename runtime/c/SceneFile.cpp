@@ -105,7 +105,7 @@ extern "C" {
 
 RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const char *const *settings,
                          size_t count) {
-  return guarded<RtslScene *>(nullptr, [&] {
+  return guarded<RtslScene *>(nullptr, {{file, "file"}, {settings, "settings", count}}, [&] {
     if (!shaders)
       throw rtsl::Error(rtsl::message::noShaders());
     return new RtslScene(load(rtsl::program(shaders), file, settings, count));
@@ -113,7 +113,7 @@ RtslScene *rtslSceneLoad(const RtslShaders *shaders, const char *file, const cha
 }
 
 int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}, {settings, "settings", count}}, [&] {
     if (scene->file.empty())
       throw rtsl::Error(rtsl::message::sceneHasNoFile());
     RtslScene next = load(scene->program, scene->file, settings, count);
@@ -125,15 +125,16 @@ int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count)
 }
 
 RtslRenderSettings rtslSceneSettings(const RtslScene *scene) {
-  return scene->ofFile;
+  return guarded(rtslRenderDefaults(), {{scene, "scene"}}, [&] { return scene->ofFile; });
 }
 
 uint32_t rtslScenePasses(const RtslScene *scene) {
-  return std::uint32_t(scene->passes.size());
+  return guarded<std::uint32_t>(0, {{scene, "scene"}},
+                                [&] { return std::uint32_t(scene->passes.size()); });
 }
 
 int rtslSceneSetPass(RtslScene *scene, uint32_t pass) {
-  return guarded(0, [&] {
+  return guarded(0, {{scene, "scene"}}, [&] {
     if (pass >= scene->passes.size())
       throw rtsl::Error(rtsl::message::noSuchPass(pass, scene->passes.size()));
     if (scene->passes.size() > 1)
@@ -144,7 +145,7 @@ int rtslSceneSetPass(RtslScene *scene, uint32_t pass) {
 }
 
 RtslObject rtslSceneFind(const RtslScene *scene, const char *name) {
-  return guarded<RtslObject>(0, [&] {
+  return guarded<RtslObject>(0, {{scene, "scene"}, {name, "name"}}, [&] {
     const RtslRef found = scene->scene.find(name);
     if (found == 0)
       throw rtsl::Error(rtsl::message::noObjectNamed(name));
@@ -153,16 +154,19 @@ RtslObject rtslSceneFind(const RtslScene *scene, const char *name) {
 }
 
 void *rtslSceneOutput(RtslScene *scene, const char *member, uint32_t sizes[3]) {
-  return guarded<void *>(nullptr, [&]() -> void * {
-    for (const runtime::OutputBuffer &output : scene->scene.outputs()) {
-      if (output.member != member)
-        continue;
-      std::fill_n(sizes, 3, 1u);
-      std::copy(output.sizes.begin(), output.sizes.end(), sizes);
-      return output.elements;
-    }
-    throw rtsl::Error(rtsl::message::noOutputMember(member));
-  });
+  return guarded<void *>(nullptr, {{scene, "scene"}, {member, "member"}, {sizes, "sizes"}},
+                         [&]() -> void * {
+                           for (const runtime::OutputBuffer &output : scene->scene.outputs()) {
+                             if (output.member != member)
+                               continue;
+                             if (output.bytes == 0)
+                               throw rtsl::Error(rtsl::message::outputIsEmpty(member));
+                             std::fill_n(sizes, 3, 1u);
+                             std::copy(output.sizes.begin(), output.sizes.end(), sizes);
+                             return output.elements;
+                           }
+                           throw rtsl::Error(rtsl::message::noOutputMember(member));
+                         });
 }
 
 } // extern "C"

@@ -343,6 +343,7 @@ static void mistakes(void) {
   const char *nowhere = "nowhere.png", *setting = "camera=nowhere";
   uint32_t found[3];
   const float texel = 1;
+  RtslSampling sampling = rtslSamplingDefaults();
   float *positions;
   EXPECT_FAILURE(rtslLeave(scene));
   EXPECT_FAILURE(rtslMapBuffer(scene, 9));
@@ -383,6 +384,19 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0.primitives.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneSetLightSampler(scene, (RtslLightSampler)3));
+  EXPECT_FAILURE(rtslMeshAttribute(scene, "grain", 1, &texel, 1, 0, (RtslAttributeSpace)5));
+  sampling.wrap[2] = (RtslWrap)4;
+  EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 1, &sampling));
+  EXPECT_FAILURE(rtslSceneAddObject(NULL, "Ball"));
+  EXPECT_FAILURE(rtslSceneAddObject(scene, NULL));
+  EXPECT_FAILURE(rtslMember(scene, "radius", NULL, 1));
+  EXPECT_FAILURE(rtslMemberBuffer(scene, "steps", world.steps, NULL, 1));
+  EXPECT_FAILURE(rtslSceneAddTriangles(scene, NULL, 3, sizes, 1, world.marked));
+  EXPECT_FAILURE(rtslPlaceMoving(scene, flat, NULL, 2, ~0u));
+  EXPECT_FAILURE(rtslLaunch(NULL, &settings));
+  EXPECT_FAILURE(rtslRender(scene, &settings, NULL));
+  EXPECT_FAILURE(rtslSceneChannels(NULL));
+  EXPECT_FAILURE(rtslQueryNearest(NULL, NULL, 0, NULL));
   mistakesOfSources(scene);
   launch(&world); /* after all of this it is whole */
   compare(&world, &places, "nothing of that has changed the scene");
