@@ -43,11 +43,11 @@ def class_section(path):
     text = path.read_text()
     head = re.search(
         r"((?:^//.*\n)+)(?=(?:\n|import .*\n)*(?://.*\n|struct (?:.*\n)*?\};\n|\n|import "
-        r".*\n)*class )",
+        r".*\n)*(?:default )?class )",
         text,
         re.M,
     )
-    base = re.search(r"^class \w+(?: : (\w+))?", text, re.M).group(1)
+    base = re.search(r"^(?:default )?class \w+(?: : (\w+))?", text, re.M).group(1)
     constructor = re.search(r"void constructor\(([^)]*)\)", text)
     yield f"### {path.stem}\n"
     if (ROOT / f"docs/library/{path.stem}.png").exists():

@@ -210,6 +210,15 @@ void SourceLoader::loadImports(bool withModules) {
   }
 }
 
+std::vector<const ast::TranslationUnit *> SourceLoader::authorsUnits() {
+  loadImports(false);
+  std::vector<const ast::TranslationUnit *> authors;
+  for (const auto &[path, unit] : units)
+    if (unit && !unit->isOfLibrary)
+      authors.push_back(unit.get());
+  return authors;
+}
+
 void SourceLoader::addFile(const std::string &path) {
   const std::string name = std::filesystem::path(path).lexically_normal().string();
   if (path != "-" && std::find(read.begin(), read.end(), name) == read.end())

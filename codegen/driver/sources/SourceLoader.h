@@ -53,6 +53,9 @@ public:
   /// Loads the imports of the loaded files, transitively. (Checking also loads them on demand.)
   void loadImports() { loadImports(true); }
 
+  /// The author's files, with those of them that they import.
+  std::vector<const ast::TranslationUnit *> authorsUnits();
+
   /// All files that were read, including imported and included ones, each once, in the order of
   /// reading.
   const std::vector<std::string> &files() const { return read; }

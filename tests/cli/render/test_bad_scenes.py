@@ -254,9 +254,7 @@ class BadScenes(Case):
         self.assert_message(self.render(), "E0815", "albedo", file="scene.json")
 
     def test_material_that_shades_nothing(self):
-        self.add_material(
-            "class Odd : rt_Material;\nvoid emission() { rt_EmissionColor = color(1.0); }\n"
-        )
+        self.add_material("class Odd : rt_Material;\nvoid evaluatePDF() { rt_PDF = 1.0; }\n")
         self.assert_message(self.render(), "E0817", "shade", file="scene.json")
 
     def test_module_that_is_not_there(self):

@@ -30,6 +30,60 @@ LEANING = (  # normals that are not those of the surface
 )
 
 
+class ClassicEngine(PathCase):
+    """Materials without `shade` in the engine `classic`."""
+
+    def test_it_shows_the_light_that_a_path_gathers_first(self):
+        """Emission, and the light of lights with their shadows: here half of the picture."""
+        lamp = {"class": "PointLight", "position": [0.5, 3, 0.2], "intensity": [20, 10, 5]}
+        screen = {"class": "Parallelogram", "constructor": [[-1, 2, 0], [0, 0, 1], [1.3335, 0, 0]]}
+        for material in (
+            {"class": "Own", "albedo": 0.6, "glow": [0.1, 0.2, 0.3]},
+            {"class": "Whole", "albedo": 0.6},
+        ):
+            self.scene(
+                [(FLOOR, material), (screen, {"class": "Half"})],
+                camera="Under",
+                lights=[lamp],
+                depth=1,
+                spp=4,
+            )
+            self.run_rtslc("render", "scene.json", "-o", "path.exr", "-q")
+            for way in ([], ["--trace=split"], ["--target=host-megakernel"]):
+                with self.subTest(material=material, way=way):
+                    self.run_rtslc(
+                        *("render", "scene.json", "-o", "classic.exr", "-q", "--engine=classic"),
+                        *("-Wno-shade-method", *way),
+                    )
+                    out, _ = self.run_rtslc(
+                        "compare", "path.exr", "classic.exr", "--json", "--threshold", "10"
+                    )
+                    figures = json.loads(out)
+                    self.assertGreater(figures["means"][0][0], 0.2)
+                    self.assertLess(figures["rmse"], 1e-6)
+
+    def test_the_message_says_what_is_missing(self):
+        only_bsdf = "class OnlyBSDF : rt_Material;\nvoid BSDF() { rt_BSDFValue = color(0.1); }\n"
+        self.write("OnlyBSDF.rtsl", only_bsdf)
+        for name, what, note in (
+            ("Own", "what the `BSDF` of `Own` scatters of the lights", "path` shows all"),
+            ("Shines", "what `Shines` emits", "path` shows all"),
+            ("OnlyBSDF", "what the `BSDF` of `OnlyBSDF` scatters", "needs `sampleBSDF`, too"),
+        ):
+            self.scene([(BALL, {"class": name})], spp=1)
+            scene = json.loads((self.folder / "scene.json").read_text())
+            scene["import"].append("OnlyBSDF.rtsl")
+            scene["render"]["engine"] = "classic"
+            self.write("scene.json", json.dumps(scene))
+            _, error = self.run_rtslc("check", "scene.json")
+            self.assertEqual(error.count("W2702"), 1, error)
+            self.assertIn(f"`{name}` has no `shade`: the engine `classic` shows {what}", error)
+            self.assertIn(note, error)
+        self.scene([(BALL, {"class": "Shaded"})], spp=1)
+        _, error = self.run_rtslc("check", "scene.json", "--set=render.engine=classic")
+        self.assertNotIn("W2702", error)
+
+
 class ClosedForms(PathCase):
     def test_a_surface_that_shines(self):
         self.scene([(BALL, {"class": "Shines"})], spp=1)

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <regex>
+#include <set>
 
 namespace rtsl::tool {
 
@@ -141,6 +142,43 @@ std::uint64_t elementBytes(const typed::Class *one, const std::string &name,
 
 } // namespace
 
+/// Does an author's class, on its own, scatter or emit light without `shade`? Of its bases, and of
+/// classes that are no materials, more would be known than is needed.
+static bool mayLackShade(const ast::TranslationUnit &unit) {
+  const auto lacksShade = [](const ast::ClassDecl &one) {
+    const auto has = [&](const char *name) {
+      return std::any_of(one.functions.begin(), one.functions.end(),
+                         [&](const auto &function) { return function.name.text == name; });
+    };
+    return (has("BSDF") || has("emission")) && !has("shade");
+  };
+  return std::any_of(unit.classes.begin(), unit.classes.end(), lacksShade);
+}
+
+/// Says what the classic engine shows of classes that have no `shade` of their own.
+static void warnWithoutShade(const std::vector<scene::LocatedName> &mentions,
+                             const typed::Module &module, Messages &messages) {
+  std::set<std::string> said;
+  for (const scene::LocatedName &mention : mentions) {
+    const typed::Class *const one = module.findClass(mention.text);
+    const typed::Function *const shade = one ? one->findMethod("shade") : nullptr;
+    if (!shade || !said.insert(mention.text).second)
+      continue;
+    const bool scatters = shade->owner->name == "ClassicScatterer";
+    if (!scatters && shade->owner->name != "ClassicEmitter")
+      continue;
+    const std::string what =
+        scatters ? fmt::format("what the `BSDF` of `{}` scatters of the lights, and not of the "
+                               "light of other surfaces",
+                               mention.text)
+                 : fmt::format("what `{}` emits", mention.text);
+    messages.diagnostics.report(Code::noShade, messages.rangeOf(mention.place), mention.text, what)
+        .note(scatters && !one->findMethod("sampleBSDF")
+                  ? "the engine `path` needs `sampleBSDF`, too, and then shows all of its light"
+                  : "the engine `path` shows all of its light");
+  }
+}
+
 std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
                                            const CommonOptions &options, Messages &messages,
                                            std::vector<std::string> *filesRead,
@@ -161,6 +199,12 @@ std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
   for (const scene::ImportDescription &import : description.imports)
     if (import.path.empty())
       shaders.addModule(import.name.text, messages.rangeOf(import.name.place));
+  if (description.render.engine == runtime::Engine::Classic) {
+    const std::vector<const ast::TranslationUnit *> units = shaders.authorsUnits();
+    if (std::any_of(units.begin(), units.end(),
+                    [](const auto *unit) { return mayLackShade(*unit); }))
+      shaders.addModule("std.engines.ClassicScatterer", {});
+  }
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
   if (!messages.diagnostics.hasErrors())
     refuseUnknownClasses(mentions, *module, shaders.modules(), messages);
@@ -168,6 +212,7 @@ std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
     refuseUnknownEditable(description, *module, messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
+  warnWithoutShade(mentions, *module, messages);
   scene::setLaunchSizes(description, [&](const std::string &className, const std::string &member) {
     return elementBytes(module->findClass(className), member, options.compile.colorComponents);
   });

@@ -58,6 +58,9 @@ public:
 
   const std::vector<const ast::TranslationUnit *> &units() const { return parsed; }
 
+  /// The author's files, with those of them that they import.
+  std::vector<const ast::TranslationUnit *> authorsUnits() { return loader.authorsUnits(); }
+
   /// All files that were read, for -MD.
   const std::vector<std::string> &filesRead() {
     loader.loadImports();

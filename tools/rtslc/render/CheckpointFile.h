@@ -23,8 +23,9 @@ void addCheckpointOptions(CLI::App &command, CheckpointOptions &options);
 /// When all options are read. Throws CLI::ValidationError if there are two files.
 void completeCheckpointOptions(CheckpointOptions &options);
 
-/// Throws BadCheckpoint if there is no checkpoint that must exist. Throws FileUnwritable or OverwritesInput if checkpoints cannot be written, or would replace the
-/// output (or its dependency file) or an input. As checkOutputs().
+/// Throws BadCheckpoint if there is no checkpoint that must exist, and FileUnwritable or
+/// OverwritesInput if checkpoints cannot be written, or would replace the output (or its dependency
+/// file) or an input. As checkOutputs().
 void checkCheckpointFile(const CheckpointOptions &options, const std::string &output,
                          const DependencyOptions &dependencies,
                          const std::vector<std::string> &sources,
