@@ -338,7 +338,8 @@ int rtslSceneSetPass(RtslScene *scene, uint32_t pass);
 
 /* Runs the ray generation once for each sample, and makes no picture: what it computes is in its
  * output buffers, which have the memory that rtslMemberBuffer gave them. `settings` null, here and
- * below: the defaults. One rendering of a scene after the other uses the trees of the one before. */
+ * below: the defaults. One rendering of a scene after the other uses the trees of the one before.
+ */
 int rtslLaunch(const RtslScene *scene, const RtslRenderSettings *settings);
 
 /* Renders into `pixels`: width * height * slices * channels floats of linear light, rows from the

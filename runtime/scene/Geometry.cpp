@@ -1,11 +1,13 @@
 #include "runtime/scene/Geometry.h"
 #include "support/ErrorMessages.h"
+#include "support/MachineMemory.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 
 namespace rtsl::runtime {
 
@@ -217,6 +219,15 @@ const Geometry::PrimitiveSet &Geometry::primitiveSet(const Objects &objects, Rts
   }
   if (count > 0x7fffffffu - boxes.size())
     throw Error(message::tooManyPrimitives(), info.place);
+  // Their boxes, a copy of these while they are checked, and the tree.
+  constexpr std::uint64_t bytesOfPrimitive = 200;
+  try {
+    const MemoryReservation needed(count * bytesOfPrimitive);
+  } catch (const std::bad_alloc &) {
+    throw Error(
+        message::noMemoryForPrimitives(count, info.name, double(count * bytesOfPrimitive) / 0x1p30),
+        info.place);
+  }
   const std::vector<RtslBox> all = boxesOf(objects, primitive, count, launch, warnings);
   const PrimitiveSet set{std::uint32_t(boxes.size()), count, std::uint32_t(sets.size()),
                          boundsOfAll(all)};

@@ -7,11 +7,13 @@
 #include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
+#include "support/MachineMemory.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <new>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -24,8 +26,11 @@ using Kind = JsonValue::Kind;
 using runtime::MovingTransform;
 using runtime::Placement;
 
-/// An instance takes about 250 bytes of memory.
 constexpr std::uint64_t mostInstances = std::uint64_t(1) << 26;
+/// An instance takes about 250 bytes of memory, and 700 with all that is needed while it is made.
+constexpr std::uint64_t bytesOfInstance = 700;
+/// Transforms that move on a path: each of its nodes holds the product of those above it.
+constexpr std::size_t mostMoving = 1000;
 constexpr std::size_t mostRoots = 32; // bits of Placement::roots
 
 constexpr std::size_t noNode = ~std::size_t(0);
@@ -50,6 +55,7 @@ struct Node {
   std::optional<std::int32_t> id;
   VariableDefinitions variables;
   std::uint64_t instances = 0; // paths from here to geometries; at most mostInstances + 1
+  std::size_t moving = 0;      // the most transforms that move on a path from here
   bool isReported = false;     // its transform, or a cycle through it
 };
 
@@ -303,16 +309,27 @@ private:
     for (std::size_t number : order) {
       Node &node = nodes[number];
       node.instances = node.geometry || node.light ? 1 : 0;
-      for (const Edge &child : node.children)
+      for (const Edge &child : node.children) {
         node.instances = std::min(node.instances + nodes[child.node].instances, mostInstances + 1);
+        node.moving = std::max(node.moving, nodes[child.node].moving);
+      }
+      node.moving += node.transform.factors().size();
     }
     std::uint64_t total = 0;
     for (const Edge &edge : roots) {
       total += nodes[edge.node].instances;
-      if (total > mostInstances) {
-        hasMistakes = true;
+      hasMistakes = true; // unless all is well
+      if (nodes[edge.node].moving > mostMoving)
+        throw Error(message::tooManyMoving(nodes[edge.node].moving, mostMoving), edge.place);
+      if (total > mostInstances)
         throw Error(message::tooManyInstances(mostInstances), edge.place);
+      try {
+        const MemoryReservation needed(total * bytesOfInstance);
+      } catch (const std::bad_alloc &) {
+        throw Error(message::noMemoryForInstances(total, double(total * bytesOfInstance) / 0x1p30),
+                    edge.place);
       }
+      hasMistakes = false;
     }
   }
 

@@ -221,6 +221,8 @@ private:
 
   bool close() {
     cursor.next();
+    stack.back()->elements.shrink_to_fit(); // a scene of a million instances has twelve million
+    stack.back()->members.shrink_to_fit();
     stack.pop_back();
     return true;
   }

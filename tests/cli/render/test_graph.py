@@ -333,6 +333,9 @@ class Under : rt_Camera {
             return scene({"all": {**balls(*CLUSTER), **more}}, root="all")
 
         self.assert_message(self.mistakes(one(count=0)), "E0805", "`count`")
+        self.assert_message(
+            self.mistakes(one(count=2**31 - 1)), "E1001", "not enough memory for the 2147483647"
+        )
         self.assert_message(self.mistakes(one(count="ball")), "E0806", "no buffer `ball`")
         self.assertEqual(self.mistakes(one(count="ball"))[0]["fixes"][0]["replacement"], "balls")
         empty = one(count="balls")
@@ -400,6 +403,23 @@ class Depth(GraphCase):
         twice["n40"] = balls([0, 0, 0, 1])
         self.assert_message(
             self.mistakes(scene(twice, root="n0")), "E0805", "more than 67108864 instances"
+        )
+        with open("/proc/meminfo") as lines:
+            kibibytes = next(int(line.split()[1]) for line in lines if "MemAvailable" in line)
+        if kibibytes < 40 << 20:  # these would take 44 GiB
+            self.assert_message(
+                self.mistakes(scene(twice, root="n14")),
+                "E1001",
+                "not enough memory for 67108864 instances",
+            )
+        moving = {"keys": [{"rotate": [0, 0, 0]}, {"rotate": [0, 0, 0.01]}]}
+        nodes = self.chain()
+        for i in range(1001):
+            nodes[f"n{i}"]["transform"] = moving
+        self.assert_message(
+            self.mistakes(scene(nodes, root="n0")),
+            "E0805",
+            "1001 transforms that move are above one another; the limit is 1000",
         )
         path = self.write(
             "nested.json", '{"rtsl": 1, "nodes": ' + '{"child": ' * 300 + '"a"' + "}" * 301
