@@ -1,6 +1,6 @@
 #include "runtime/image/openimageio/ImageReader.h"
 
-#include "runtime/image/ImageClaim.h"
+#include "runtime/image/Jpeg2000Claim.h"
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -10,7 +10,9 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <new>
+#include <optional>
 #include <string>
 
 namespace rtsl::runtime {
@@ -27,16 +29,52 @@ void fail(ImageFile &file, ImageFile::Problem problem, const std::string &messag
     *end = '\0';
 }
 
-/// The first bytes of a file, or of these bytes of one; zeros after its end.
-std::array<unsigned char, startBytes> startOf(const char *path, const void *bytes,
-                                              std::uint64_t size) {
-  std::array<unsigned char, startBytes> start = {};
+/// Reads a file, or these bytes of one.
+ReadBytes bytesOf(const char *path, const void *bytes, std::uint64_t size) {
   if (bytes)
-    std::memcpy(start.data(), bytes, std::min<std::uint64_t>(size, start.size()));
-  else
-    std::ifstream(path, std::ios::binary)
-        .read(reinterpret_cast<char *>(start.data()), std::streamsize(start.size()));
+    return [first = static_cast<const unsigned char *>(bytes), size](std::uint64_t offset,
+                                                                     std::size_t count) {
+      offset = std::min(offset, size);
+      return std::vector<unsigned char>(first + offset,
+                                        first + offset + std::min(size - offset, count));
+    };
+  const auto file = std::make_shared<std::ifstream>(path, std::ios::binary);
+  return [file](std::uint64_t offset, std::size_t count) {
+    std::vector<unsigned char> found(count);
+    file->clear();
+    file->seekg(std::streamoff(offset));
+    file->read(reinterpret_cast<char *>(found.data()), std::streamsize(count));
+    found.resize(std::size_t(std::max<std::streamsize>(file->gcount(), 0)));
+    return found;
+  };
+}
+
+/// The first bytes; zeros after the end of the file.
+std::array<unsigned char, startBytes> startOf(const ReadBytes &read) {
+  std::array<unsigned char, startBytes> start = {};
+  const std::vector<unsigned char> found = read(0, start.size());
+  std::copy(found.begin(), found.end(), start.begin());
   return start;
+}
+
+/// Refuses what is too large before it is decoded, which opening the file does. False if it has.
+bool checkJpeg2000(const ReadBytes &read, std::uint64_t mostBytes, std::uint64_t freeBytes,
+                   ImageFile &file) {
+  const std::optional<ImageClaim> claim = jpeg2000Claim(read);
+  if (!claim)
+    return true;
+  file.width = static_cast<std::uint32_t>(claim->width);
+  file.height = static_cast<std::uint32_t>(claim->height);
+  const double pixels = double(claim->width) * double(claim->height);
+  const double kept =
+      double(std::min<std::uint64_t>(claim->channels, 4)) * (claim->bitsPerSample > 8 ? 2 : 1);
+  if (pixels * kept > double(mostBytes))
+    file.problem = ImageFile::Problem::TooLarge;
+  else if (pixels * (kept + double(claim->pixelBytes)) > double(freeBytes))
+    file.problem = ImageFile::Problem::NoMemory;
+  else
+    return true;
+  return false;
 }
 
 /// The type in which the channels are read: none is converted with loss.
@@ -161,10 +199,13 @@ rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::
   *file = {};
   try {
     const std::uint64_t fileBytes = bytes ? size : OIIO::Filesystem::file_size(path);
+    const rtsl::runtime::ReadBytes readBytes = rtsl::runtime::bytesOf(path, bytes, size);
     const std::string why =
-        rtsl::runtime::whyStartWrong(rtsl::runtime::startOf(path, bytes, size), fileBytes);
+        rtsl::runtime::whyStartWrong(rtsl::runtime::startOf(readBytes), fileBytes);
     if (!why.empty())
       return rtsl::runtime::fail(*file, ImageFile::Problem::Bad, why);
+    if (!rtsl::runtime::checkJpeg2000(readBytes, mostBytes, freeBytes, *file))
+      return;
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1); // colors as the file has them
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
