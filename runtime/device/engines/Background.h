@@ -44,7 +44,7 @@ inline float backgroundDensity(RtslState &state) {
   state.PDF = 0;
   rtsl_rt_Miss_directionPDF(&state, state.launch->background);
   const float density = chance * state.PDF;
-  return density > 0 && density < infinity ? density : 0;
+  return isFiniteFromZero(density) ? density : 0;
 }
 
 /// The light that arrives from an emitter.

@@ -133,24 +133,13 @@ inline float chanceOfPart(const RtslLaunch &launch, uint32_t number, uint32_t pa
 }
 
 /// The density with which `illuminate` at the ray's origin chooses the direction of this ray, by
-/// solid angle, because of the point that it has hit; 0 if that is not on an emitter.
-inline float emitterDensity(const RtslState &hit) {
+/// solid angle, because of the point that it has hit, which is on this emitter.
+inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
   const RtslLaunch &launch = *hit.launch;
-  // The emitter of the instance.
-  uint32_t first = 0, last = launch.emitterCount;
-  while (first < last) {
-    const uint32_t middle = first + (last - first) / 2;
-    if (launch.emitters[middle].instance < hit.instance)
-      first = middle + 1;
-    else
-      last = middle;
-  }
-  if (first == launch.emitterCount || launch.emitters[first].instance != hit.instance)
-    return 0;
   const RtslInstance &instance = instanceAt(launch, hit.instance);
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
   float density = (1 - backgroundChance(launch)) *
-                  chanceOfPart(launch, first, hit.primitive, load(hit.RayOrigin));
+                  chanceOfPart(launch, emitter, hit.primitive, load(hit.RayOrigin));
   if (instance.primitive == 0) {
     const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive, hit.Time));
     density *= 2 / squareRoot(dot(twice, twice));
@@ -184,7 +173,23 @@ inline float emitterDensity(const RtslState &hit) {
   // distance^2 / cosine
   density *= hit.HitDistance * hit.HitDistance * square *
              (squareRoot(square * dot(normal, normal)) / along);
-  return density > 0 && density < infinity ? density : 0; // edge-on, or not a number
+  return isFiniteFromZero(density) ? density : 0; // edge-on, or not a number
+}
+
+/// The same for any hit; 0 if it is not on an emitter.
+inline float emitterDensity(const RtslState &hit) {
+  const RtslLaunch &launch = *hit.launch;
+  uint32_t first = 0, last = launch.emitterCount;
+  while (first < last) {
+    const uint32_t middle = first + (last - first) / 2;
+    if (launch.emitters[middle].instance < hit.instance)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  if (first == launch.emitterCount || launch.emitters[first].instance != hit.instance)
+    return 0;
+  return densityOfEmitter(hit, first);
 }
 
 /// Sets rt_PDF of a hit, in programs that choose points on emitters.
@@ -274,14 +279,14 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
     return light;
   describeHitAtEnd(state);
   light.distance = state.HitDistance;
-  light.density = emitterDensity(state);
+  light.density = densityOfEmitter(state, chosen.emitter);
   if (light.density > 0)
     rtsl_rt_Material_emission(&state, instance.material);
   copyColor(light.radiance, state.EmissionColor, rtsl_color_components(&launch));
   return light;
 }
 
-/// `illuminate(P [, side])`. Always four draws.
+/// `illuminate(P [, side])`. Always takes four numbers, whether it needs them or not.
 inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   const RtslLaunch &launch = *state.launch;
   const uint32_t components = rtsl_color_components(&launch);
@@ -289,13 +294,14 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   state.LightDistance = infinity;
   setColor(state.LightColor, components, 0);
   state.PDF = 0;
+  const float ofBackground = backgroundChance(launch);
+  const bool isOnly = ofBackground == 0 && launch.emitterCount == 1 && !hasLightTree(launch);
   EmitterChoice choice;
-  choice.emitter = drawNumber(state, state.dimension);
+  choice.emitter = isOnly ? 0 : drawNumber(state, state.dimension);
   choice.part = drawNumber(state, state.dimension + 1);
   choice.u = drawNumber(state, state.dimension + 2);
   choice.v = drawNumber(state, state.dimension + 3);
   state.dimension += 4;
-  const float ofBackground = backgroundChance(launch);
   if (ofBackground == 0 && launch.emitterCount == 0)
     return false;
   EmittedLight light;

@@ -11,7 +11,7 @@
 namespace rtsl::device {
 
 /// What a ray to a light has of the state of the shader that is lit. It is passed by value, so that
-/// that state stays in registers.
+/// that state stays in registers. What the program does not need is not set.
 struct ShadowRay {
   const RtslLaunch *launch;
   RtslEvents *events;
@@ -27,19 +27,24 @@ struct ShadowRay {
 inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
   ShadowRay ray;
   ray.launch = shading.launch;
-  ray.events = shading.events;
+  const uint32_t needs = rtsl_needs(shading.launch);
+  if (hasEvents(shading))
+    ray.events = shading.events;
   ray.origin = point;
   ray.time = shading.Time;
-  ray.timeSeed = shading.TimeSeed;
-  for (int i = 0; i < 3; ++i) {
+  if (needs & RTSL_NEEDS_TIME)
+    ray.timeSeed = shading.TimeSeed;
+  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
     ray.launchIndex[i] = shading.LaunchIndex[i];
     ray.launchSize[i] = shading.LaunchSize[i];
   }
   ray.mask = shading.rayMask;
   ray.root = shading.rayRoot;
   ray.depth = shading.Depth + 1;
-  ray.coneAtOrigin = shading.ConeWidth;
-  ray.coneSpread = shading.ConeSpread;
+  if (needs & RTSL_NEEDS_FOOTPRINT) {
+    ray.coneAtOrigin = shading.ConeWidth;
+    ray.coneSpread = shading.ConeSpread;
+  }
   setShadowKey(ray.randomKey, shading);
   return ray;
 }
@@ -47,10 +52,13 @@ inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
 /// Makes `state` that of the ray, but for its direction.
 inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   beginState(state, ray.launch);
-  state.events = ray.events;
-  state.TimeSeed = ray.timeSeed;
+  const uint32_t needs = rtsl_needs(ray.launch);
+  if (hasEvents(state))
+    state.events = ray.events;
+  if (needs & RTSL_NEEDS_TIME)
+    state.TimeSeed = ray.timeSeed;
   state.Time = ray.time;
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
     state.LaunchIndex[i] = ray.launchIndex[i];
     state.LaunchSize[i] = ray.launchSize[i];
   }
@@ -60,8 +68,10 @@ inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   state.rayRoot = ray.root;
   state.rayType = 0;
   state.Depth = ray.depth;
-  state.coneAtOrigin = ray.coneAtOrigin;
-  state.ConeSpread = ray.coneSpread;
+  if (needs & RTSL_NEEDS_FOOTPRINT) {
+    state.coneAtOrigin = ray.coneAtOrigin;
+    state.ConeSpread = ray.coneSpread;
+  }
   state.dimension = 0;
 }
 

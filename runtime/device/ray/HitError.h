@@ -24,7 +24,7 @@ constexpr float hitNotFound = -2;
 
 /// Is it a valid bound?
 inline bool isBound(float error) {
-  return error >= 0 && error < infinity;
+  return isFiniteFromZero(error);
 }
 
 /// The error of t at a hit of `primitive`, computed by its derived function `derive`; below 0: not
