@@ -142,12 +142,14 @@ private:
   /// Thrown when a reference is to an object that was rejected, which has been reported.
   struct Refused {};
 
-  /// An error in one part of the scene does not prevent checking the others.
+  /// An error in one part of the scene does not prevent checking the others. Gives whether there
+  /// was none.
   template <typename Step>
-  void attempt(Step step) {
+  bool attempt(Step step) {
     try {
-      errors.attempt(step);
+      return errors.attempt(step);
     } catch (const Refused &) {
+      return false;
     }
   }
 
@@ -156,6 +158,8 @@ private:
               const RenderSettings *launch = nullptr) {
     if (object.image)
       return addImage(*object.image, object.className.text, name);
+    if (description.refused.classes.count(object.className.text))
+      throw Refused();
     const ClassInfo *classInfo = program.find(object.className.text);
     ObjectValues values;
     values.place = object.className.place;
@@ -264,6 +268,8 @@ private:
 
   /// The buffer of this name, made on first use.
   Value namedBuffer(const JsonValue &json, const ValueType &type, const std::string &what) {
+    if (description.refused.names.count(json.string))
+      throw Refused();
     const auto described = description.buffers.find(json.string);
     if (described == description.buffers.end()) {
       Error error(message::noSuchBuffer(what, type.name, json.string), json.place());
@@ -395,6 +401,8 @@ private:
   /// which it takes the same variables.
   RtslRef named(const std::string &name, const Place &place) {
     const ObjectDescription *object = findObject(description, name);
+    if (!object && refused.count(name))
+      throw Refused();
     if (!object) {
       Error error(message::noSuchObject(description.images.empty() ? "" : "image, ",
                                         description.helpers.empty() ? "" : "helper, ", name),
@@ -486,17 +494,23 @@ private:
     std::uint32_t number = 0; // of the mesh, or of primitives
     bool isFirst = true;
     for (const InstanceDescription &instance : geometry.placements) {
+      bool isWhole = true;
       if (isFirst || instance.scope != variables.scope()) {
         variables.enter(instance.scope);
-        material = referred(geometry.material);
-        requireRoot(material, "rt_Material", "a material", geometry.material.shownName());
+        isWhole =
+            geometry.hasMaterial && attempt([&] {
+              material = referred(geometry.material);
+              requireRoot(material, "rt_Material", "a material", geometry.material.shownName());
+            });
         if (geometry.primitive) {
           primitive = addOnce(*geometry.primitive, name);
           number = primitivesOf(geometry, scene, primitive);
         }
       }
-      if (isFirst && !geometry.primitive)
+      if (isFirst && !geometry.primitive && geometry.hasShape)
         number = mesh(geometry);
+      if (!isWhole || !geometry.hasShape)
+        return;
       isFirst = false;
       try {
         place(instance, primitive, material, number);
@@ -549,6 +563,8 @@ private:
     auto found = meshes.find(number);
     if (found != meshes.end())
       return found->second;
+    if (!refusedMeshes.insert(number).second)
+      throw Refused();
     try {
       runtime::Mesh mesh = files.take(number);
       addAttributes(geometry, mesh);
@@ -625,12 +641,13 @@ private:
   std::map<std::pair<std::string, Variables::Taken>, RtslRef> made; // 0: being created
   std::map<std::pair<const ObjectDescription *, Variables::Taken>, RtslRef> inPlaces;
   std::vector<std::uint32_t> selections; // of child 0, by selector
-  std::set<std::string> refused;
+  std::set<std::string> refused = description.refused.names;
   ErrorCollector errors;
   MeshFiles files;
   ImageFiles images;
   std::map<std::size_t, RtslRef> samplers;     // by their number in `images`
   std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
+  std::set<std::size_t> refusedMeshes;         // that were tried, and are not there
 };
 
 } // namespace

@@ -34,8 +34,8 @@ using Kind = JsonValue::Kind;
 class SceneReader {
 public:
   /// `errors` has those that were found before.
-  SceneReader(const JsonValue &root, SceneDescription &scene, ErrorCollector errors)
-      : root(root), scene(scene), errors(std::move(errors)) {}
+  SceneReader(const JsonValue &root, SceneDescription &scene, ErrorCollector &errors)
+      : root(root), scene(scene), errors(errors) {}
 
   /// `isPart`: it need not have a camera or a ray generation.
   void read(bool isPart = false) {
@@ -56,7 +56,7 @@ public:
     readNamed("helpers", scene.helpers);
     readNamed("textures", scene.textures);
     readNamed("materials", scene.materials);
-    section("variables", [&](const JsonValue &variables) {
+    scene.refused.isAny |= !section("variables", [&](const JsonValue &variables) {
       scene.scopes.front()->variables = readVariables(variables);
     });
     readList("objects",
@@ -87,15 +87,22 @@ public:
       if (libraryEngine)
         useLibraryEngine(scene, *libraryEngine);
     });
-    errors.throwIfAny();
   }
 
 private:
   /// Reads the value of a key, if present. An error in it does not prevent reading other sections.
+  /// Gives whether there was none.
   template <typename Read>
-  void section(const char *key, Read read) {
-    if (const JsonValue *value = root.find(key))
-      errors.attempt([&] { read(*value); });
+  bool section(const char *key, Read read) {
+    const JsonValue *value = root.find(key);
+    return !value || errors.attempt([&] { read(*value); });
+  }
+
+  /// Reads something that others may refer to by its name.
+  template <typename Read>
+  void attemptNamed(const std::string &name, Read read) {
+    if (!errors.attempt(read))
+      scene.refused.names.insert(name);
   }
 
   template <typename Read>
@@ -168,7 +175,7 @@ private:
       return readImport(value);
     expect(value, Kind::Array, "`import`");
     for (const JsonValue &element : value.elements)
-      readImport(element);
+      errors.attempt([&] { readImport(element); });
   }
 
   void readImport(const JsonValue &value) {
@@ -219,7 +226,7 @@ private:
     section("images", [&](const JsonValue &value) {
       expect(value, Kind::Object, "`images`");
       for (const auto &[key, member] : value.members)
-        errors.attempt([&, &key = key, &member = member] {
+        attemptNamed(key.text, [&, &key = key, &member = member] {
           refuseTakenName(key.text, value.place(key));
           expect(member, Kind::Object, fmt::format("`{}`", key.text));
           if (!isImage(member))
@@ -279,7 +286,7 @@ private:
     section("buffers", [&](const JsonValue &value) {
       expect(value, Kind::Object, "`buffers`");
       for (const auto &[key, member] : value.members)
-        errors.attempt([&, &key = key, &member = member] {
+        attemptNamed(key.text, [&, &key = key, &member = member] {
           if (member.kind != Kind::Array && !isBuffer(member))
             throw Error(message::namedBufferSourceMissing(key.text), member.place());
           scene.buffers[key.text] = &member;
@@ -316,7 +323,7 @@ private:
     this->section(section, [&](const JsonValue &value) {
       expect(value, Kind::Object, fmt::format("`{}`", section));
       for (const auto &[key, member] : value.members)
-        errors.attempt([&, &key = key, &member = member] {
+        attemptNamed(key.text, [&, &key = key, &member = member] {
           refuseTakenName(key.text, member.place(key));
           objects[key.text] = readObject(member, fmt::format("`{}`", key.text));
         });
@@ -380,8 +387,8 @@ private:
     });
     GeometryDescription geometry;
     geometry.place = value.place();
-    errors.attempt([&] { readShape(value, what, geometry); });
-    errors.attempt(
+    geometry.hasShape = errors.attempt([&] { readShape(value, what, geometry); });
+    geometry.hasMaterial = errors.attempt(
         [&] { geometry.material = readReference(require(value, "material", what), "`material`"); });
     errors.attempt([&] {
       if (const JsonValue *name = value.find("name")) {
@@ -522,9 +529,11 @@ private:
 
   void readRender(const JsonValue &value) {
     expect(value, Kind::Object, "`render`");
-    checkKeys(value,
-              {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
-              "`render`");
+    errors.attempt([&] {
+      checkKeys(value,
+                {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
+                "`render`");
+    });
     if (const JsonValue *shutter = value.find("shutter"))
       errors.attempt([&] { readShutter(*shutter); });
     if (const JsonValue *sampler = value.find("lightSampler"))
@@ -551,7 +560,7 @@ private:
   const JsonValue &root;
   SceneDescription &scene;
   const JsonValue *libraryEngine = nullptr; // the value of `engine`, if it is one of the library's
-  ErrorCollector errors;
+  ErrorCollector &errors;
 };
 
 /// Makes the scene that of its frame.
@@ -568,34 +577,39 @@ void chooseFrame(JsonValue &root) {
 
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides,
-                            std::shared_ptr<KeptFiles> kept) {
+                            std::shared_ptr<KeptFiles> kept, ErrorCollector *errors) {
   auto root = std::make_shared<JsonValue>(parseJson(text, path));
-  ErrorCollector errors;
-  std::vector<std::string> included = expandIncludes(*root, path, errors);
+  ErrorCollector found;
+  SceneDescription scene;
+  scene.included = expandIncludes(*root, path, found);
   for (const std::string &override : overrides)
     applyOverride(*root, override);
   chooseFrame(*root);
-  SceneDescription scene;
   scene.file = path;
   scene.root = root;
-  scene.included = std::move(included);
   scene.keptFiles = std::move(kept);
-  expandModels(*root, scene, errors);
-  SceneReader(*root, scene, std::move(errors)).read();
+  expandModels(*root, scene, found);
+  scene.refused.isAny = found.count() > 0;
+  scene.refused.isAny |= !found.attempt([&] { SceneReader(*root, scene, found).read(); });
+  if (errors)
+    *errors = std::move(found);
+  else
+    found.throwIfAny();
   return scene;
 }
 
 SceneDescription readPart(std::shared_ptr<JsonValue> root, SceneDescription part) {
   ErrorCollector errors;
   expandModels(*root, part, errors);
-  SceneReader(*root, part, std::move(errors)).read(true);
+  SceneReader(*root, part, errors).read(true);
+  errors.throwIfAny();
   part.root = std::move(root);
   return part;
 }
 
 SceneDescription readSceneFile(const std::string &path, const std::vector<std::string> &overrides,
-                               std::shared_ptr<KeptFiles> kept) {
-  return parseScene(readFile(path), path, overrides, std::move(kept));
+                               std::shared_ptr<KeptFiles> kept, ErrorCollector *errors) {
+  return parseScene(readFile(path), path, overrides, std::move(kept), errors);
 }
 
 } // namespace rtsl::scene

@@ -20,6 +20,7 @@
 #include "scenefile/files/BufferFiles.h"
 #include "scenefile/files/Images.h"
 #include "scenefile/files/MeshAttributes.h"
+#include "support/ErrorCollector.h"
 
 #include <array>
 #include <cstdint>
@@ -131,6 +132,7 @@ struct GeometryDescription {
   bool isBarycentric =
       false; // texture coordinates of the mesh: (0,0), (1,0), (0,1) in each triangle
   std::vector<AttributeDescription> attributes; // of a mesh
+  bool hasShape = true, hasMaterial = true;     // false: it could not be read
   ReferenceDescription material;
   runtime::Transform transform; // of the vertices of a mesh in `objects`, unless it moves
   std::uint32_t mask = ~0u;     // visible to rays whose mask has a common bit
@@ -170,6 +172,14 @@ struct ImportDescription {
   std::string path; // resolved; empty for a module name such as std.cameras
 };
 
+/// What errors that are known already are about: building a scene reports no others of what uses
+/// it. For checking all of a scene at once.
+struct Refusals {
+  std::set<std::string> names;   // of objects and buffers
+  std::set<std::string> classes; // of which there are none
+  bool isAny = false;            // parts of the scene are missing, and it cannot be built
+};
+
 struct SceneDescription {
   std::string file;                  // as given
   std::vector<std::string> included; // other scene files that are parts of it
@@ -201,6 +211,7 @@ struct SceneDescription {
   /// `render.editable`: classes, or members of a class as "Class.member".
   std::vector<LocatedName> editable;
   std::vector<Warning> warnings;
+  Refusals refused;
   std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
   std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
@@ -210,14 +221,18 @@ struct SceneDescription {
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.
 /// An override's value is JSON, or else a string; paths in it are relative to the working
 /// directory, those in the file to the file's folder. `kept`: files of scenes before this one.
+/// `errors` gets errors that do not prevent reading the rest, which is then without what they are
+/// about (SceneDescription::refused); null: they are thrown.
 SceneDescription readSceneFile(const std::string &path,
                                const std::vector<std::string> &overrides = {},
-                               std::shared_ptr<KeptFiles> kept = nullptr);
+                               std::shared_ptr<KeptFiles> kept = nullptr,
+                               ErrorCollector *errors = nullptr);
 
 /// The same for a text in memory; `path` is for messages and for relative paths.
 SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides = {},
-                            std::shared_ptr<KeptFiles> kept = nullptr);
+                            std::shared_ptr<KeptFiles> kept = nullptr,
+                            ErrorCollector *errors = nullptr);
 
 /// The same for a part of a scene (ModelPart.h), which need not have a camera. `part` has what is
 /// above it, and may have models that are open.

@@ -23,14 +23,17 @@ public:
   /// More errors are not useful: the reader stops.
   static constexpr std::size_t limit = 100;
 
+  /// Gives whether there was no error.
   template <typename Step>
-  void attempt(Step &&step) {
+  bool attempt(Step &&step) {
     try {
       std::forward<Step>(step)();
+      return true;
     } catch (Error &error) {
       if (!isOfInput(error.code))
         throw;
       add(std::move(error));
+      return false;
     }
   }
 
@@ -44,6 +47,8 @@ public:
     if (errors.size() >= limit)
       throwIfAny();
   }
+
+  std::size_t count() const { return errors.size(); }
 
   /// The first error, which carries the others.
   void throwIfAny() {

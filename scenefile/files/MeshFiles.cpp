@@ -80,7 +80,8 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
   std::vector<File> files;
   std::vector<Use> uses;
   for (const GeometryDescription &geometry : description.objects) {
-    if (geometry.primitive || !numbers.emplace(keyOf(geometry), numbers.size()).second)
+    if (geometry.primitive || !geometry.hasShape ||
+        !numbers.emplace(keyOf(geometry), numbers.size()).second)
       continue;
     uses.push_back({{}, &geometry});
     const std::size_t keys = std::max(geometry.mesh.size(), geometry.weights.size());

@@ -303,5 +303,117 @@ class BadScenes(Case):
         self.assertIn("unknown command `rendr`", error)
 
 
+BALL = {"center": [0, 0, 0], "radius": 1}
+STANDARD = ["std." + name for name in "cameras lights primitives materials textures".split()]
+OWN = """class Own : rt_Material;
+public float gain = 1.0;
+void shade() { rt_SampleColor = color(gain); }
+"""
+
+
+class AllAtOnce(Case):
+    """`rtslc check` of a scene reports in one run what it reports of each mistake alone, and no
+    error that follows from another."""
+
+    def scene(self):
+        return {
+            "rtsl": 1,
+            "import": ["Own.rtsl", *STANDARD],
+            "render": {"size": [8, 8], "spp": 1},
+            "camera": {"class": "FisheyeCamera", "constructor": [[0, 1, 5], [0, 0, 0], [0, 1, 0]]},
+            "lights": [{"class": "PointLight", "position": [1, 2, 3]}],
+            "background": 0.5,
+            "textures": {"gray": {"class": "Solid", "value": 0.5}},
+            "materials": {
+                "clay": {"class": "Lambert", "albedo": "gray"},
+                "own": {"class": "Own", "gain": 2},
+            },
+            "objects": [
+                {"mesh": "knot.obj", "material": "clay"},
+                {
+                    "primitive": {"class": "Sphere", **BALL},
+                    "material": "own",
+                },
+                {"mesh": "knot.obj", "material": {"class": "Lambert", "reflectance": 0.3}},
+                {"primitive": {"class": "Sphere", **BALL}, "material": "clay"},
+                {"primitive": {"class": "Sphere", **BALL}, "material": "clay"},
+            ],
+        }
+
+    # Path, value, code, and a part of the message. What uses the value must not be reported.
+    MISTAKES = (
+        ("render.size", [8, 0], "E0805", "the height must be between"),
+        ("render.tint", 3, "E0802", "`render` has no key `tint`"),
+        ("camera.constructor", [[0, 1, 5]], "E0814", "takes 3 arguments, not 1"),
+        ("lights.0.power", 3, "E0812", "class `PointLight` has no member `power`"),
+        ("background", "blue", "E0804", "`background` is"),
+        ("textures.gray.class", 7, "E0804", "`class`"),
+        ("materials.own.gain", "loud", "E0804", "member `gain` of `own` is a `float`"),
+        ("objects.1.primitive.radius", [1, 2], "E0804", "member `radius`"),
+        ("objects.3.primitive.class", "Spher", "E0810", "no class is named `Spher`"),
+        ("objects.4.primitive", 5, "E0804", "`primitive`"),
+        ("objects.2.mesh", "nowhere.obj", "E0900", "nowhere.obj"),
+        ("objects.2.material.class", "Lambrt", "E0810", "no class is named `Lambrt`"),
+        ("objects.2.mask", -1, "E0805", "`mask` must be between"),
+    )
+    # With these, classes that no file has might be in a file that cannot be checked.
+    IMPORTS = (
+        ("Bad.rtsl", "E0202", "unknown function `colour`"),
+        ("missing.rtsl", "E0100", "missing.rtsl"),
+        ("std.nothing", "E0126", "unknown module `std.nothing`"),
+    )
+
+    def setUp(self):
+        super().setUp()
+        self.glass_scene()
+        self.write("Own.rtsl", OWN)
+        self.write("Bad.rtsl", "class Bad : rt_Material;\nvoid shade() { colour(1.0); }\n")
+
+    def check(self, scene, expected):
+        self.write("check.json", json.dumps(scene, indent=1))
+        messages = [
+            (message["code"], message["message"])
+            for message in self.diagnose("check", "check.json", "--error-limit=0")
+            if message["severity"] == "error"
+        ]
+        self.assertEqual(sorted(code for code, _ in messages), sorted(code for code, _ in expected))
+        for code, part in expected:
+            self.assertTrue(
+                any(code == said and part in text for said, text in messages), (code, part)
+            )
+
+    @staticmethod
+    def put(scene, path, value):
+        *way, last = [int(key) if key.isdigit() else key for key in path.split(".")]
+        for key in way:
+            scene = scene[key]
+        scene[last] = value
+
+    def test_each_alone_and_all_together(self):
+        self.write("good.json", json.dumps(self.scene()))
+        self.run_rtslc("check", "good.json")
+        every = self.scene()
+        for path, value, *said in self.MISTAKES:
+            with self.subTest(path=path):
+                scene = self.scene()
+                self.put(scene, path, value)
+                self.check(scene, [said])
+                self.put(every, path, value)
+        self.check(every, [said for _, _, *said in self.MISTAKES])
+
+    def test_with_shaders_that_have_mistakes(self):
+        every = self.scene()
+        for path, value, *_ in self.MISTAKES:
+            self.put(every, path, value)
+        every["import"] += [name for name, *_ in self.IMPORTS]
+        expected = [said for _, _, *said in self.MISTAKES] + [said for _, *said in self.IMPORTS]
+        self.check(every, [said for said in expected if said[0] != "E0810"])
+
+    def test_a_file_with_mistakes_has_unknown_classes(self):
+        """Of which nothing is said."""
+        self.write("Own.rtsl", OWN.replace("gain", "loss", 1))
+        self.check(self.scene(), [("E0200", "gain")])
+
+
 if __name__ == "__main__":
     unittest.main()

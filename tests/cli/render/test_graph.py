@@ -342,7 +342,9 @@ class Under : rt_Camera {
         empty["nodes"]["all"]["primitive"]["balls"] = []
         self.assert_message(self.mistakes(empty), "E0805", "is empty")
         mesh = scene({"all": {"mesh": "a.obj", "material": "paint", "count": 3}}, root="all")
-        self.assert_message(self.mistakes(mesh), "E0802", "a mesh has its triangles")
+        attribute, count = self.mistakes(mesh)  # the material is for balls
+        self.assert_message([attribute], "E0704", "`spot`")
+        self.assert_message([count], "E0802", "a mesh has its triangles")
         broken = one()
         broken["nodes"]["all"]["primitive"]["balls"][3][3] = -1
         path = self.write("scene.json", json.dumps(broken, indent=1))

@@ -108,7 +108,7 @@ class Include(Case):
 
     def test_mistakes_are_shown_in_their_file(self):
         self.write_parts()
-        self.part("lights.json", lights=[{"class": "DistantLight", "anglee": 3}], material={})
+        self.part("lights.json", lights=[], material={})
         self.assert_message(
             self.diagnose("check", "scene.json"), "E0802", "`material`", file="lights.json"
         )

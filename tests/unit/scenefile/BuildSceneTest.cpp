@@ -275,6 +275,6 @@ TEST(BuildScene, TellsAllThatIsWrongInOneRun) {
       "s.json:3:2+6: unknownMember: class `Lambert` has no member `albeda` (fix `albedo`)\n"
       "s.json:3:15+6: unknownMember: class `Lambert` has no member `colour`\n"
       "s.json:7:15+1: unknownName: no texture or material is named `n`\n"
-      "s.json:8:28+11: fileNotFound: cannot read mesh `nowhere.ply`: No such file or directory\n"
+      "s.json:7:28+11: fileNotFound: cannot read mesh `nowhere.ply`: No such file or directory\n"
       "s.json:9:26+4: unknownClass: no class is named `Skye` (fix `Sky`)");
 }

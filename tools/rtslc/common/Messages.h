@@ -30,6 +30,8 @@ public:
 
   /// Writes all messages to standard error.
   void print();
+  /// They are not to be written, because they are known already.
+  void silence() { printed = true; }
   ExitStatus status() const { return diagnostics.hasErrors() ? Diagnosed : Fine; }
 
 private:

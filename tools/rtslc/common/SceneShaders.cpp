@@ -11,6 +11,7 @@
 #include "sema/typed/TypeProperties.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -57,7 +58,8 @@ static scene::SceneDescription sceneOfModel(const std::string &file,
 scene::SceneDescription readScene(const std::string &file,
                                   const std::vector<std::string> &overrides, Messages &messages,
                                   const char *command,
-                                  const std::shared_ptr<scene::KeptFiles> &kept) {
+                                  const std::shared_ptr<scene::KeptFiles> &kept,
+                                  ErrorCollector *errors) {
   if (std::filesystem::path(file).extension() == ".rtsl")
     refuseShaders(file, command);
   if (scene::gltf::isModel(file))
@@ -66,9 +68,9 @@ scene::SceneDescription readScene(const std::string &file,
     const char *const name = "<stdin>";
     const std::string text = readFile(file);
     messages.sources.add(name, text); // messages show it
-    return requireOneLaunch(scene::parseScene(text, name, overrides, kept), command);
+    return requireOneLaunch(scene::parseScene(text, name, overrides, kept, errors), command);
   }
-  return requireOneLaunch(scene::readSceneFile(file, overrides, kept), command);
+  return requireOneLaunch(scene::readSceneFile(file, overrides, kept, errors), command);
 }
 
 namespace {
@@ -76,7 +78,7 @@ namespace {
 /// Says which classes of the scene no file has, before any code is made.
 void refuseUnknownClasses(const std::vector<scene::LocatedName> &mentions,
                           const typed::Module &module,
-                          const std::vector<std::string> &libraryModules, Messages &messages) {
+                          const std::vector<std::string> &libraryModules, ErrorCollector &errors) {
   std::vector<std::string> names;
   for (const std::string &name : libraryModules) // files of unused classes are not read
     names.push_back(lastPart(name));
@@ -86,44 +88,43 @@ void refuseUnknownClasses(const std::vector<scene::LocatedName> &mentions,
   for (const scene::LocatedName &mention : mentions) {
     if (module.findClass(mention.text))
       continue;
-    const SourceRange range = messages.rangeOf(mention.place);
-    Diagnostic &diagnostic = messages.report(message::noSuchClass(mention.text), range);
+    Error error(message::noSuchClass(mention.text), mention.place);
     if (const std::string module = library.moduleThatDefines(mention.text); !module.empty())
-      diagnostic.note(fmt::format("it is in the standard library: add \"{}\" to `import`",
-                                  module.substr(0, module.rfind('.'))));
+      error.note(fmt::format("it is in the standard library: add \"{}\" to `import`",
+                             module.substr(0, module.rfind('.'))));
     else if (const std::string near = closestName(mention.text, names); !near.empty())
-      diagnostic.fix(range, near);
+      error.fix(near);
+    errors.add(std::move(error));
   }
 }
 
-/// Reports a name that does not exist, with the one that is closest to it.
-void refuseName(const Message &message, const std::string &name,
-                const std::vector<std::string> &known, const SourceRange &range,
-                Messages &messages) {
-  Diagnostic &diagnostic = messages.report(message, range);
+/// The error of a name that does not exist, with the one that is closest to it.
+Error unknownName(const Message &message, const scene::LocatedName &mention,
+                  const std::string &name, const std::vector<std::string> &known) {
+  Error error(message, mention.place);
   if (const std::string near = closestName(name, known); !near.empty())
-    diagnostic.note(fmt::format("did you mean `{}`?", near));
+    error.note(fmt::format("did you mean `{}`?", near));
+  return error;
 }
 
 /// Says which names of `render.editable` are not classes of the scene, or not their members.
 void refuseUnknownEditable(const scene::SceneDescription &description, const typed::Module &module,
-                           Messages &messages) {
+                           ErrorCollector &errors) {
   for (const scene::LocatedName &name : description.editable) {
     const std::size_t dot = name.text.find('.');
     const std::string className = name.text.substr(0, dot);
-    const SourceRange range = messages.rangeOf(name.place);
     std::vector<std::string> known;
     if (!module.findClass(className)) {
       for (const auto &one : module.classes)
         known.push_back(one->name);
-      refuseName(message::noSuchClass(className), className, known, range, messages);
+      errors.add(unknownName(message::noSuchClass(className), name, className, known));
     } else if (dot != std::string::npos) {
       const std::string member = name.text.substr(dot + 1);
       for (const typed::Class *one = module.findClass(className); one; one = one->base)
         for (const auto &own : one->members)
           known.push_back(own->name);
       if (std::find(known.begin(), known.end(), member) == known.end())
-        refuseName(message::noSuchMember(className, member), member, known, range, messages);
+        errors.add(unknownName(message::noSuchMember(className, member), name, member, known));
     }
   }
 }
@@ -179,11 +180,10 @@ static void warnWithoutShade(const std::vector<scene::LocatedName> &mentions,
   }
 }
 
-std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
-                                           const CommonOptions &options, Messages &messages,
-                                           std::vector<std::string> *filesRead,
-                                           const std::vector<std::string> &takenNames,
-                                           const std::vector<scene::LocatedName> &otherMentions) {
+std::unique_ptr<typed::Module>
+loadShaders(scene::SceneDescription &description, const CommonOptions &options, Messages &messages,
+            std::vector<std::string> *filesRead, const std::vector<std::string> &takenNames,
+            const std::vector<scene::LocatedName> &otherMentions, ErrorCollector *errors) {
   PreprocessorOptions preprocessor = options.preprocessor;
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
@@ -206,12 +206,20 @@ std::unique_ptr<typed::Module> loadShaders(scene::SceneDescription &description,
       shaders.addModule("std.engines.ClassicScatterer", {});
   }
   std::unique_ptr<typed::Module> module = shaders.check(options.compile);
-  if (!messages.diagnostics.hasErrors())
-    refuseUnknownClasses(mentions, *module, shaders.modules(), messages);
-  if (!messages.diagnostics.hasErrors())
-    refuseUnknownEditable(description, *module, messages);
   if (messages.diagnostics.hasErrors())
     return nullptr;
+  ErrorCollector unknown;
+  if (!description.refused.isAny) { // its imports may be missing
+    refuseUnknownClasses(mentions, *module, shaders.modules(), unknown);
+    refuseUnknownEditable(description, *module, unknown);
+  }
+  for (const scene::LocatedName &mention : mentions)
+    if (!module->findClass(mention.text))
+      description.refused.classes.insert(mention.text);
+  if (errors)
+    errors->attempt([&] { unknown.throwIfAny(); });
+  else
+    unknown.throwIfAny();
   warnWithoutShade(mentions, *module, messages);
   scene::setLaunchSizes(description, [&](const std::string &className, const std::string &member) {
     return elementBytes(module->findClass(className), member, options.compile.colorComponents);
@@ -259,7 +267,7 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
       if (auto named = description.materials.find(geometry.material.name.text);
           named != description.materials.end())
         material = &named->second;
-    if (material)
+    if (material && geometry.hasShape)
       request.surfaces.push_back(
           {geometry.primitive ? geometry.primitive->className.text : std::string(),
            material->className.text});

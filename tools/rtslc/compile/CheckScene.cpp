@@ -3,6 +3,7 @@
 #include "codegen/driver/MachineCode.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
+#include "support/ErrorCollector.h"
 #include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/SceneShaders.h"
 
@@ -74,25 +75,72 @@ std::vector<scene::LocatedName> classesOfCameras(scene::SceneDescription descrip
   return all;
 }
 
+/// Checks what the scene says of its objects, in all launches and for all cameras.
+void checkLaunches(const scene::SceneDescription &description, const typed::Module &module,
+                   const CheckOptions &options, Messages &messages, ErrorCollector &errors) {
+  if (description.refused.isAny)
+    return;
+  for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
+    scene::SceneDescription launch = scene::launchOf(description, i);
+    errors.attempt([&] { checkLaunch(launch, module, options, messages); });
+    for (const auto &[name, camera] : description.cameras) {
+      launch.camera = camera; // messages that are reported again are the same
+      errors.attempt([&] { checkLaunch(launch, module, options, messages); });
+    }
+  }
+}
+
+/// The imports without those in which, or in whose names, there are errors.
+std::vector<scene::ImportDescription> soundImports(const scene::SceneDescription &description,
+                                                   Messages &messages) {
+  std::vector<scene::ImportDescription> sound;
+  for (const scene::ImportDescription &import : description.imports) {
+    const SourceRange name = messages.rangeOf(import.name.place);
+    const auto isOfImport = [&](const Diagnostic &diagnostic) {
+      const SourceRange &range = diagnostic.range;
+      const bool isInName = range.file == name.file && range.begin == name.begin;
+      return diagnostic.severity == Severity::Error && range.isValid() &&
+             (isInName || messages.sources.name(range.file) == import.path);
+    };
+    const std::vector<Diagnostic> &all = messages.diagnostics.all();
+    if (std::none_of(all.begin(), all.end(), isOfImport))
+      sound.push_back(import);
+  }
+  return sound;
+}
+
+/// Checks what the scene says of objects of those classes whose files have no errors. Which other
+/// classes there are is unknown, and warnings are for when there are no errors.
+void checkSoundPart(scene::SceneDescription description, const CheckOptions &options,
+                    Messages &messages, ErrorCollector &errors) {
+  description.imports = soundImports(description, messages);
+  Messages known(options.common);
+  known.silence();
+  ErrorCollector unknown;
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, known, nullptr, {}, {}, &unknown);
+  if (module)
+    checkLaunches(description, *module, options, known, errors);
+}
+
 } // namespace
 
 void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
                 std::vector<std::string> &filesRead) {
-  scene::SceneDescription description = readScene(file, options.overrides, messages, "check");
-  const std::unique_ptr<typed::Module> module = loadShaders(
-      description, options.common, messages, &filesRead, {}, classesOfCameras(description));
-  if (!module)
-    return;
-  filesRead = withFiles(description, filesRead);
-  noteSharedNodes(description, messages);
-  for (std::size_t i = 0; i < scene::launchCount(description); ++i) {
-    scene::SceneDescription launch = scene::launchOf(description, i);
-    checkLaunch(launch, *module, options, messages);
-    for (const auto &[name, camera] : description.cameras) {
-      launch.camera = camera; // messages that are reported again are the same
-      checkLaunch(launch, *module, options, messages);
-    }
+  ErrorCollector errors; // reported last: earlier ones would end the check of the shaders
+  scene::SceneDescription description =
+      readScene(file, options.overrides, messages, "check", nullptr, &errors);
+  const std::unique_ptr<typed::Module> module =
+      loadShaders(description, options.common, messages, &filesRead, {},
+                  classesOfCameras(description), &errors);
+  if (module) {
+    filesRead = withFiles(description, filesRead);
+    noteSharedNodes(description, messages);
+    checkLaunches(description, *module, options, messages, errors);
+  } else {
+    checkSoundPart(description, options, messages, errors);
   }
+  errors.throwIfAny();
 }
 
 } // namespace rtsl::tool
