@@ -22,8 +22,8 @@ std::string sampleText(const runtime::SampleId &sample) {
 }
 
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
-                        const runtime::RenderOptions &options) {
-  return message::raysTooDeep(statistics.raysTooDeep, statistics.samples, options.maxDepth);
+                        const runtime::RenderOptions &options, const char *depth) {
+  return message::raysTooDeep(statistics.raysTooDeep, statistics.samples, options.maxDepth, depth);
 }
 
 std::string badRaysText(const runtime::RenderStatistics &statistics) {
@@ -33,12 +33,12 @@ std::string badRaysText(const runtime::RenderStatistics &statistics) {
 }
 
 std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
-                                        const runtime::RenderOptions &options) {
+                                        const runtime::RenderOptions &options, const char *depth) {
   const std::uint64_t *counts = statistics.exceptions;
   std::vector<std::string> texts;
   if (counts[RTSL_EXCEPTION_STACK_OVERFLOW])
     texts.push_back(
-        message::samplesTooDeep(counts[RTSL_EXCEPTION_STACK_OVERFLOW], options.maxDepth));
+        message::samplesTooDeep(counts[RTSL_EXCEPTION_STACK_OVERFLOW], options.maxDepth, depth));
   if (counts[RTSL_EXCEPTION_BAD_RAY])
     texts.push_back(message::samplesOfBadRays(counts[RTSL_EXCEPTION_BAD_RAY]));
   if (counts[RTSL_EXCEPTION_INDEX])

@@ -16,9 +16,12 @@ std::string notFiniteText(const runtime::RenderStatistics &statistics);
 /// "pixel 12,40 sample 3"
 std::string sampleText(const runtime::SampleId &sample);
 
-/// "25 rays in 1000 samples exceeded the depth limit 8 and returned nothing: ..."
+constexpr const char *depthOption = "`--depth`";
+
+/// "25 rays in 1000 samples exceeded the depth limit 8 and returned nothing: ..." `depth` is what
+/// sets this limit.
 std::string tooDeepText(const runtime::RenderStatistics &statistics,
-                        const runtime::RenderOptions &options);
+                        const runtime::RenderOptions &options, const char *depth = depthOption);
 
 /// "3 rays had no direction or were not finite, and returned black"; empty: none, or they ended
 /// samples.
@@ -26,7 +29,8 @@ std::string badRaysText(const runtime::RenderStatistics &statistics);
 
 /// A sentence for each kind of exception that samples met.
 std::vector<std::string> exceptionTexts(const runtime::RenderStatistics &statistics,
-                                        const runtime::RenderOptions &options);
+                                        const runtime::RenderOptions &options,
+                                        const char *depth = depthOption);
 
 /// "stopped by SIGINT after 12.5 % of the samples: 100 of 800 pixels are done, ..."
 std::string unfinishedText(const runtime::RenderStatistics &statistics,

@@ -88,6 +88,8 @@ class QueryExamples(Case):
             "--set=passes.1.rayGeneration.cells=64",
             '--set=buffers.first={"size": [4096]}',
         ]
+        _, error = self.run_rtslc("run", "photons.json", "-q", *small, "--set=passes.0.depth=2")
+        self.assertRegex(error, "W2866.* give a larger `depth` in the scene file")
         first = None
         for way, options in PATHS.items():
             if "--exceptions" in options:

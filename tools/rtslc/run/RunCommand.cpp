@@ -80,6 +80,9 @@ scene::SceneDescription readInputs(const RunOptions &options, Messages &messages
   return readScene(options.scene, overrides, messages, "run");
 }
 
+/// The command has no option for it, because passes may have different ones.
+constexpr const char *depthOfScene = "`depth` in the scene file";
+
 /// Rejects, before anything runs, names of --out that stand for no buffer, and files whose format
 /// has no place for its elements.
 void checkBuffers(const RunOptions &options, const scene::SceneDescription &description,
@@ -258,7 +261,7 @@ private:
       messages.diagnostics.reportText(Code::samplesNotFinite, {}, notFiniteText(statistics));
     if (statistics.raysTooDeep && !statistics.exceptions[RTSL_EXCEPTION_STACK_OVERFLOW])
       messages.diagnostics.reportText(Code::raysTooDeep, {},
-                                      tooDeepText(statistics, launch.render));
+                                      tooDeepText(statistics, launch.render, depthOfScene));
   }
 
   const RunOptions &options;
@@ -331,7 +334,7 @@ void printSummary(const RunOptions &options, const Launches &all) {
     if (options.repeats > 0)
       fmt::print(stderr, "repeated {} times: {:.3f} ms in the median\n", options.repeats,
                  launch.repeatSeconds[launch.repeatSeconds.size() / 2] * 1e3);
-    for (const std::string &text : exceptionTexts(launch.statistics, launch.render))
+    for (const std::string &text : exceptionTexts(launch.statistics, launch.render, depthOfScene))
       fmt::print(stderr, "{}\n", text);
   }
   for (const std::string &name : all.names()) {
