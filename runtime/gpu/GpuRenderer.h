@@ -46,6 +46,7 @@ public:
   const GpuStatistics &gpu() const { return figures; }
 
   void enterThread() override { device.use(); }
+  PassSizes passSizes() const override;
 
 private:
   std::uint64_t laneBytes(const RtslLaunch &) override { return figures.laneBytes; }

@@ -39,13 +39,17 @@ void addEvents(const RtslStatus &status, RenderStatistics &statistics) {
 }
 
 Image Backend::render(RenderStatistics *statistics) {
+  return renderAtOnce(options, statistics);
+}
+
+Image Backend::renderAtOnce(const RenderOptions &watched, RenderStatistics *statistics) {
   if (picture.pixels.empty())
     makePicture(channels());
   RenderStatistics said;
   samplesOfPixel = options.samplesPerPixel;
   try {
     begin();
-    Watch watch(options);
+    Watch watch(watched);
     const Clock::time_point start = Clock::now();
     const double processorStart = processorSeconds();
     run(watch);
@@ -62,7 +66,7 @@ Image Backend::render(RenderStatistics *statistics) {
   said.isRefitted = isRefitted;
   said.isUnfinished = said.pixels < pixelCount();
   Image image = std::exchange(picture, Image());
-  if (said.isUnfinished && !options.keepsUnfinished)
+  if (said.isUnfinished && !watched.keepsUnfinished)
     throw Error(message::renderingCancelled());
   if (statistics)
     *statistics = std::move(said);

@@ -37,11 +37,11 @@ public:
   Image render(RenderStatistics *statistics = nullptr);
 
   /// As render(), but in passes, which continue `rendering` if it has sums; at the end it is the
-  /// state that they have reached. `progress` is called after each pass; the share that is done is
-  /// that of RenderOptions::samplesPerPixel. RenderOptions::cancel ends it after the pass, or
-  /// within a long one (PassOptions::secondsToEndPass). Throws OutOfRange if `rendering` has more
-  /// samples than the options allow, or sums of another size, and what the functions of `passes`
-  /// throw.
+  /// state that they have reached, without sums if one pass was enough. `progress` is called after
+  /// each pass; the share that is done is that of RenderOptions::samplesPerPixel.
+  /// RenderOptions::cancel ends it after the pass, or within a long one
+  /// (PassOptions::secondsToEndPass). Throws OutOfRange if `rendering` has more samples than the
+  /// options allow, or sums of another size, and what the functions of `passes` throw.
   Image renderInPasses(const PassOptions &passes,
                        const std::function<void(const PassState &)> &progress,
                        PartialRendering &rendering, RenderStatistics *statistics = nullptr);
@@ -49,6 +49,9 @@ public:
   /// The trees of a backend that renders no more, for the next one (Renderer's constructor). Null:
   /// it has none to give.
   virtual std::shared_ptr<KeptTrees> takeTrees() { return nullptr; }
+
+  /// What renderInPasses() takes at once.
+  virtual PassSizes passSizes() const { return {}; }
 
 protected:
   /// Throws OutOfRange for invalid options.
@@ -83,6 +86,13 @@ private:
   virtual void uploadSums() {}
   virtual void fetchSums() {}
 
+  /// render(); `watched`: the options for what stops it.
+  Image renderAtOnce(const RenderOptions &watched, RenderStatistics *statistics);
+
+  bool isOnePass(const PassOptions &passes, const PartialRendering &rendering) const;
+  Image renderOnePass(const PassOptions &passes,
+                      const std::function<void(const PassState &)> &progress,
+                      PartialRendering &rendering, RenderStatistics *statistics);
   SampleCounts takeSums(PartialRendering &rendering, const PassOptions &passes);
   void measure(const PassOptions &passes, PartialRendering &rendering);
   bool runPass(const PassOptions &passes, const PassState &state, Clock::time_point pause,

@@ -52,6 +52,8 @@ public:
   /// The number of samples that device i has rendered in the last run.
   std::uint64_t samplesOf(std::size_t i) const { return devices[i].samples; }
 
+  PassSizes passSizes() const override { return devices.front().backend->passSizes(); }
+
 private:
   struct Device {
     std::unique_ptr<Megakernel> backend;

@@ -53,10 +53,19 @@ struct PassOptions {
   double secondsToEndPass() const { return checkpoint ? 0 : 2; }
 };
 
+/// What is good for a machine.
+struct PassSizes {
+  /// Samples per pixel of the first pass, if there is no limit of time.
+  std::uint32_t first = 1;
+  /// Later passes end at a multiple of it, if they reach one.
+  std::uint32_t multiple = 1;
+};
+
 /// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are
 /// short, so that the limits are met and Ctrl-C need not wait, and long enough, and so few, that
 /// starting threads costs nothing. None passes a number of samples at which the error is measured.
-std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes, std::uint32_t most);
+std::uint32_t samplesOfPass(const PassState &state, const PassOptions &passes,
+                            const PassSizes &sizes, std::uint32_t most);
 
 /// The next number of samples at which the error is measured: 16, 20, 25, ...
 std::uint32_t nextMeasurement(std::uint32_t samples);

@@ -75,6 +75,33 @@ bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdap
 
 } // namespace
 
+/// Is the first pass the only one? Then the pixels need no sums.
+bool Backend::isOnePass(const PassOptions &passes, const PartialRendering &rendering) const {
+  return rendering.sums.isEmpty() && passes.error == 0 && !passes.checkpoint &&
+         samplesOfPass({}, passes, passSizes(), options.samplesPerPixel) == options.samplesPerPixel;
+}
+
+Image Backend::renderOnePass(const PassOptions &passes,
+                             const std::function<void(const PassState &)> &progress,
+                             PartialRendering &rendering, RenderStatistics *statistics) {
+  std::atomic<bool> stop{false};
+  RenderOptions watched = options;
+  watched.cancel = &stop;
+  watched.keepsUnfinished = true;
+  const Pause pausing(stop, options.cancel, Clock::time_point::max(), passes.secondsToEndPass());
+  RenderStatistics said;
+  Image image = renderAtOnce(watched, &said);
+  rendering.state.seconds = said.renderSeconds;
+  if (!said.isUnfinished) {
+    rendering.state.samplesPerPixel = options.samplesPerPixel;
+    if (progress)
+      progress(rendering.state);
+  }
+  if (statistics)
+    *statistics = std::move(said);
+  return image;
+}
+
 /// Allocates the sums of a rendering that begins. Gives the samples that there are.
 SampleCounts Backend::takeSums(PartialRendering &rendering, const PassOptions &passes) {
   const bool isMeasured = passes.error > 0 || passes.checkpoint; // or may be when it is resumed
@@ -147,7 +174,7 @@ void Backend::runPasses(const PassOptions &passes,
                              (!options.isAdaptive || countSamples(rendering.sums).openPixels > 0);
       if (!isAnyLeft || (next > 0 && isGoodEnough(state, passes, options.isAdaptive)))
         break;
-      next += samplesOfPass(state, passes, options.samplesPerPixel);
+      next += samplesOfPass(state, passes, passSizes(), options.samplesPerPixel);
     }
     samplesOfPixel = next;
     const Clock::time_point pause = passes.checkpoint
@@ -183,6 +210,8 @@ void Backend::runPasses(const PassOptions &passes,
 Image Backend::renderInPasses(const PassOptions &passes,
                               const std::function<void(const PassState &)> &progress,
                               PartialRendering &rendering, RenderStatistics *statistics) {
+  if (isOnePass(passes, rendering))
+    return renderOnePass(passes, progress, rendering, statistics);
   const SampleCounts before = takeSums(rendering, passes);
   if (picture.pixels.empty())
     makePicture(channels());

@@ -258,6 +258,19 @@ TEST(Passes, EndAtOnceIfThereAreCheckpoints) {
   EXPECT_LT(statistics.samples, 10000u);
 }
 
+TEST(Passes, OneAloneKeepsNoSums) {
+  PartialRendering rendering;
+  RenderStatistics statistics;
+  const Image image = inPasses(withSamples(1), rendering, {}, &statistics);
+  EXPECT_EQ(image.at(19, 9)[0], 19.0f);
+  EXPECT_TRUE(rendering.sums.isEmpty());
+  EXPECT_EQ(rendering.state.samplesPerPixel, 1u);
+  EXPECT_EQ(statistics.samples, 200u);
+  EXPECT_FALSE(statistics.isUnfinished);
+  inPasses(withSamples(2), rendering);
+  EXPECT_FALSE(rendering.sums.isEmpty());
+}
+
 TEST(Crop, IsThePartOfThePicture) {
   RenderOptions options = small();
   options.crop = Window{3, 2, 8, 4};
