@@ -24,8 +24,9 @@ scene::SceneDescription readScene(const std::string &file,
 /// they include in the scene's folder too. `filesRead`, unless null, gets the scene and all shader
 /// files. `takenNames` are renamed in the library (SourceLoader.h). `otherMentions`: classes that
 /// the scene does not use as it is described, but that are to be in the module, too. Sizes of
-/// launches that depend on their types are set (LaunchSizes.h). `errors` gets the mentions of classes
-/// and members that there are not, which are then SceneDescription::refused; null: they are thrown.
+/// launches that depend on their types are set (LaunchSizes.h). `errors` gets the mentions of
+/// classes and members that there are not, which are then SceneDescription::refused; null: they are
+/// thrown.
 std::unique_ptr<typed::Module> loadShaders(
     scene::SceneDescription &description, const CommonOptions &options, Messages &messages,
     std::vector<std::string> *filesRead = nullptr, const std::vector<std::string> &takenNames = {},
