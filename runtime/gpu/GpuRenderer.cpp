@@ -118,7 +118,7 @@ PassSizes GpuRenderer::passSizes() const {
   constexpr std::uint64_t samplesOfFirst = 1 << 26, // some tenths of a second
       mostOfPixel = 64;
   return {std::uint32_t(std::clamp<std::uint64_t>(samplesOfFirst / pixelCount(), 1, mostOfPixel)),
-          32};
+          32, true};
 }
 
 Megakernel::Address GpuRenderer::allocate(std::uint64_t bytes, const char *what) {

@@ -95,8 +95,10 @@ private:
                       PartialRendering &rendering, RenderStatistics *statistics);
   SampleCounts takeSums(PartialRendering &rendering, const PassOptions &passes);
   void measure(const PassOptions &passes, PartialRendering &rendering);
-  bool runPass(const PassOptions &passes, const PassState &state, Clock::time_point pause,
+  bool runPass(const PassState &state, Clock::time_point pause, double secondsToEnd,
                RenderStatistics &met);
+  bool triesWhole(const PassOptions &passes, const PartialRendering &rendering) const;
+  bool tryWhole(const PassOptions &passes, PartialRendering &rendering);
   void runPasses(const PassOptions &passes, const std::function<void(const PassState &)> &progress,
                  const SampleCounts &before, PartialRendering &rendering);
 };

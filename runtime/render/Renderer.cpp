@@ -222,7 +222,7 @@ void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Wor
       sum.decide(color, components);
   }
   worker.samples += taken - before;
-  worker.pixels += taken == samplesOfPixel;
+  worker.pixels += taken >= samplesOfPixel;
   if (sums) {
     for (std::uint32_t half = 0; half < halves; ++half)
       parts[half].store(*sums, index, half, components);

@@ -59,6 +59,8 @@ struct PassSizes {
   std::uint32_t first = 1;
   /// Later passes end at a multiple of it, if they reach one.
   std::uint32_t multiple = 1;
+  /// The sums are copied to the machine and back.
+  bool copiesSums = false;
 };
 
 /// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are

@@ -105,6 +105,13 @@ class Interruptions(Case):
         )
         self.assertIn("after 0 of 2 samples per pixel; some pixels have more, the others", error)
 
+    def test_few_samples_are_in_all_pixels(self):
+        """They begin as one pass, pixel by pixel."""
+        large = ("--size", "1500x1500", "--spp", "64", "-Wno-depth-limit")
+        _, error = self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *large)
+        self.assertIn("after 1 of 64 samples per pixel; some pixels have more", error)
+        self.assertNotIn("black", error)
+
     def test_a_second_signal_ends_it_at_once(self):
         large = ("--size", "3000x3000")  # it takes a while to write
         self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *FOREVER, *large, again=True)

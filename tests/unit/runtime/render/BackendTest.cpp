@@ -271,6 +271,19 @@ TEST(Passes, OneAloneKeepsNoSums) {
   EXPECT_FALSE(rendering.sums.isEmpty());
 }
 
+TEST(Passes, OfFewSamplesThatAreCancelledLeaveNoPixelBlack) {
+  const std::atomic<bool> cancel{true};
+  RenderOptions options = withSamples(64);
+  options.cancel = &cancel;
+  PartialRendering rendering;
+  RenderStatistics statistics;
+  const Image image = inPasses(options, rendering, {}, &statistics);
+  EXPECT_EQ(rendering.state.samplesPerPixel, 1u);
+  EXPECT_EQ(statistics.samples, 200u);
+  for (unsigned x = 1; x < image.width; ++x)
+    EXPECT_GT(image.at(x, 9)[0], 0.0f);
+}
+
 TEST(Crop, IsThePartOfThePicture) {
   RenderOptions options = small();
   options.crop = Window{3, 2, 8, 4};
