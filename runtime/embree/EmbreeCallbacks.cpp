@@ -55,15 +55,24 @@ bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &it
       return;
 }
 
+/// Has it been tested before the search?
+bool isTested(const EmbreeContext &context, const Occluder &item) {
+  return __builtin_expect(context.tested == item, 0);
+}
+
 template <typename Ray>
 void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   const TriangleBlock &block = context.space->blocks[arguments->primID];
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  if (context.visitor)
+  const Occluder item = {arguments->primID, false};
+  if (context.visitor) {
     visitBlock(context, ray, block);
-  else if (testBlock(*context.state, rayOf<Ray>(context), block, false))
-    endAtHit(context, ray, {arguments->primID, false});
+  } else if (!isTested(context, item) &&
+             testBlock(*context.state, rayOf<Ray>(context), block, false)) {
+    context.found = item;
+    endAtHit(context, ray, item);
+  }
 }
 
 template <typename Ray>
@@ -192,12 +201,18 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
 void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  if (!searchInstance<false>(context, arguments->primID)) {
-    ray.tfar = context.end(context.limit());
+  const Occluder item = {arguments->primID, true};
+  if (isTested(context, item))
+    return;
+  const float before = context.state->nearest;
+  if (searchInstance<false>(context, item.number)) {
+    ray.tfar = isOver;
+    context.occluder = item;
     return;
   }
-  ray.tfar = isOver;
-  context.occluder = {arguments->primID, true};
+  if (context.state->nearest < before)
+    context.found = item;
+  ray.tfar = context.end(context.limit());
 }
 
 void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
@@ -211,6 +226,11 @@ void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
 
 bool EmbreeScene::Implementation::isInInstance(const EmbreeContext &context, std::uint32_t number) {
   return searchInstance<true>(context, number);
+}
+
+void EmbreeScene::Implementation::searchInInstance(const EmbreeContext &context,
+                                                   std::uint32_t number) {
+  searchInstance<false>(context, number);
 }
 
 template <typename Ray>

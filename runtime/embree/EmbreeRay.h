@@ -11,6 +11,7 @@
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/embree/EmbreeScene.h"
 #include "runtime/embree/EmbreeSpace.h"
+#include "runtime/embree/LastHit.h"
 #include "runtime/embree/LastOccluders.h"
 
 #include <embree3/rtcore.h>
@@ -36,6 +37,8 @@ struct EmbreeContext {
   float toEmbree;               // a power of two that turns our t into Embree's
   // what was hit, if any hit was sufficient, or hides the point that the ray goes towards
   mutable Occluder occluder;
+  Occluder tested;        // before the search, in the world
+  mutable Occluder found; // what has won so far, in the world
 
   /// Where Embree's search may end, if hits beyond t do not matter.
   float end(float t) const { return t * toEmbree * device::cullSlack; }
@@ -83,6 +86,23 @@ struct EmbreeScene::Implementation {
 
   /// Does the ray of the context hit anything in one of the world's instances?
   static bool isInInstance(const EmbreeContext &context, std::uint32_t number);
+  /// Searches one of them for the nearest hit.
+  static void searchInInstance(const EmbreeContext &context, std::uint32_t number);
+
+  /// Tests what the last camera ray has hit.
+  [[gnu::always_inline]] void testLastHit(EmbreeContext &context) const {
+    RtslState &state = *context.state;
+    const Occluder first = LastHit::ofThread().toTest(number);
+    if (first.number == Occluder::none)
+      return;
+    if (first.isInstance)
+      searchInInstance(context, first.number);
+    else
+      testBlock(state, *context.ray, world.blocks[first.number], false);
+    context.tested = first;
+    if (state.nearest < state.HitDistance)
+      context.found = first;
+  }
 
   /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
   [[gnu::always_inline]] std::uint32_t query(RtslState &state, std::uint32_t how, float toEmbree,
@@ -117,11 +137,16 @@ struct EmbreeScene::Implementation {
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
     } else {
+      const bool isFromCamera = state.leaves == RTSL_NO_HIT && !context.endsIfHidden;
+      if (isFromCamera)
+        testLastHit(context);
       RTCRayHit rayHit;
-      fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
+      fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.nearest));
       rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(tree, &context.embree, &rayHit);
+      if (isFromCamera)
+        LastHit::ofThread().learn(number, context.found);
       device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
     }
     if (context.occluder.number != Occluder::none)

@@ -14,7 +14,8 @@
 
 namespace rtsl::runtime {
 
-/// A block of triangles of the world, or an instance that has a space of its own.
+/// What hides a point, or is hit: a block of triangles of the world, or an instance that has a
+/// space of its own.
 struct Occluder {
   static constexpr std::uint32_t none = ~0u;
 

@@ -125,11 +125,11 @@ TEST(Backend, RefusesOptionsOutOfRangeBeforeAnythingElse) {
 }
 
 TEST(Backend, TheRendererGivesTheSameBitsAgain) {
-  Scene scene(runtime::test::fakeProgram());
-  scene.setCamera(
-      scene.addObject("Camera", runtime::test::members({{"eye", runtime::test::vector(0, 1, 5)},
-                                                        {"gaze", runtime::test::vector(0, 0, -2)},
-                                                        {"up", runtime::test::vector(0, 1, 0)}})));
+  Scene scene(rtsl::runtime::test::fakeProgram());
+  scene.setCamera(scene.addObject(
+      "Camera", rtsl::runtime::test::members({{"eye", rtsl::runtime::test::vector(0, 1, 5)},
+                                              {"gaze", rtsl::runtime::test::vector(0, 0, -2)},
+                                              {"up", rtsl::runtime::test::vector(0, 1, 0)}})));
   scene.setBackgroundColor({0.5f, 0.25f, 1});
   Renderer renderer(scene, small());
   Backend &backend = renderer;
