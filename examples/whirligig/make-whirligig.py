@@ -28,14 +28,33 @@ def turn(axis, turns):
 
 
 def vane():
-    """A vane of a pinwheel in the plane z = 0, bent towards the viewer."""
-    lines, steps = [], 10
+    """A vane of a pinwheel in the plane z = 0, bent towards the viewer, with its normals: lines
+    from its lower edge to its upper one."""
+
+    def edges(s):
+        lower = (s, 0, 0.1 * s)
+        upper = (s, 0.95 * s * (1.2 - s) + 0.05, 0.22 * math.sin(math.pi * s) + 0.1 * s)
+        return lower, upper
+
+    def cross(a, b):
+        return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
+
+    lines, steps, small = [], 24, 1e-4
     for i in range(steps + 1):
         s = i / steps
-        bend = 0.22 * math.sin(math.pi * s)
-        lines.append(f"v {s:.4f} 0 {0.1 * s:.4f}")
-        lines.append(f"v {s:.4f} {0.95 * s * (1.2 - s) + 0.05:.4f} {bend + 0.1 * s:.4f}")
-    lines += [f"f {2 * i + 1} {2 * i + 3} {2 * i + 4} {2 * i + 2}" for i in range(steps)]
+        lower, upper = edges(s)
+        across = [b - a for a, b in zip(lower, upper)]
+        for edge, point in enumerate((lower, upper)):
+            along = [
+                (b - a) / (2 * small) for a, b in zip(edges(s - small)[edge], edges(s + small)[edge])
+            ]
+            normal = cross(along, across)
+            length = math.hypot(*normal)
+            lines.append("v {:.4f} {:.4f} {:.4f}".format(*point))
+            lines.append("vn {:.4f} {:.4f} {:.4f}".format(*(c / length for c in normal)))
+    for i in range(steps):
+        corners = (2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2)
+        lines.append("f " + " ".join(f"{corner}//{corner}" for corner in corners))
     return lines
 
 
