@@ -45,9 +45,8 @@ def vane():
         lower, upper = edges(s)
         across = [b - a for a, b in zip(lower, upper)]
         for edge, point in enumerate((lower, upper)):
-            along = [
-                (b - a) / (2 * small) for a, b in zip(edges(s - small)[edge], edges(s + small)[edge])
-            ]
+            before, behind = edges(s - small)[edge], edges(s + small)[edge]
+            along = [(b - a) / (2 * small) for a, b in zip(before, behind)]
             normal = cross(along, across)
             length = math.hypot(*normal)
             lines.append("v {:.4f} {:.4f} {:.4f}".format(*point))
