@@ -36,7 +36,8 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
     return;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
-  if (!messages.diagnostics.hasErrors() && scattersByMethods(request, scene->program()))
+  const bool isWhole = launch.refused.names.empty() && launch.refused.classes.empty();
+  if (isWhole && !messages.diagnostics.hasErrors() && scattersByMethods(request, scene->program()))
     for (const Warning &warning : tryMaterials(*scene, module, request, options.common.compile))
       messages.report(warning);
 }
