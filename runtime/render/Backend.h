@@ -89,6 +89,7 @@ private:
   /// render(); `watched`: the options for what stops it.
   Image renderAtOnce(const RenderOptions &watched, RenderStatistics *statistics);
 
+  bool isCancelled() const { return options.cancel && *options.cancel; }
   bool isOnePass(const PassOptions &passes, const PartialRendering &rendering) const;
   Image renderOnePass(const PassOptions &passes,
                       const std::function<void(const PassState &)> &progress,

@@ -48,6 +48,9 @@ struct PassOptions {
   /// Passes are interrupted for it.
   std::function<void(const PartialRendering &, bool isLast)> checkpoint;
 
+  /// Is the error of the picture measured, or may it be when its checkpoint is resumed?
+  bool isMeasured() const { return error > 0 || checkpoint; }
+
   /// How long a pass may go on after RenderOptions::cancel was set, so that all pixels have the
   /// same number of samples, and none is black. Without effect on what a checkpoint resumes.
   double secondsToEndPass() const { return checkpoint ? 0 : 2; }

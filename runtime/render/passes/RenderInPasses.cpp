@@ -80,8 +80,8 @@ bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdap
 bool Backend::isOnePass(const PassOptions &passes, const PartialRendering &rendering) const {
   const PassSizes sizes = passSizes();
   const std::uint32_t all = options.samplesPerPixel;
-  return rendering.sums.isEmpty() && passes.error == 0 && !passes.checkpoint &&
-         (all == 1 || sizes.copiesSums) && samplesOfPass({}, passes, sizes, all) == all;
+  return rendering.sums.isEmpty() && !passes.isMeasured() && (all == 1 || sizes.copiesSums) &&
+         samplesOfPass({}, passes, sizes, all) == all;
 }
 
 Image Backend::renderOnePass(const PassOptions &passes,
@@ -107,16 +107,16 @@ Image Backend::renderOnePass(const PassOptions &passes,
 
 /// Allocates the sums of a rendering that begins. Gives the samples that there are.
 SampleCounts Backend::takeSums(PartialRendering &rendering, const PassOptions &passes) {
-  const bool isMeasured = passes.error > 0 || passes.checkpoint; // or may be when it is resumed
   if (rendering.sums.isEmpty()) {
-    rendering.sums = PixelSums::make(pixelCount(), channels(), options.isAdaptive, isMeasured);
+    rendering.sums =
+        PixelSums::make(pixelCount(), channels(), options.isAdaptive, passes.isMeasured());
     return {};
   }
   if (rendering.sums.pixels() != pixelCount() ||
       rendering.sums.isAdaptive() != options.isAdaptive ||
       rendering.sums.colors.size() != pixelCount() * channels() * rendering.sums.halves())
     throw Error(message::sumsOfOtherPixels());
-  if (isMeasured && !rendering.sums.isMeasured())
+  if (passes.isMeasured() && !rendering.sums.isMeasured())
     throw Error(message::sumsNotMeasured());
   const SampleCounts counts = countSamples(rendering.sums);
   if (counts.most > options.samplesPerPixel)
@@ -156,15 +156,13 @@ bool Backend::runPass(const PassState &state, Clock::time_point pause, double se
 bool Backend::triesWhole(const PassOptions &passes, const PartialRendering &rendering) const {
   constexpr std::uint32_t mostSamples = 64; // with more, the other passes cost little
   return rendering.state.samplesPerPixel == 0 && options.samplesPerPixel <= mostSamples &&
-         !passSizes().copiesSums && passes.error == 0 && !passes.checkpoint &&
-         !std::isfinite(passes.seconds);
+         !passSizes().copiesSums && !passes.isMeasured() && !std::isfinite(passes.seconds);
 }
 
 /// A pass with all samples, which is given up if it would last, or is cancelled. Gives whether it
 /// is done.
 bool Backend::tryWhole(const PassOptions &passes, PartialRendering &rendering) {
   constexpr double secondsOfTrial = 1;
-  const auto isCancelled = [&] { return options.cancel && *options.cancel; };
   if (isCancelled())
     return false;
   const Clock::time_point start = Clock::now();
@@ -239,7 +237,7 @@ void Backend::runPasses(const PassOptions &passes,
       passes.checkpoint(rendering, false);
       saved = Clock::now();
     }
-  } while (!options.cancel || !*options.cancel);
+  } while (!isCancelled());
   fetchSums();
 }
 
