@@ -1,11 +1,8 @@
 #include "codegen/emit/rewrites/gpu/AlignMembers.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +13,10 @@ namespace {
 /// The alignment of a load from %address, which the body computes, after the pass.
 std::uint64_t alignmentOf(const std::string &body) {
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module = llvm::parseAssemblyString(
-      "define float @f(ptr %records, i64 %reference) {\n" + body +
-          "%value = load float, ptr %address, align 4\nret float %value\n}\n",
-      diagnostic, context);
-  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+  const auto module =
+      parseLlvm("define float @f(ptr %records, i64 %reference) {\n" + body +
+                    "%value = load float, ptr %address, align 4\nret float %value\n}\n",
+                context);
   alignMembers(*module);
   for (const llvm::Instruction &instruction : llvm::instructions(*module->getFunction("f")))
     if (const auto *load = llvm::dyn_cast<llvm::LoadInst>(&instruction))

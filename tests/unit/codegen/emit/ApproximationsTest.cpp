@@ -1,11 +1,8 @@
 #include "codegen/emit/rewrites/gpu/Approximations.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
 #include "llvm/IR/PassManager.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +13,9 @@ namespace {
 /// The instructions of a function of %a and %b after the pass: opcodes, or what is called.
 std::string rewritten(const std::string &body) {
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module = llvm::parseAssemblyString(
+  const auto module = parseLlvm(
       "declare float @llvm.sqrt.f32(float)\ndefine float @f(float %a, float %b) {\n" + body + "}\n",
-      diagnostic, context);
-  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+      context);
   llvm::Function &function = *module->getFunction("f");
   llvm::FunctionAnalysisManager analyses;
   ApproximationsPass().run(function, analyses);

@@ -1,13 +1,10 @@
 #include "codegen/emit/rewrites/gpu/Conversions.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/IntrinsicsNVPTX.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
 #include "llvm/IR/PassManager.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -19,13 +16,10 @@ namespace {
 llvm::Intrinsic::ID converted(const std::string &to, const std::string &function,
                               const std::string &from) {
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module =
-      llvm::parseAssemblyString("declare " + to + " @llvm." + function + "(" + from + ")\ndefine " +
+  const auto module = parseLlvm("declare " + to + " @llvm." + function + "(" + from + ")\ndefine " +
                                     to + " @f(" + from + " %x) {\n%i = call " + to + " @llvm." +
                                     function + "(" + from + " %x)\nret " + to + " %i\n}\n",
-                                diagnostic, context);
-  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+                                context);
   llvm::Function &f = *module->getFunction("f");
   llvm::FunctionAnalysisManager analyses;
   ConversionsPass().run(f, analyses);

@@ -1,11 +1,8 @@
 #include "codegen/emit/rewrites/gpu/DivideZeros.h"
 #include "codegen/emit/Jit.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/SourceMgr.h"
 #include "llvm/Target/TargetMachine.h"
 
 #include <gtest/gtest.h>
@@ -23,10 +20,8 @@ class Divided {
 public:
   explicit Divided(const std::string &body) {
     auto context = std::make_unique<llvm::LLVMContext>();
-    llvm::SMDiagnostic diagnostic;
-    auto module = llvm::parseAssemblyString(
-        "define float @f(float %a, float %b, float %c) {\n" + body + "}\n", diagnostic, *context);
-    EXPECT_TRUE(module) << diagnostic.getMessage().str();
+    auto module =
+        parseLlvm("define float @f(float %a, float %b, float %c) {\n" + body + "}\n", *context);
     llvm::Function &function = *module->getFunction("f");
     llvm::FunctionAnalysisManager analyses;
     hasChanged = !DivideZerosPass().run(function, analyses).areAllPreserved();

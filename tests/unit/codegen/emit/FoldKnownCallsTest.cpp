@@ -1,12 +1,9 @@
 #include "codegen/emit/rewrites/FoldKnownCalls.h"
 #include "math/Elementary.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/Constants.h"
 #include "llvm/IR/Instructions.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -31,9 +28,7 @@ std::optional<float> resultOf(const std::string &call) {
       ret float %result
     })";
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module = llvm::parseAssemblyString(text, diagnostic, context);
-  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+  const auto module = parseLlvm(text, context);
   llvm::FunctionAnalysisManager analyses;
   llvm::Function &function = *module->getFunction("f");
   FoldKnownCallsPass().run(function, analyses);

@@ -1,13 +1,10 @@
 #include "codegen/emit/rewrites/NarrowLoads.h"
 #include "runtime/program/DeviceBitcode.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/Bitcode/BitcodeReader.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -69,16 +66,15 @@ TEST(NarrowLoads, AreInAllOfAProgramWithPayloads) {
 
 TEST(NarrowLoads, AreInMethodsOfPrimitivesAlone) {
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module = llvm::parseAssemblyString(R"(
+  const auto module = parseLlvm(R"(
     define void @Sphere.intersect() {
       ret void
     }
     define void @Glass.shade() {
       ret void
     })",
-                                                diagnostic, context);
-  ASSERT_TRUE(module) << diagnostic.getMessage().str();
+                                context);
+  ASSERT_TRUE(module);
   markNarrowLoads(*module);
   EXPECT_TRUE(hasNarrowLoads(*module->getFunction("Sphere.intersect")));
   EXPECT_FALSE(hasNarrowLoads(*module->getFunction("Glass.shade")));

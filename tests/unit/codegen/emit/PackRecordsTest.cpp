@@ -1,12 +1,9 @@
 #include "codegen/emit/rewrites/PackRecords.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
-#include "llvm/AsmParser/Parser.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
 #include "llvm/Passes/PassBuilder.h"
-#include "llvm/Support/SourceMgr.h"
 
 #include <gtest/gtest.h>
 
@@ -18,13 +15,11 @@ namespace {
 class Packed {
 public:
   explicit Packed(const std::string &steps) {
-    llvm::SMDiagnostic diagnostic;
-    module = llvm::parseAssemblyString("declare i32 @rtsl_record_load(ptr, i32, i32, i32)\n"
-                                       "declare void @rtsl_record_store(ptr, i32, i32, i32, i32)\n"
-                                       "declare i32 @rtsl_record_groups()\n" +
-                                           steps,
-                                       diagnostic, context);
-    EXPECT_TRUE(module) << diagnostic.getMessage().str();
+    module = parseLlvm("declare i32 @rtsl_record_load(ptr, i32, i32, i32)\n"
+                       "declare void @rtsl_record_store(ptr, i32, i32, i32, i32)\n"
+                       "declare i32 @rtsl_record_groups()\n" +
+                           steps,
+                       context);
     llvm::LoopAnalysisManager loops;
     llvm::FunctionAnalysisManager functions;
     llvm::CGSCCAnalysisManager components;

@@ -1,9 +1,5 @@
 #include "codegen/emit/StepCosts.h"
-
-#include "llvm/AsmParser/Parser.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
-#include "llvm/Support/SourceMgr.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +12,7 @@ class Costs {
 public:
   explicit Costs(const std::string &functions) {
     llvm::LLVMContext context;
-    llvm::SMDiagnostic diagnostic;
-    const auto module = llvm::parseAssemblyString(functions + R"(
+    const auto module = parseLlvm(functions + R"(
       define i32 @rtsl_run_state(ptr %s, i32 %number) {
         switch i32 %number, label %none [ i32 1, label %first
                                           i32 2, label %second ]
@@ -30,8 +25,7 @@ public:
         %b = call i32 @second(ptr %s)
         ret i32 %b
       })",
-                                                  diagnostic, context);
-    EXPECT_TRUE(module) << diagnostic.getMessage().str();
+                                  context);
     costs = stepCosts(*module);
   }
   unsigned of(unsigned step) const { return costs >> (4 * step) & 15; }

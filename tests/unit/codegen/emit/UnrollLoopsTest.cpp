@@ -1,12 +1,9 @@
 #include "codegen/emit/rewrites/UnrollLoops.h"
+#include "tests/unit/codegen/emit/ParseLlvm.h"
 
 #include "llvm/Analysis/LoopInfo.h"
-#include "llvm/AsmParser/Parser.h"
-#include "llvm/IR/LLVMContext.h"
-#include "llvm/IR/Module.h"
 #include "llvm/IR/Verifier.h"
 #include "llvm/Passes/PassBuilder.h"
-#include "llvm/Support/SourceMgr.h"
 #include "llvm/Support/raw_ostream.h"
 
 #include <gtest/gtest.h>
@@ -43,9 +40,7 @@ bool isUnrolled(const std::string &body, const std::string &trips = "16") {
   text.replace(text.find("TRIPS"), 5, trips);
   text.replace(text.find("BODY"), 4, body);
   llvm::LLVMContext context;
-  llvm::SMDiagnostic diagnostic;
-  const auto module = llvm::parseAssemblyString(text, diagnostic, context);
-  EXPECT_TRUE(module) << diagnostic.getMessage().str();
+  const auto module = parseLlvm(text, context);
   llvm::PassBuilder builder;
   llvm::LoopAnalysisManager loops;
   llvm::FunctionAnalysisManager functions;
