@@ -2,6 +2,7 @@
 #include "frontend/lex/Tokenizer.h"
 #include "frontend/lex/ByteStream.h"
 #include "frontend/source/Utf8.h"
+#include "support/ByteOrderMark.h"
 
 #include "grammar/RtslLexer.h"
 
@@ -10,8 +11,6 @@ namespace rtsl {
 namespace {
 
 using generated::RtslLexer;
-
-constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
 
 bool isDigit(char c) {
   return c >= '0' && c <= '9';
@@ -158,8 +157,7 @@ TokenList Tokenizer::run() {
     list.isUsable = false;
   } else {
     list.tokens.reserve(text.size() / 4);
-    if (text.substr(0, byteOrderMark.size()) == byteOrderMark)
-      stream.seek(byteOrderMark.size());
+    stream.seek(byteOrderMarkLength(text));
     for (bool isDone = false; !isDone;) {
       const std::unique_ptr<antlr4::Token> word = lexer.nextToken();
       const std::size_t type = word->getType();

@@ -7,6 +7,8 @@
 //===----------------------------------------------------------------------===//
 #include "TextBuilder.h"
 
+#include "support/ByteOrderMark.h"
+
 #include <llvm/ADT/SmallString.h>
 
 #include <algorithm>
@@ -61,9 +63,7 @@ TextBuilder::Progress &TextBuilder::progressIn(clang::FileID id) {
   if (isNew) {
     progress.file = origins.fileOf(id);
     progress.include = origins.includeOf(id);
-    constexpr std::string_view byteOrderMark = "\xEF\xBB\xBF";
-    if (sources.text(progress.file).substr(0, byteOrderMark.size()) == byteOrderMark)
-      progress.end = byteOrderMark.size();
+    progress.end = std::uint32_t(byteOrderMarkLength(sources.text(progress.file)));
   }
   return progress;
 }

@@ -1,6 +1,7 @@
 #include "runtime/buffers/NumberFiles.h"
 
 #include "support/AtomicFile.h"
+#include "support/ByteOrderMark.h"
 #include "support/ClosestName.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
@@ -230,6 +231,7 @@ std::vector<std::size_t> placesOf(const std::string &where, const std::vector<st
 NumberArray readCsv(const std::string &path, const std::vector<std::string> &columns) {
   const std::string file = readFile(path);
   std::string_view text = file;
+  text.remove_prefix(byteOrderMarkLength(text)); // of spreadsheets
   NumberArray array;
   std::vector<std::string> names;
   std::vector<std::size_t> places;

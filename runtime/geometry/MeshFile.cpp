@@ -11,6 +11,7 @@
 #include "runtime/geometry/ObjDamage.h"
 #include "runtime/geometry/ObjFile.h"
 #include "runtime/geometry/PlyFile.h"
+#include "support/ByteOrderMark.h"
 #include "support/ErrorMessages.h"
 #include "support/LargeFile.h"
 
@@ -62,6 +63,10 @@ bool isPipe(const std::string &path) {
   return ::stat(path.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
 }
 
+std::string_view objTextOf(const LargeFile &file) {
+  return file.bytes().substr(byteOrderMarkLength(file.bytes()));
+}
+
 /// Nothing if assimp must read the file, which is not possible after a pipe has been read.
 std::optional<Mesh> readPlain(const std::string &path, const std::string &extension,
                               const MeshRequest &request) {
@@ -70,7 +75,7 @@ std::optional<Mesh> readPlain(const std::string &path, const std::string &extens
     return std::nullopt;
   const bool isRead = isPipe(path);
   const LargeFile file(path);
-  const std::string_view bytes = file.bytes();
+  const std::string_view bytes = isPly ? file.bytes() : objTextOf(file);
   std::optional<Mesh> mesh = isPly ? readPlainPly(bytes, request) : readPlainObj(bytes, request);
   if (mesh)
     return mesh;
@@ -107,12 +112,12 @@ std::vector<MeshGroup> loadMeshGroups(const std::string &path) {
     if (isPipe(path))
       throw Error(message::meshUnreadableFromPipe(path), Place{path});
     const LargeFile file(path);
-    if (std::optional<std::vector<MeshGroup>> groups = readPlainObjGroups(file.bytes())) {
+    if (std::optional<std::vector<MeshGroup>> groups = readPlainObjGroups(objTextOf(file))) {
       for (const MeshGroup &group : *groups)
         validateMesh(group.mesh, path);
       return std::move(*groups);
     }
-    if (const std::optional<Message> damage = findObjDamage(file.bytes(), path))
+    if (const std::optional<Message> damage = findObjDamage(objTextOf(file), path))
       throw Error(*damage, Place{path});
     std::vector<MeshGroup> groups = readGroupsByAssimp(path);
     if (groups.empty())

@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "scenefile/json/JsonValue.h"
+#include "support/ByteOrderMark.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -33,8 +34,7 @@ struct Token {
 class Cursor {
 public:
   explicit Cursor(const std::string &text) : text(text) {
-    if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) // a byte order mark has no column
-      position = lineStart = 3;
+    position = lineStart = byteOrderMarkLength(text); // it has no column
   }
 
   /// Steps over the next string, number, literal or bracket.

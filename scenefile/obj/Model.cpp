@@ -3,6 +3,7 @@
 #include "runtime/geometry/Mesh.h"
 #include "scenefile/obj/Material.h"
 #include "support/AtomicFile.h"
+#include "support/ByteOrderMark.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -150,7 +151,7 @@ Mentions mentionsIn(const std::string &path) {
   const auto file = std::make_shared<const std::string>(path);
   // Most lines are numbers: only the others are divided into words.
   std::uint32_t number = 0;
-  for (std::size_t start = 0; start < contents.size(); ++start) {
+  for (std::size_t start = byteOrderMarkLength(contents); start < contents.size(); ++start) {
     const std::size_t end = std::min(contents.find('\n', start), contents.size());
     ++number;
     const std::string_view whole(contents.data() + start, end - start);

@@ -1,6 +1,7 @@
 #include "scenefile/obj/Mtl.h"
 
 #include "support/AtomicFile.h"
+#include "support/ByteOrderMark.h"
 #include "support/ErrorMessages.h"
 
 #include <algorithm>
@@ -11,9 +12,9 @@ std::vector<Line> linesOf(std::string_view text) {
   std::vector<Line> lines;
   Line line;
   std::uint32_t number = 1;
-  std::size_t start = 0; // of the line
+  std::size_t start = byteOrderMarkLength(text); // of the line
   const auto isBlank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-  for (std::size_t at = 0; at <= text.size();) {
+  for (std::size_t at = start; at <= text.size();) {
     if (at == text.size() || text[at] == '\n') {
       if (!line.empty())
         lines.push_back(std::move(line));

@@ -172,7 +172,7 @@ class Buffers(Case):
                 [3, 6, -4.5, 0.5],
             ],
         )
-        self.write("plain.csv", "1,2\n3,4\n")
+        self.write("plain.csv", "\ufeff1,2\n3,4\n")  # with a byte order mark
         self.scene(table={"buffer": "plain.csv"})
         self.assertEqual([line[3] for line in self.printed()], [1, 2, 3, 4])
 

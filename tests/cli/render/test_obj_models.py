@@ -257,12 +257,13 @@ class Materials(ObjCase):
         self.assertIn("squares.obj:14:8", warnings)
 
     def test_names_and_lines_as_they_come(self):
-        """Blanks in names, continued lines, line ends of DOS, several files, one in a folder."""
+        """Blanks in names, continued lines, line ends and byte order marks of Windows, several
+        files, one in a folder."""
         (self.folder / "sub").mkdir()
-        self.write("sub/a.mtl", "newmtl the left one\r\nKd 0.1 \\\r\n 0.2 0.3\r\n")
+        self.write("sub/a.mtl", "\ufeffnewmtl the left one\r\nKd 0.1 \\\r\n 0.2 0.3\r\n")
         self.write("b.mtl", "# nothing\n\n  newmtl right\n\tKd 0.4\n")
         text = OBJ.replace("squares.mtl", "sub/a.mtl b.mtl").replace("left", "the left one")
-        self.write("squares.obj", text.replace("\n", "\r\n"))
+        self.write("squares.obj", "\ufeff" + text.replace("\n", "\r\n"))
         self.scene()
         left, right, warnings = self.halves()
         self.assert_color(left + right, [0.1, 0.2, 0.3, 0.4, 0.4, 0.4])
