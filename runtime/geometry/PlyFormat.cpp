@@ -61,7 +61,8 @@ std::optional<Header> readHeader(std::string_view bytes, std::size_t *lines) {
         return std::nullopt;
     } else if (word == "element") {
       Element element;
-      if (!(line >> element.name >> element.count))
+      // A negative number would be read as a large one.
+      if (!(line >> element.name >> std::ws) || line.peek() == '-' || !(line >> element.count))
         return std::nullopt;
       header.elements.push_back(element);
     } else if (word == "property") {

@@ -51,6 +51,12 @@ TEST_F(Meshes, ReadsObjWithPolygonsNormalsAndUvs) {
   }
 }
 
+TEST_F(Meshes, AnObjFileMayBeginWithAByteOrderMark) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(loadMesh(put("a.obj", "\xEF\xBB\xBF" + text)).positions,
+            loadMesh(put("b.obj", text)).positions);
+}
+
 TEST_F(Meshes, ReadsPlyAndGltf) {
   EXPECT_EQ(loadMesh(put("a.ply", std::string(plyHeader) + "3 0 1 2\n3 1 2 3\n")).triangleCount(),
             2u);
@@ -159,6 +165,8 @@ TEST_F(Meshes, DamageOfPlyIsFoundBeforeAssimpReadsIt) {
                                                "`vertex`: `0.5x` is not a number of its type");
   EXPECT_EQ(damage(good, "property float z", "propperty float z"),
             "mesh `a.ply` is damaged or truncated in line 6 of its header");
+  EXPECT_EQ(damage(good, "element vertex 4", "element vertex -4"),
+            "mesh `a.ply` is damaged or truncated in line 3 of its header");
   EXPECT_EQ(damage(good, "element face", "obj_info x\ncomment y\nelement face"), "");
 
   // As floats, and in the other order
