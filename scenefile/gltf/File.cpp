@@ -83,6 +83,13 @@ int valueOfBase64(char c) {
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
+/// Does a message with this text and place say which file it is about?
+bool namesFile(const std::string &text, const std::optional<Place> &place,
+               const std::string &path) {
+  return (place && (place->line != 0 || place->file != path)) ||
+         text.find(path) != std::string::npos;
+}
+
 } // namespace
 
 bool hasEnding(const std::string &path, std::string_view ending) {
@@ -139,8 +146,7 @@ const JsonValue *extension(const JsonValue &element, const char *name) {
 }
 
 Error named(const Error &error, const std::string &path) {
-  const bool isKnown = (error.place && (error.place->line != 0 || error.place->file != path)) ||
-                       std::string_view(error.what()).find(path) != std::string_view::npos;
+  const bool isKnown = namesFile(error.what(), error.place, path);
   Error result = isKnown ? error
                          : Error({error.code, fmt::format("`{}`: {}", path, error.what())},
                                  error.place ? error.place : Place{path});
@@ -150,6 +156,12 @@ Error named(const Error &error, const std::string &path) {
   for (const Error &further : error.further)
     result.further.push_back(named(further, path));
   return result;
+}
+
+Warning named(Warning warning, const std::string &path) {
+  if (!namesFile(warning.message, warning.place, path))
+    warning.message = fmt::format("`{}`: {}", path, warning.message);
+  return warning;
 }
 
 File::File(std::string path) : File(readFile(path), path) {}
@@ -218,6 +230,10 @@ void File::checkRoot() {
       expect(require(asset, "version", "`asset`"), Kind::String, "`version` of `asset`");
   if (version.string.compare(0, 2, "2.") != 0)
     throw Error(message::modelVersion(version.string), version.place());
+  // Later versions 2.x add only what readers may ignore, unless the file needs such a version.
+  const JsonValue *needed = asset.find("minVersion");
+  if (needed && expect(*needed, Kind::String, "`minVersion` of `asset`").string != "2.0")
+    throw Error(message::modelVersion(needed->string), needed->place());
   ErrorCollector errors;
   for (const char *key : lists)
     if (const JsonValue *found = json.find(key))

@@ -117,5 +117,6 @@ const JsonValue *extension(const JsonValue &element, const char *name);
 /// An error that names the file: one without a position would not say where it is. So do those that
 /// it carries.
 Error named(const Error &error, const std::string &path);
+Warning named(Warning warning, const std::string &path);
 
 } // namespace rtsl::scene::gltf

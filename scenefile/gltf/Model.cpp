@@ -45,6 +45,8 @@ public:
       throw Error(message::emptyModel(file.path()), source.place());
     addChildren(name, source, std::move(children[0]));
     model.warnings.insert(model.warnings.end(), file.warnings().begin(), file.warnings().end());
+    for (Warning &warning : model.warnings)
+      warning = named(std::move(warning), file.path());
     return std::move(model);
   }
 

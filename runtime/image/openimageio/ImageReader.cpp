@@ -13,6 +13,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 namespace rtsl::runtime {
@@ -91,11 +92,18 @@ OIIO::TypeDesc typeFor(const OIIO::ImageSpec &spec) {
   }
 }
 
-/// A name for bytes in memory: OpenImageIO chooses a reader by its ending.
-std::string nameOf(const void *bytes, std::uint64_t size) {
+/// Opens bytes in memory; OpenImageIO chooses a reader by the ending of a name, or tries all.
+std::unique_ptr<OIIO::ImageInput> openBytes(const void *bytes, std::uint64_t size,
+                                            const OIIO::ImageSpec &config,
+                                            OIIO::Filesystem::IOMemReader &memory) {
   constexpr unsigned char jpeg[] = {0xff, 0xd8, 0xff};
   const bool isJpeg = size > sizeof jpeg && std::memcmp(bytes, jpeg, sizeof jpeg) == 0;
-  return isJpeg ? "bytes.jpg" : "bytes";
+  auto input = OIIO::ImageInput::open(isJpeg ? "bytes.jpg" : "bytes", &config, &memory);
+  if (!input && !isJpeg) { // its message is about a file with this name
+    OIIO::geterror();
+    throw std::runtime_error("it is damaged, or in no format that OpenImageIO reads");
+  }
+  return input;
 }
 
 /// All that is decoded for a pixel, not only the channels that are read.
@@ -209,9 +217,8 @@ rtslReadImageFile(const char *path, const void *bytes, std::uint64_t size, std::
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1); // colors as the file has them
     OIIO::Filesystem::IOMemReader memory(const_cast<void *>(bytes), size);
-    const auto input =
-        bytes ? OIIO::ImageInput::open(rtsl::runtime::nameOf(bytes, size), &config, &memory)
-              : OIIO::ImageInput::open(path, &config);
+    const auto input = bytes ? rtsl::runtime::openBytes(bytes, size, config, memory)
+                             : OIIO::ImageInput::open(path, &config);
     rtsl::runtime::read(input.get(), fileBytes, mostBytes, freeBytes, allocate, context, *file);
   } catch (const std::bad_alloc &) {
     if (file->width == 0)

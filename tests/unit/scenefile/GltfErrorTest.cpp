@@ -55,6 +55,8 @@ TEST_F(GltfError, WhatIsNoModel) {
   EXPECT_EQ(sceneError("{}"), "m.gltf:1:1+1: missingKey: a glTF file needs a `asset`");
   EXPECT_EQ(sceneError(R"({"asset": {"version": "1.0"}})"),
             "m.gltf:1:24+3: notSupported: glTF 1.0 is not supported, only 2.0 is");
+  EXPECT_EQ(sceneError(R"({"asset": {"version": "2.1", "minVersion": "2.1"}})"),
+            "m.gltf:1:45+3: notSupported: glTF 2.1 is not supported, only 2.0 is");
   EXPECT_EQ(sceneError(R"({"asset": {"version": "2.0"}})"),
             "s.json:2:24+6: incompleteScene: the scene of `m.gltf` has no triangles and no lights");
   EXPECT_EQ(sceneError(R"({"asset": {"version": "2.0"}, "nodes": 3, "meshes": [4],

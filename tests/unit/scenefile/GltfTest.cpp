@@ -263,6 +263,11 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
                 "positions and normals",
                 "the extension `KHR_materials_iridescence` of `m.gltf` is not supported; what it "
                 "adds is ignored"}));
+  // A container has no lines, so the text names the file.
+  const SceneDescription packed = scene(container(file, ""));
+  ASSERT_EQ(packed.warnings.size(), found.size());
+  EXPECT_EQ(folder.without(packed.warnings[0].message), "`m.gltf`: " + found[0]);
+  EXPECT_EQ(folder.without(packed.warnings.back().message), found.back());
 }
 
 TEST_F(Gltf, MorphTargetsAreAddedByTheirWeights) {
@@ -347,6 +352,10 @@ TEST_F(Gltf, ReadsImagesFromBuffers) {
             "m.glb: badBuffer: `m.glb`: `images.2` has a `data:` URI that is not in base64");
   EXPECT_EQ(imageError(file, "images.3"),
             "unknownName: `m.glb` has no `images.3`; its images are named like `images.0`");
+  const gltf::File other(model(R"({"buffer": 0, "byteOffset": 20, "byteLength": 50})"), "m.glb");
+  EXPECT_EQ(imageError(other, "images.0"),
+            "badImage: cannot read `m.glb/images.0`: it is damaged, or in no format that "
+            "OpenImageIO reads");
   const gltf::File late(model(R"({"buffer": 0, "byteOffset": 30, "byteLength": 69})"), "m.glb");
   EXPECT_EQ(imageError(late, "images.0"), "m.glb: badBuffer: `m.glb`: `bufferViews.0` ends at byte "
                                           "99 of `buffers.0`, which has 70");
