@@ -203,7 +203,10 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
   const Type *from = expr.type;
   const std::string text = sourceText(expr.range);
   auto wrap = [&](const std::string &function, bool sure = false) {
-    diagnostic.fix(expr.range, function + "(" + text + ")", sure);
+    // `(1.0, 0.5, 0.2)` is a comma expression, but was meant as a list of components.
+    const bool isList = expr.kind == typed::ExprKind::Comma && !to->isScalar() &&
+                        expr.range.begin < cast<typed::CommaExpr>(expr).left->range.begin;
+    diagnostic.fix(expr.range, function + (isList ? text : "(" + text + ")"), sure);
   };
   // Conversions that C makes implicitly, and that keep the value.
   const bool isNumeric = from->scalar() && from->scalar()->isNumericScalar() && to->scalar() &&

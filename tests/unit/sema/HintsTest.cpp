@@ -186,6 +186,8 @@ TEST(Hints, ConversionsAreWrittenOut) {
   expectFix("vec2 f(vec4 v) { return v; }", "vec2 f(vec4 v) { return v.xy; }");
   expectFix("vec3 f(float x) { return x; }", "vec3 f(float x) { return vec3(x); }");
   expectFix("color f(float x) { return x; }", "color f(float x) { return color(x); }");
+  expectFix("color f() { return (0.8, 0.5, 0.2); }", "color f() { return color(0.8, 0.5, 0.2); }");
+  expectFix("vec3 f() { return (0.8, 0.5, 0.2); }", "vec3 f() { return vec3(0.8, 0.5, 0.2); }");
   expectFix("color f(vec3 v) { return v; }", "color f(vec3 v) { return color(v.r, v.g, v.b); }");
   expectFix("color f(vec3 v) { return color(v); }",
             "color f(vec3 v) { return color(v.r, v.g, v.b); }");
