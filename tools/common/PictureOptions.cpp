@@ -84,9 +84,10 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format) 
       hasEnding ? CLI::detail::to_lower(output.substr(dot + 1)) : std::string();
   if (format == runtime::PictureFormat::ByName && output != "-" && ending != "png" &&
       ending != "exr")
-    throw CLI::ValidationError(
-        "--output", "a picture's name ends in .png or .exr, unless --format selects that of `" +
-                        output + "` is to be");
+    throw CLI::ValidationError("--output",
+                               "`" + output +
+                                   "` ends neither in .png nor in .exr: choose another name, or a "
+                                   "format with --format");
 }
 
 void writePictureSoFar(const std::string &output, const runtime::Image &image,

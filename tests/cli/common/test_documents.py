@@ -164,7 +164,8 @@ class Documents(Case):
             ["--spp", "0"],
         ):
             self.run_rtslc("render", scene, "-o", "x.exr", *wrong, status=USAGE)
-        self.run_rtslc("render", scene, "-o", "a.jpg", status=USAGE)
+        _, error = self.run_rtslc("render", scene, "-o", "a.jpg", status=USAGE)
+        self.assertIn("`a.jpg` ends neither in .png nor in .exr", error)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_stages(self):

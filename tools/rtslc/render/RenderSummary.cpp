@@ -165,7 +165,8 @@ void printSummary(const RenderCommandOptions &options, const PictureSummary &sum
              statistics.renderSeconds,
              double(statistics.samples) / statistics.renderSeconds * 1e-6);
   if (const auto &cache = options.common.compile.codeCache; cache && cache->reused())
-    fmt::print(stderr, "machine code of the picture before: {} modules\n", cache->reused());
+    fmt::print(stderr, "machine code of the picture before: {} module{}\n", cache->reused(),
+               cache->reused() == 1 ? "" : "s");
   if (statistics.isRefitted)
     fmt::print(stderr, "trees of the picture before: refitted\n");
   if (summary.resumedAt)
