@@ -9,7 +9,7 @@ import threading
 import time
 import unittest
 
-from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case
+from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case, deep
 
 SMALL = ("--size", "16x12", "--spp", "1", "-O", "0")
 NEW_PICTURE = " spp; compiled in "
@@ -194,6 +194,26 @@ class Watch(Case):
         self.assertNotEqual(self.picture(), before)
         self.end()
         self.assertNotIn(NEW_PICTURE, self.lines_left())
+
+    @deep
+    def test_a_sample_that_never_ends(self):
+        """No thread can be stopped in it: the process starts again, or ends."""
+        self.start("a.rtsl", "-o", "a.exr", "--threads", "1")
+        self.expect("watching", without="error")
+        before = self.picture()
+        for value in ("0.25", "0.75"):
+            self.write("c.inc", "float share() { while (true) ; return 1.0; }\n")
+            time.sleep(1)
+            self.assertEqual(self.picture(), before)
+            self.write("c.inc", SHARE.replace("1.0", value))
+            self.expect("starting again")
+            self.expect(NEW_PICTURE, without="error")
+            self.assertNotEqual(self.picture(), before)
+            before = self.picture()
+        self.write("c.inc", "float share() { while (true) ; return 0.5; }\n")
+        time.sleep(1)
+        self.end()
+        self.assertEqual(self.picture(), before)
 
     def test_ending_writes_no_unfinished_picture(self):
         self.start("a.rtsl", "-o", "a.exr", small=("--size", "600x600", "--spp", "100000"))
