@@ -222,14 +222,19 @@ class ClosedForms(PathCase):
                     )
                     self.assert_gray(0.5 * 2 * factor, 0.01)
 
-    def test_meshes_that_send_out_nothing(self):
-        """One without triangles, and one whose triangles have no area."""
-        for given in ({}, {"vertices": [[0, 1, 0], [1, 1, 0], [3, 1, 0]]}):
+    def test_lights_without_an_area_send_out_nothing(self):
+        lines = [[0, 1, 0], [1, 1, 0], [3, 1, 0]]
+        for light in (
+            {"class": "MeshLight"},
+            {"class": "MeshLight", "vertices": lines},
+            {"class": "RectangleLight", "corner": lines[0], "side1": lines[1], "side2": lines[1]},
+            {"class": "RectangleLight", "corner": lines[0], "side1": [0, 0, 0]},
+        ):
             self.scene(
                 [(FLOOR, {"class": "Own", "albedo": 0.5})],
                 camera="Down",
                 spp=1,
-                lights=[{"class": "MeshLight", **given}],
+                lights=[light],
                 background=0.25,
             )
             self.assert_gray(0.5 * 0.25, 1e-6)
