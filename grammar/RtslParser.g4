@@ -82,7 +82,14 @@ dimension
 
 // Dimensions may follow the name, too, and are then the outer ones: vec4[2] a[3] is vec4[3][2] a.
 declarator
-    : IDENTIFIER dimension* ( ASSIGN initializer )?
+    : IDENTIFIER dimension* range? ( ASSIGN initializer )?
+    ;
+
+// The values that a member may have, as an interval: a round bracket excludes its bound.
+//
+//     public float roughness in [0, 1] = 0.2, radius in (0, inf);
+range
+    : IN ( LEFT_BRACKET | LEFT_PAREN ) expr COMMA expr ( RIGHT_BRACKET | RIGHT_PAREN )
     ;
 
 initializer

@@ -342,13 +342,24 @@ private:
     return member ? &member->type : nullptr;
   }
 
+  static Value numberOf(const JsonValue &json) {
+    Value value(json.number);
+    if (json.keys) {
+      std::vector<Value> keys;
+      for (const JsonValue &key : *json.keys)
+        keys.push_back(Value(key.number).at(key.place()));
+      value.keys = std::make_shared<const std::vector<Value>>(std::move(keys));
+    }
+    return value.at(json.place());
+  }
+
   /// Converts JSON to a value. Strings name objects if the type is a reference, and are not allowed
   /// otherwise; null is no object, for references that `mayBeEmpty`.
   Value convert(const JsonValue &json, const ValueType *type, const std::string &what,
                 bool mayBeEmpty = false) {
     switch (json.kind) {
     case Kind::Number:
-      return Value(json.number).at(json.place());
+      return numberOf(json);
     case Kind::Boolean:
       return Value(json.boolean).at(json.place());
     case Kind::Array: {

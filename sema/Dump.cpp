@@ -142,9 +142,10 @@ void Dumper::member(const Member &member) {
   std::string value;
   if (member.constant)
     value = " = " + constantText(*member.constant, member.type);
-  line(fmt::format(
-      "member {} {}{}{} : {}", accessText(member.isConst ? ast::Access::None : member.access),
-      member.isOptional ? "optional " : "", member.name, value, toString(member.type)));
+  line(fmt::format("member {} {}{}{} : {}{}",
+                   accessText(member.isConst ? ast::Access::None : member.access),
+                   member.isOptional ? "optional " : "", member.name, value, toString(member.type),
+                   member.values ? " in " + toString(*member.values) : ""));
   if (!member.constant && member.init) {
     Indent indent(*this);
     expr(*member.init);

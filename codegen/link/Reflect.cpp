@@ -104,6 +104,7 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
     described.isPublic = member->access == ast::Access::Public;
     described.hasDefault = member->init != nullptr || member->isOptional; // no object
     described.isRequired = required.has(info, *member);
+    described.values = member->values;
     result.members.push_back(std::move(described));
   }
 

@@ -190,6 +190,16 @@ struct ErrorExpr : ExprOf<ExprKind::Error> {};
 enum class Access { None, Public, Private, Scratch }; // of members
 enum class Direction { In, Out, InOut };              // of parameters
 
+/// `in [low, high)`, the values that a member may have.
+struct ValueRange {
+  ExprPtr low, high; // null: there is no range
+  bool includesLow = false, includesHigh = false;
+  SourceRange lowBracket, highBracket;
+  SourceRange range; // from `in` on
+
+  bool isGiven() const { return low != nullptr; }
+};
+
 /// One declarator: a local, a member, a field of a struct or a parameter. `float a = 1, b[3];`
 /// gives two.
 struct VariableDecl {
@@ -202,7 +212,8 @@ struct VariableDecl {
   SourceRange directionRange;          // of a member's; not valid: absent
   TypeName type; // dimensions after the name are the outer ones: `vec4[2] a[3]` is `vec4[3][2]`
   Name name;     // empty text: an unnamed parameter
-  ExprPtr init;  // null: none
+  ValueRange values;
+  ExprPtr init; // null: none
   SourceRange range;
 };
 

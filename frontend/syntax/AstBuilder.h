@@ -70,6 +70,7 @@ private:
                           const std::vector<Parser::DimensionContext *> &outer = {});
   void addDimensions(const std::vector<Parser::DimensionContext *> &contexts,
                      std::vector<ast::ArrayDimension> &dimensions);
+  ast::ValueRange buildRange(Parser::RangeContext *context, Place place);
   ast::VariableDecl buildParameter(Parser::ParameterContext *context);
   void checkFollowsFileClass(SourceRange where, const char *what);
 

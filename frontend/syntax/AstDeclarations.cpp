@@ -207,6 +207,28 @@ TypeName AstBuilder::buildType(Parser::TypeNameContext *context,
   return type;
 }
 
+/// The range of a member. Those of other variables are reported and left out.
+ValueRange AstBuilder::buildRange(Parser::RangeContext *context, Place place) {
+  ValueRange values;
+  const auto bounds = context->expr();
+  if (context->exception || bounds.size() != 2)
+    return values;
+  values.range = range(context);
+  if (place != Place::Member) {
+    diagnostics.report(Code::misplacedRange, values.range, "it is for public members of classes")
+        .fix(values.range, "");
+    return values;
+  }
+  values.low = buildExpr(bounds[0]);
+  values.high = buildExpr(bounds[1]);
+  values.includesLow = context->LEFT_BRACKET() != nullptr;
+  values.includesHigh = context->RIGHT_BRACKET() != nullptr;
+  values.lowBracket = range(values.includesLow ? context->LEFT_BRACKET() : context->LEFT_PAREN());
+  values.highBracket =
+      range(values.includesHigh ? context->RIGHT_BRACKET() : context->RIGHT_PAREN());
+  return values;
+}
+
 void AstBuilder::addVariables(const antlr4::ParserRuleContext *context,
                               const std::vector<Parser::QualifierContext *> &qualifierContexts,
                               Parser::TypeNameContext *typeName,
@@ -230,6 +252,8 @@ void AstBuilder::addVariables(const antlr4::ParserRuleContext *context,
     variable.directionRange = qualifiers.directionRange;
     variable.type = buildType(typeName, declarator->dimension());
     variable.name = name(declarator->IDENTIFIER());
+    if (auto *values = declarator->range())
+      variable.values = buildRange(values, place);
     if (auto *initializer = declarator->initializer())
       variable.init = buildInitializer(initializer);
     variable.range = range(declarator);

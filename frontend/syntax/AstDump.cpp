@@ -400,6 +400,10 @@ void Dumper::variable(const char *what, const VariableDecl &variable) {
                                   : std::string_view(text));
   const Indent indent(depth);
   sizes(variable.type);
+  if (variable.values.isGiven()) {
+    expression(variable.values.includesLow ? "from " : "above ", variable.values.low.get());
+    expression(variable.values.includesHigh ? "to " : "below ", variable.values.high.get());
+  }
   expression("", variable.init.get());
 }
 

@@ -74,7 +74,14 @@ bool SyntaxErrors::isConsequence(std::size_t index) const {
 bool SyntaxErrors::endsBefore(std::size_t index) const {
   const Token &token = tokenAt(index);
   return token.startsLine || token.type == RtslLexer::RIGHT_BRACE ||
-         token.type == Token::endOfFile || isStatementKeyword(token.type);
+         token.type == Token::endOfFile || (isStatementKeyword(token.type) && !beginsRange(index));
+}
+
+/// True if this token is the `in` of a range.
+bool SyntaxErrors::beginsRange(std::size_t index) const {
+  const unsigned next = tokenAt(index + 1).type;
+  return tokenAt(index).type == RtslLexer::IN &&
+         (next == RtslLexer::LEFT_BRACKET || next == RtslLexer::LEFT_PAREN);
 }
 
 //===----------------------------------------------------------------------===//
@@ -97,6 +104,8 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
     diagnostic.note("a condition is written in parentheses");
   else if (textOf(index) == "extends" || textOf(index) == "implements")
     diagnostic.fix(rangeOf(index), ":", true);
+  else if (beginsRange(index))
+    diagnostic.note("a range is written before the default: `float roughness in [0, 1] = 0.2`");
   else if (type(0) == RtslLexer::LEFT_PAREN && followsName)
     diagnostic.note(
         "a variable gets its value from `=`; a function cannot be declared in another one");
@@ -170,6 +179,8 @@ std::string SyntaxErrors::expectedToken(antlr4::Parser *parser, std::size_t inde
     return rule == RtslParser::RuleTypeName     ? "a type"
            : rule == RtslParser::RuleModulePath ? "the name of a module"
                                                 : "a name";
+  if (rule == RtslParser::RuleRange && !expected.contains(std::size_t{RtslLexer::COMMA}))
+    return expected.contains(std::size_t{RtslLexer::LEFT_PAREN}) ? "`[` or `(`" : "`]` or `)`";
   if (expected.contains(std::size_t{RtslLexer::RIGHT_PAREN})) {
     if (index > 0 && !endsOperand(tokenAt(index - 1).type))
       return rule == RtslParser::RuleParameters ? "a parameter" : "an expression";

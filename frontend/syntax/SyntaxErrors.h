@@ -39,6 +39,7 @@ private:
   std::string describe(std::size_t index) const;
   bool isConsequence(std::size_t index) const;
   bool endsBefore(std::size_t index) const;
+  bool beginsRange(std::size_t index) const;
 
   void reportMissingSemicolon(antlr4::Parser *parser, std::size_t index);
   void reportUnexpected(std::size_t index, const std::string &expected);

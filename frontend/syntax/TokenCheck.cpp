@@ -70,7 +70,7 @@ public:
 private:
   /// The tokens between two brackets, or outside of all.
   struct Level {
-    enum Kind { Block, InitializerList, Group, Arguments, ForHeader, Index };
+    enum Kind { Block, InitializerList, Group, Arguments, ForHeader, Index, Range };
     Kind kind = Block;
     Token open; // end of file: the outermost level
     // The current chain: since the last separator.
@@ -143,6 +143,10 @@ void TokenChecker::retag(Token &token, std::size_t index) {
   }
   if (!isKeyword(token.type) || token.startsLine)
     return;
+  const bool followsDeclarator =
+      before() == RtslLexer::IDENTIFIER && before(2) == RtslLexer::COMMA && levels.back().isBlock();
+  if (token.type == RtslLexer::IN && isOpening(next) && followsDeclarator)
+    return; // `float a = 0.5, b in [0, 1];`
   const bool isNamed = before() == RtslLexer::DOT ||
                        (before() == RtslLexer::CLASS && next == RtslLexer::COLON) ||
                        (before() == RtslLexer::STRUCT && next == RtslLexer::LEFT_BRACE);
@@ -202,6 +206,8 @@ void TokenChecker::open(Token token) {
     level.kind = previous == RtslLexer::ASSIGN || levels.back().kind == Level::InitializerList
                      ? Level::InitializerList
                      : Level::Block;
+  else if (previous == RtslLexer::IN)
+    level.kind = Level::Range;
   else if (token.type == RtslLexer::LEFT_BRACKET)
     level.kind = Level::Index;
   else if (previous == RtslLexer::FOR)
@@ -253,7 +259,10 @@ bool TokenChecker::isClosedSoon(std::size_t index) const {
 }
 
 void TokenChecker::handleClosing(const Token &token) {
-  if (levels.size() > 1 && token.type == closingOf(levels.back().open.type)) {
+  // The brackets of a range say whether its bounds belong to it, and need not be alike.
+  const bool closesRange =
+      levels.back().kind == Level::Range && token.type != RtslLexer::RIGHT_BRACE;
+  if (closesRange || (levels.size() > 1 && token.type == closingOf(levels.back().open.type))) {
     close(token);
     return;
   }

@@ -6,12 +6,14 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "language/Range.h"
 #include "runtime/device/ray/Abi.h"
 #include "support/Error.h"
 
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,10 +41,11 @@ struct MemberInfo {
   ValueType type;
   std::uint32_t offset =
       0; // bytes from the start of the record (members) or of the packed arguments (parameters)
-  bool isPublic = false;   // the scene may set it
-  bool hasDefault = false; // for a reference: it may be empty
-  bool isRequired = false; // no object may be without a value (codegen/link/RequiredMembers.h)
-  bool isRead = true;      // by some function of the program
+  bool isPublic = false;       // the scene may set it
+  bool hasDefault = false;     // for a reference: it may be empty
+  bool isRequired = false;     // no object may be without a value (codegen/link/RequiredMembers.h)
+  bool isRead = true;          // by some function of the program
+  std::optional<Range> values; // which each of its components may have
   /// For a member that refers to images: which channels the program reads, bits 0 to 3 for red,
   /// green, blue and alpha.
   static constexpr std::uint32_t allChannels = 15;

@@ -1,5 +1,6 @@
 #include "runtime/scene/ObjectValues.h"
 
+#include "runtime/scene/MemberRanges.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
@@ -88,6 +89,7 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
     throw Error(message::memberNotPublic(one.name, classInfo.name), one.place ? one.place : place);
   storeValue(found->type, one.value, record + found->offset, context,
              fmt::format("member `{}` of `{}`", one.name, name), place);
+  checkRange(classInfo, *found, record, context.colorComponents, name, &one.value, place);
 }
 
 } // namespace
@@ -114,6 +116,22 @@ void storeMembers(const ClassInfo &classInfo, const std::string &name, const Obj
   errors.throwIfAny();
 }
 
+static bool isGiven(const MemberInfo &member, const ObjectValues &values) {
+  return std::any_of(values.members.begin(), values.members.end(),
+                     [&](const NamedValue &one) { return one.name == member.name; });
+}
+
+void checkOwnValues(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
+                    const std::uint8_t *record, std::uint32_t colorComponents) {
+  ErrorCollector errors;
+  for (const MemberInfo &member : classInfo.members)
+    if ((member.hasDefault || classInfo.hasConstructor) && !isGiven(member, values))
+      errors.attempt([&] {
+        checkRange(classInfo, member, record, colorComponents, name, nullptr, values.place);
+      });
+  errors.throwIfAny();
+}
+
 /// Where a member could be set besides its object, as the end of a message.
 static std::string elsewhere(const char *before, const ObjectValues &values) {
   return values.variablePlaces.empty()
@@ -127,9 +145,7 @@ void checkUnset(const ClassInfo &classInfo, const std::string &name, const Objec
   for (const MemberInfo &member : classInfo.members) {
     if (!member.isPublic || member.hasDefault)
       continue;
-    bool given = std::any_of(values.members.begin(), values.members.end(),
-                             [&](const NamedValue &one) { return one.name == member.name; });
-    if (given)
+    if (isGiven(member, values))
       continue;
     if (member.isRequired)
       missing.push_back(fmt::format("`{}`", member.name));

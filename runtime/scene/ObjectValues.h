@@ -29,6 +29,11 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
 void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
                   std::uint8_t *record, const StoreContext &context);
 
+/// Checks the members that are not given: throws OutOfRange for all whose default, or the value
+/// that the constructor gave them, is not in their range.
+void checkOwnValues(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
+                    const std::uint8_t *record, std::uint32_t colorComponents);
+
 /// Checks the public members that have no default and are not given, after the object is complete,
 /// of those that are required, and of references that are empty: throws MissingMember.
 void checkUnset(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,

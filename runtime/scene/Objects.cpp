@@ -96,6 +96,7 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
     runConstructor(object, values, launch);
     storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
     checkUnset(classInfo, object.name, values, recordOf(object));
+    checkOwnValues(classInfo, object.name, values, recordOf(object), code->colorComponents);
     measureChain(object);
   } catch (...) { // an object is added completely or not at all
     objects.pop_back();

@@ -60,6 +60,8 @@ public:
   std::shared_ptr<Words> words;     // of a block
   std::vector<std::uint32_t> sizes; // of a block
   std::optional<Place> place;       // for messages
+  /// Of a number that has key frames: what it is in each of them, for checks.
+  std::shared_ptr<const std::vector<Value>> keys;
 };
 
 /// A value with the name of the member or parameter that it is for.

@@ -36,6 +36,8 @@ struct JsonValue {
   // file of an override is its text on the command line, "--set path.to.key=value".
   std::shared_ptr<const std::string> file;
   std::uint32_t line = 0, column = 0, length = 0;
+  /// Of a number of a value with key frames: what it is in each of them.
+  std::shared_ptr<const std::vector<JsonValue>> keys;
   bool fromOverride = false; // came from --set
   bool isIncluded = false;   // from another file than the scene's: paths in it are relative to that
 

@@ -111,6 +111,37 @@ bool isStep(const JsonValue &value) {
   return how->string == "step";
 }
 
+/// The numbers of `value`, which is one of the keys or between two, get those of all keys.
+void keepKeys(JsonValue &value, const std::vector<const JsonValue *> &keys) {
+  std::vector<const JsonValue *> alike; // steps may be between values of different kinds
+  for (const JsonValue *key : keys)
+    if (key->kind == value.kind)
+      alike.push_back(key);
+  const auto partsOf = [&](const auto &find) {
+    std::vector<const JsonValue *> parts;
+    for (const JsonValue *key : alike)
+      if (const JsonValue *part = find(*key))
+        parts.push_back(part);
+    return parts;
+  };
+  if (value.kind == Kind::Number) {
+    auto numbers = std::make_shared<std::vector<JsonValue>>();
+    for (const JsonValue *key : alike)
+      if (key->keys) // key frames within key frames
+        numbers->insert(numbers->end(), key->keys->begin(), key->keys->end());
+      else
+        numbers->push_back(*key);
+    value.keys = std::move(numbers);
+  }
+  for (std::size_t i = 0; i < value.elements.size(); ++i)
+    keepKeys(value.elements[i], partsOf([&](const JsonValue &key) {
+               return i < key.elements.size() ? &key.elements[i] : nullptr;
+             }));
+  for (auto &[name, member] : value.members)
+    keepKeys(member,
+             partsOf([&, &name = name](const JsonValue &key) { return key.find(name.text); }));
+}
+
 /// The value with the position of its key, or of the one before.
 JsonValue valueAt(const JsonValue &value, double frame) {
   const std::vector<Key> keys = keysOf(*value.find("frames"));
@@ -127,6 +158,10 @@ JsonValue valueAt(const JsonValue &value, double frame) {
   JsonValue found = *keys[place.key].value;
   if (!steps && place.next != place.key)
     interpolate(found, *keys[place.next].value, place.share);
+  std::vector<const JsonValue *> values;
+  for (const Key &key : keys)
+    values.push_back(key.value);
+  keepKeys(found, values);
   return found;
 }
 

@@ -299,6 +299,7 @@ void Program::declareMember(ClassScope &scope, const ast::VariableDecl &declarat
     if (member->init && member->init->type->isError())
       member->init.reset();
   }
+  checkRange(checker, declaration, *member);
 
   if (member->name.compare(0, 3, "rt_") == 0)
     diagnostics.report(Code::reservedName, member->range, member->name);

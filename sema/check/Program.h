@@ -18,6 +18,8 @@
 
 namespace rtsl {
 
+class FunctionChecker;
+
 /// Depth to which the checker itself recurses: brackets, unary operators, right-hand sides, nested
 /// statements.
 constexpr unsigned maxRecursion = 1000;
@@ -173,6 +175,8 @@ private:
   std::vector<ClassScope *> classesBaseFirst();
   void declareMembers(ClassScope &scope);
   void declareMember(ClassScope &scope, const ast::VariableDecl &declaration);
+  void checkRange(FunctionChecker &checker, const ast::VariableDecl &declaration,
+                  typed::Member &member);
   void checkMemberQualifiers(const ClassScope &scope, const ast::VariableDecl &declaration,
                              const Type *type);
   // Functions.cpp

@@ -8,10 +8,12 @@
 #pragma once
 
 #include "frontend/syntax/Ast.h"
+#include "language/Range.h"
 #include "sema/typed/Builtin.h"
 #include "sema/typed/Type.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -83,6 +85,7 @@ struct Member {
   bool isConst = false;
   bool isOptional = false; // a public reference, or references, that the scene may leave empty
   std::unique_ptr<Constant> constant; // const members
+  std::optional<Range> values;        // which each of its components may have
   ExprPtr init;                       // default of a public or private member; null: none (zero)
   const Class *owner = nullptr;
   /// For a scratch member that sema/derive has added: the member whose change it is, along an axis

@@ -1,5 +1,6 @@
 #include "codegen/cpp/runtime/Description.h"
 
+#include "codegen/cpp/functions/Literals.h"
 #include "codegen/cpp/runtime/Dispatch.h"
 #include "codegen/cpp/runtime/Payloads.h"
 #include "codegen/cpp/runtime/RunState.h"
@@ -138,6 +139,12 @@ static std::vector<Code> shownMethods(const typed::Class &definition) {
   return shown;
 }
 
+/// `rtsl::Range{0.0f, 1.0f, true, true}`: the bounds, and whether they belong to it.
+static Code shownRange(const Range &range) {
+  return list("rtsl::Range", {doubleLiteral(range.low), doubleLiteral(range.high),
+                              boolean(range.includesLow), boolean(range.includesHigh)});
+}
+
 /// `described.member("name", &Class::name, rtsl::Access::Public)`
 static Code describeMember(const Names &names, const Code &described, const std::string &className,
                            const typed::Member &member, bool isRequired) {
@@ -149,6 +156,10 @@ static Code describeMember(const Names &names, const Code &described, const std:
     arguments.push_back(cpp::name("rtsl::Default::Given"));
   else if (isRequired)
     arguments.push_back(cpp::name("rtsl::Default::Required"));
+  else if (member.values)
+    arguments.push_back(cpp::name("rtsl::Default::None"));
+  if (member.values)
+    arguments.push_back(shownRange(*member.values));
   return callMember(described, "member", std::move(arguments));
 }
 

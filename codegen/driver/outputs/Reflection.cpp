@@ -135,6 +135,8 @@ private:
       if (const std::optional<typed::Constant> known = evaluate(*member.init))
         json[member.isConst ? "value" : "default"] = value(member.type, *known);
     json["hasDefault"] = member.init != nullptr;
+    if (member.values)
+      json["range"] = toString(*member.values);
     if (member.isOptional)
       json["isOptional"] = true;
     if (member.owner)

@@ -16,6 +16,7 @@
 #include <initializer_list>
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -257,7 +258,8 @@ public:
 
   template <typename Owner, typename T>
   ClassDescription &member(const char *name, T Owner::*member, Access access,
-                           Default given = Default::None) {
+                           Default given = Default::None,
+                           const std::optional<Range> &values = std::nullopt) {
     runtime::MemberInfo described;
     described.name = name;
     described.type = detail::valueType<T>();
@@ -266,6 +268,7 @@ public:
     described.isPublic = access == Access::Public;
     described.hasDefault = given == Default::Given;
     described.isRequired = given == Default::Required;
+    described.values = values;
     info.members.push_back(std::move(described));
     return *this;
   }

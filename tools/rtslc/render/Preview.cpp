@@ -260,17 +260,32 @@ private:
           return std::nullopt;
         object[member->name] = *value;
         if (!isReference)
-          warnOfZero(one, *member);
+          warnOfNumber(one, *member);
       }
     return object;
   }
 
-  void warnOfZero(const typed::Class &one, const typed::Member &member) {
-    messages.diagnostics.reportText(Code::sceneWarning, member.range,
-                                    message::previewMemberIsZero(member.name, one.name));
+  void warnOfNumber(const typed::Class &one, const typed::Member &member) {
+    messages.diagnostics.reportText(
+        Code::sceneWarning, member.range,
+        message::previewMemberValue(member.name, one.name, numberText(numberFor(member))));
   }
 
-  /// Zeros, and objects for references. Nothing, and reported, if there is none of these.
+  /// 0, or another number in the member's range.
+  static double numberFor(const typed::Member &member) {
+    if (!member.values || member.values->contains(0))
+      return 0;
+    const Range &range = *member.values;
+    const Type *scalar = member.type->scalar();
+    const bool isWhole = scalar && !scalar->is(TypeKind::Float);
+    return range.includesLow                   ? range.low
+           : range.includesHigh                ? range.high
+           : std::isinf(range.low)             ? range.high - 1
+           : std::isinf(range.high) || isWhole ? range.low + 1
+                                               : (range.low + range.high) / 2;
+  }
+
+  /// Numbers, and objects for references. Nothing, and reported, if there is none of these.
   std::optional<Json> valueOf(const Type *type, const typed::Member &member,
                               const typed::Class &owner) {
     std::vector<const Type *> parts;
@@ -289,7 +304,7 @@ private:
         parts.push_back(field.type);
       break;
     default:
-      return 0;
+      return numberFor(member);
     }
     Json values = Json::array();
     for (const Type *part : parts) {

@@ -1,0 +1,115 @@
+#include "runtime/scene/MemberRanges.h"
+
+#include "support/ErrorCollector.h"
+#include "support/ErrorMessages.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+namespace rtsl::runtime {
+
+namespace {
+
+struct Component {
+  std::size_t position; // among those of all elements
+  double number;
+};
+
+double numberAt(ValueType::Kind kind, const std::uint8_t *word) {
+  const auto read = [&](auto number) {
+    std::memcpy(&number, word, sizeof number);
+    return double(number);
+  };
+  return kind == ValueType::Kind::Int    ? read(std::int32_t(0))
+         : kind == ValueType::Kind::UInt ? read(std::uint32_t(0))
+                                         : read(0.0f);
+}
+
+/// The first component that is not in the range: of a number, vector or color, of the elements of
+/// an array, or of those of a buffer.
+std::optional<Component> firstOutside(const ValueType &type, const Range &range,
+                                      const std::uint8_t *bytes, std::uint32_t colorComponents) {
+  std::size_t count = 1, size = type.size;
+  if (type.bufferRank != 0) {
+    RtslBuffer buffer;
+    std::memcpy(&buffer, bytes, sizeof buffer);
+    for (std::uint8_t i = 0; i < type.bufferRank; ++i)
+      count *= buffer.size[i];
+    const std::uint64_t address = std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
+    bytes = reinterpret_cast<const std::uint8_t *>(address);
+    size = count * type.elementSize;
+  }
+  for (const std::uint32_t length : type.arraySizes)
+    count *= length;
+  const std::size_t components = type.kind == ValueType::Kind::Color ? colorComponents : type.rows;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < components; ++k) {
+      const double number = numberAt(type.kind, bytes + i * (size / count) + 4 * k);
+      if (!range.contains(number))
+        return Component{i * components + k, number};
+    }
+  return std::nullopt;
+}
+
+/// The number at a position among all those of a nested list; decrements `position` by the ones
+/// before it. Null: there are fewer.
+const Value *componentAt(const Value &value, std::size_t &position) {
+  if (value.kind != Value::Kind::List)
+    return position-- == 0 ? &value : nullptr;
+  for (const Value &one : value.list)
+    if (const Value *found = componentAt(one, position))
+      return found;
+  return nullptr;
+}
+
+/// Visits the numbers that the parts of a value are in key frames.
+template <typename Visit>
+void forEachKey(const Value &value, const Visit &visit) {
+  if (value.keys)
+    for (const Value &key : *value.keys)
+      visit(key);
+  for (const Value &one : value.list)
+    forEachKey(one, visit);
+}
+
+} // namespace
+
+void checkRange(const ClassInfo &classInfo, const MemberInfo &member, const std::uint8_t *record,
+                std::uint32_t colorComponents, const std::string &name, const Value *value,
+                const std::optional<Place> &fallback) {
+  if (!member.values)
+    return;
+  const Range &range = *member.values;
+  const auto outside = [&](double number, const Value *at) {
+    return Error(message::memberOutOfRange(member.name, name, fmt::format("{}", float(number)),
+                                           toString(range)),
+                 at && at->place ? at->place : fallback)
+        .note(fmt::format("class `{}` declares `{} {} in {}`", classInfo.name, member.type.name,
+                          member.name, toString(range)));
+  };
+  if (value) { // in whichever frame
+    ErrorCollector errors;
+    forEachKey(*value, [&](const Value &key) {
+      const bool isFloat =
+          member.type.kind == ValueType::Kind::Float || member.type.kind == ValueType::Kind::Color;
+      if (!range.contains(isFloat ? double(float(key.number)) : key.number))
+        errors.add(outside(key.number, &key));
+    });
+    errors.throwIfAny();
+  }
+
+  const std::optional<Component> found =
+      firstOutside(member.type, range, record + member.offset, colorComponents);
+  if (!found)
+    return;
+  const Value *at = value;
+  if (value && (member.type.kind != ValueType::Kind::Color || colorComponents == 3)) {
+    std::size_t position = found->position;
+    if (const Value *component = componentAt(*value, position))
+      at = component; // else one number is for all components
+  }
+  throw outside(found->number, at);
+}
+
+} // namespace rtsl::runtime
