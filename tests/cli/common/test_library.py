@@ -44,6 +44,14 @@ class Library(Case):
             self.classes("import std.cameras.PinholeCamera;\n" + GREY), ["Grey", "PinholeCamera"]
         )
 
+    def test_each_module_can_be_imported(self):
+        modules = [
+            ".".join(file.relative_to(LIBRARY).with_suffix("").parts)
+            for file in sorted((LIBRARY / "std").rglob("*.rtsl"))
+        ]
+        self.write("main.rtsl", "".join(f"import {module};\n" for module in modules) + GREY)
+        self.run_rtslc("check", "main.rtsl")
+
     def test_files_imported_after_the_module_count_too(self):
         self.write("ball.rtsl", "class Ball : Sphere { };\n")
         self.assertEqual(
