@@ -564,13 +564,11 @@ private:
 };
 
 /// Makes the scene that of its frame.
-void chooseFrame(JsonValue &root) {
+void chooseFrame(JsonValue &root, ErrorCollector &errors) {
   double frame = 0;
   if (const JsonValue *value = root.find("frame"))
-    frame = readNumber(*value, "`frame`");
-  ErrorCollector errors;
+    errors.attempt([&] { frame = readNumber(*value, "`frame`"); });
   resolveKeyFrames(root, frame, errors);
-  errors.throwIfAny();
 }
 
 } // namespace
@@ -579,18 +577,20 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
                             const std::vector<std::string> &overrides,
                             std::shared_ptr<KeptFiles> kept, ErrorCollector *errors) {
   auto root = std::make_shared<JsonValue>(parseJson(text, path));
-  ErrorCollector found;
+  ErrorCollector found, ofFrames;
   SceneDescription scene;
   scene.included = expandIncludes(*root, path, found);
   for (const std::string &override : overrides)
-    applyOverride(*root, override);
-  chooseFrame(*root);
+    found.attempt([&] { applyOverride(*root, override); });
+  const bool isPart = found.count() > 0; // without what could not be read
+  chooseFrame(*root, ofFrames);
   scene.file = path;
   scene.root = root;
   scene.keptFiles = std::move(kept);
   expandModels(*root, scene, found);
   scene.refused.isAny = found.count() > 0;
-  scene.refused.isAny |= !found.attempt([&] { SceneReader(*root, scene, found).read(); });
+  found.attempt([&] { ofFrames.throwIfAny(); }); // values are there all the same
+  scene.refused.isAny |= !found.attempt([&] { SceneReader(*root, scene, found).read(isPart); });
   if (errors)
     *errors = std::move(found);
   else

@@ -165,6 +165,14 @@ JsonValue valueAt(const JsonValue &value, double frame) {
   return found;
 }
 
+/// In place of a value that its key frames do not give, so that the rest can be checked.
+JsonValue firstOf(const JsonValue &value) {
+  const auto &frames = value.find("frames")->members;
+  return std::find_if(frames.begin(), frames.end(),
+                      [](const auto &member) { return numberOf(member.first.text).has_value(); })
+      ->second;
+}
+
 } // namespace
 
 FramePlace placeAmong(const std::vector<double> &frames, double frame) {
@@ -180,8 +188,8 @@ void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors) {
     resolveKeyFrames(element, frame, errors);
   for (auto &member : root.members)
     resolveKeyFrames(member.second, frame, errors);
-  if (isKeyFrames(root))
-    errors.attempt([&] { root = valueAt(root, frame); });
+  if (isKeyFrames(root) && !errors.attempt([&] { root = valueAt(root, frame); }))
+    root = firstOf(root);
 }
 
 } // namespace rtsl::scene

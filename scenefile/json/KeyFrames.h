@@ -27,7 +27,7 @@ inline double between(double number, double next, double share) {
 /// Replaces each {"frames": {"0": ..., "24": ...}} in a scene by its value at the frame: that of a
 /// key, interpolated linearly between two, or that of the first or last key outside of them. With
 /// "interpolate": "step" it is that of the last key so far. All key frames of the scene are
-/// checked, whatever the frame is.
+/// checked, whatever the frame is; where there are errors, the value is that of a key.
 void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors);
 
 } // namespace rtsl::scene

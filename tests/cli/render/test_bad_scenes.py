@@ -355,6 +355,13 @@ class AllAtOnce(Case):
         ("objects.2.mesh", "nowhere.obj", "E0900", "nowhere.obj"),
         ("objects.2.material.class", "Lambrt", "E0810", "no class is named `Lambrt`"),
         ("objects.2.mask", -1, "E0805", "`mask` must be between"),
+        ("ambient", {"frames": {"0": 0.1, "last": 1}}, "E0804", "a key of `frames`"),
+        (
+            "objects.0.transform",
+            {"frames": {"0": {"scale": 2}, "1": {"rotate": [0, 9, 0]}}},
+            "E0804",
+            "this has no `scale`",
+        ),
     )
     # With these, classes that no file has might be in a file that cannot be checked.
     IMPORTS = (
@@ -408,6 +415,17 @@ class AllAtOnce(Case):
         every["import"] += [name for name, *_ in self.IMPORTS]
         expected = [said for _, _, *said in self.MISTAKES] + [said for _, *said in self.IMPORTS]
         self.check(every, [said for said in expected if said[0] != "E0810"])
+
+    def test_overrides_with_mistakes(self):
+        """Nothing is said of what they might have added."""
+        scene = self.scene()
+        del scene["camera"]
+        self.put(scene, "render.size", [8, 0])
+        self.put(scene, "objects.1.material", "none")
+        self.write("check.json", json.dumps(scene))
+        wrong = [["--set", text] for text in ("camera={", "objects.9.mask=1", "render.tint.r=1")]
+        messages = self.diagnose("check", "check.json", *sum(wrong, []))
+        self.assertEqual([each["code"] for each in messages], 3 * ["E0809"] + ["E0805"])
 
     def test_a_file_with_mistakes_has_unknown_classes(self):
         """Of which nothing is said."""
