@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 namespace rtsl::tool {
 
@@ -56,12 +57,28 @@ double parseDuration(const std::string &option, const std::string &text) {
       fmt::format("`{}` is not a time; write a number and a unit: `30s`, `2m`, `500ms`", text));
 }
 
+/// Not a number, if the text is none.
+static double numberOf(const std::string &text) {
+  char *end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return text.empty() || *end != 0 ? std::numeric_limits<double>::quiet_NaN() : number;
+}
+
+CLI::Option *addNumber(CLI::App &command, const std::string &option, double &target,
+                       const std::string &help) {
+  const auto read = [&target, option](const std::string &text) {
+    target = numberOf(text);
+    if (!std::isfinite(target))
+      throw CLI::ValidationError(option, fmt::format("`{}` is not a number", text));
+  };
+  return command.add_option_function<std::string>(option, read, help)->type_name("X");
+}
+
 CLI::Option *addNotNegative(CLI::App &command, const std::string &option, double &target,
                             const std::string &help) {
   const auto read = [&target, option](const std::string &text) {
-    char *end = nullptr;
-    const double number = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != 0 || std::isnan(number) || number < 0)
+    const double number = numberOf(text);
+    if (std::isnan(number) || number < 0)
       throw CLI::ValidationError(option, fmt::format("`{}` is not a number of at least 0", text));
     target = number;
   };

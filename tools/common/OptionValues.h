@@ -75,6 +75,10 @@ CLI::Option *addWhole(CLI::App &command, const std::string &option, Target &targ
 /// "30s", "2m", "1.5h" or "500ms" in seconds, more than 0. Throws if it is something else.
 double parseDuration(const std::string &option, const std::string &text);
 
+/// Adds an option whose value is a finite number.
+CLI::Option *addNumber(CLI::App &command, const std::string &option, double &target,
+                       const std::string &help);
+
 /// Adds an option whose value is a number of at least 0.
 CLI::Option *addNotNegative(CLI::App &command, const std::string &option, double &target,
                             const std::string &help);

@@ -90,6 +90,17 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format) 
                                    "format with --format");
 }
 
+void addToneOptions(CLI::App &command, runtime::ToneMapping &tones) {
+  addNumber(command, "--exposure", tones.stops,
+            "make a PNG picture brighter by so many photographic stops, or darker")
+      ->type_name("STOPS");
+  addChoice(command, "--tone", tones.curve,
+            Choices<runtime::ToneCurve>{{"linear", runtime::ToneCurve::Linear},
+                                        {"reinhard", runtime::ToneCurve::Reinhard},
+                                        {"filmic", runtime::ToneCurve::Filmic}},
+            "the curve by which a PNG picture shows bright light; linear: what is above 1 is 1");
+}
+
 void writePictureSoFar(const std::string &output, const runtime::Image &image,
                        runtime::PictureFormat format) {
   try {

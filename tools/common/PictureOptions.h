@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/image/Image.h"
+#include "runtime/image/ToneMapping.h"
 #include "runtime/render/RenderOptions.h"
 
 #include <CLI/CLI.hpp>
@@ -35,6 +36,9 @@ CLI::Option *addPictureOption(CLI::App &command, std::string &output,
 /// Throws where neither the name nor --format determines the format of the picture. When all
 /// options are read.
 void checkPictureName(const std::string &output, runtime::PictureFormat format);
+
+/// Adds --exposure and --tone.
+void addToneOptions(CLI::App &command, runtime::ToneMapping &tones);
 
 /// Replaces the file of a picture that is still rendered. What fails is not reported, because it
 /// fails again with the last picture, or no longer matters.

@@ -208,6 +208,10 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
   if (!options.aovs.empty() && !runtime::isExr(options.output, options.format))
     throw CLI::ValidationError("--aov", "only EXR files have layers; give a name that ends in "
                                         ".exr, or `--format=exr`");
+  for (const char *name : {"--exposure", "--tone"})
+    if (command.count(name) && runtime::isExr(options.output, options.format))
+      throw CLI::ValidationError(name, "an EXR file has the light itself; give a name that ends in "
+                                       ".png, or `--format=png`");
   if (options.target == TargetName::Gpu)
     rejectWithoutGpuSupport(options);
   else
@@ -236,6 +240,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
                    "the class of an RTSL file to show; default: the last one that can be shown")
       ->type_name("NAME");
   addPictureOption(*command, options->output, options->format);
+  addToneOptions(*command, options->tones);
   addWhole(*command, "--spp", options->samples, 1, runtime::mostSamplesPerPixel,
            "samples per pixel");
   command

@@ -57,6 +57,7 @@ struct RenderCommandOptions {
   }
   bool prints = false, exceptions = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
+  runtime::ToneMapping tones;
   TargetName target = TargetName::Host;
   bool hasGpuArchitecture = false; // --gpu-arch was given
   GpuOptions gpu;

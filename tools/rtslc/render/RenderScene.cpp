@@ -297,7 +297,7 @@ private:
           viewer->show(image);
         if (options.output == "-" || secondsSince(written) < secondsBetweenFiles)
           return;
-        writePictureSoFar(options.output, image, options.format);
+        writeShown(image, writePictureSoFar);
         written = Clock::now();
       };
     runtime::PartialRendering rendering;
@@ -343,12 +343,21 @@ private:
     return rendering;
   }
 
+  /// Writes the picture as its file is to show it.
+  template <typename Write>
+  void writeShown(const runtime::Image &image, Write write) const {
+    if (options.tones.changesNothing())
+      write(options.output, image, options.format);
+    else
+      write(options.output, runtime::toneMapped(image, options.tones), options.format);
+  }
+
   void write(const runtime::Image &image, const std::vector<runtime::Layer> &layers) {
     if (viewer)
       viewer->show(image);
     const Clock::time_point begin = Clock::now();
     if (layers.empty())
-      runtime::writeImage(options.output, image, options.format);
+      writeShown(image, runtime::writeImage);
     else
       runtime::writeLayers(options.output, image, layers);
     writeDependencies(options.common.dependencies, options.output, {options.scene}, files);
