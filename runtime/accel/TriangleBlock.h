@@ -17,7 +17,7 @@
 namespace rtsl::runtime {
 
 struct alignas(32) TriangleBlock {
-  static constexpr unsigned lanes = 8;
+  static constexpr unsigned lanes = RTSL_VERTEX_STRIDE;
 
   float vertices[3][3][lanes]; // [vertex][axis]; an empty lane repeats another one
   // RTSL_NO_HIT: the lane is empty. Otherwise 0 in the block of a mesh that instances share
@@ -237,6 +237,7 @@ template <typename Ray>
       device::commit(state, t[i], t[i], instance, block.triangle[i]);
       state.u = u[i];
       state.v = v[i];
+      device::keepVertices(state, &block.vertices[0][0][i]);
       found = true;
       if (anyHit)
         return true;

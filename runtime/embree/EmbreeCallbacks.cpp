@@ -28,31 +28,32 @@ const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
   return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
 }
 
-/// Ends the search at a hit that was committed: nothing beyond it matters. `occluder`: what was
-/// hit.
-void endAtHit(const EmbreeContext &context, RTCRay &ray, const Occluder &occluder) {
-  ray.tfar = context.end(context.state->nearest);
+/// Does the search end at a hit that was committed? `occluder`: what was hit.
+bool endsAtHit(const EmbreeContext &context, const Occluder &occluder) {
   if (!context.endsIfHidden || !device::isPointHidden(*context.state))
-    return;
-  ray.tfar = isOver;
+    return false;
   context.occluder = occluder;
+  return true;
 }
 
-/// Passes an item to the visitor of the ray. False if the search is over.
-bool visitItem(const EmbreeContext &context, RTCRay &ray, const RtslLeafItem &item) {
-  const EmbreeVisitor &visitor = *context.visitor;
-  const bool ends = visitor.visit(visitor.self, item, enteredInstance(context));
+/// Where Embree's search ends, now that something was tested: nothing beyond a hit matters.
+void setEnd(const EmbreeContext &context, RTCRay &ray, bool ends) {
   ray.tfar = ends ? isOver : context.end(context.limit());
-  return !ends;
 }
 
-[[gnu::cold, gnu::noinline]] void visitBlock(const EmbreeContext &context, RTCRay &ray,
+/// Passes an item to the visitor of the ray. True if the search is over.
+bool visitItem(const EmbreeContext &context, const RtslLeafItem &item) {
+  const EmbreeVisitor &visitor = *context.visitor;
+  return visitor.visit(visitor.self, item, enteredInstance(context));
+}
+
+[[gnu::cold, gnu::noinline]] bool visitBlock(const EmbreeContext &context,
                                              const TriangleBlock &block) {
   const device::InstanceRay *entered = enteredInstance(context);
   for (unsigned i = 0; i < TriangleBlock::lanes && block.instance[i] != RTSL_NO_HIT; ++i)
-    if (!visitItem(context, ray,
-                   {entered ? entered->instance : block.instance[i], block.triangle[i]}))
-      return;
+    if (visitItem(context, {entered ? entered->instance : block.instance[i], block.triangle[i]}))
+      return true;
+  return false;
 }
 
 /// Has it been tested before the search?
@@ -67,11 +68,11 @@ void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
   RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
   const Occluder item = {arguments->primID, false};
   if (context.visitor) {
-    visitBlock(context, ray, block);
+    setEnd(context, ray, visitBlock(context, block));
   } else if (!isTested(context, item) &&
              testBlock(*context.state, rayOf<Ray>(context), block, false)) {
     context.found = item;
-    endAtHit(context, ray, item);
+    setEnd(context, ray, endsAtHit(context, item));
   }
 }
 
@@ -103,14 +104,19 @@ bool testPrimitive(const EmbreeContext &context, unsigned number) {
                                primitive.intersect);
 }
 
+/// Searches a primitive for the nearest hit. True if the search is over.
+template <typename Ray>
+bool searchPrimitive(const EmbreeContext &context, unsigned number) {
+  if (context.visitor)
+    return visitItem(context, itemOf<Ray>(context, context.space->primitives[number]));
+  return testPrimitive<Ray>(context, number) && endsAtHit(context, {}); // no block or instance
+}
+
 template <typename Ray>
 void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
-  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  if (context.visitor)
-    visitItem(context, ray, itemOf<Ray>(context, context.space->primitives[arguments->primID]));
-  else if (testPrimitive<Ray>(context, arguments->primID))
-    endAtHit(context, ray, {}); // no block or instance
+  setEnd(context, reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray,
+         searchPrimitive<Ray>(context, arguments->primID));
 }
 
 template <typename Ray>
@@ -124,9 +130,8 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
                                           const device::InstanceRay &ray, bool anyHit) {
   for (unsigned i = 0; i < context.space->primitives.size(); ++i) {
     if (context.visitor) {
-      RTCRay unused{};
       const EmbreePrimitive &primitive = context.space->primitives[i];
-      if (!visitItem(context, unused, itemOf<device::InstanceRay>(context, primitive)))
+      if (visitItem(context, itemOf<device::InstanceRay>(context, primitive)))
         return true;
     } else if (testPrimitive<device::InstanceRay>(context, i) && anyHit) {
       return true;
@@ -134,9 +139,7 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   }
   for (const TriangleBlock &block : context.space->blocks) {
     if (context.visitor) {
-      RTCRay unused{};
-      visitBlock(context, unused, block);
-      if (unused.tfar == isOver)
+      if (visitBlock(context, block))
         return true;
     } else if (testBlock(*context.state, ray, block, anyHit) && anyHit) {
       return true;
@@ -198,28 +201,38 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   }
 }
 
-void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
-  const EmbreeContext &context = contextOf(arguments);
-  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  const Occluder item = {arguments->primID, true};
+/// Searches one for the nearest hit, and records if it has that so far. True if the search is over.
+bool searchForNearest(const EmbreeContext &context, unsigned number) {
+  const Occluder item = {number, true};
   if (isTested(context, item))
-    return;
+    return false;
   const float before = context.state->nearest;
-  if (searchInstance<false>(context, item.number)) {
-    ray.tfar = isOver;
+  if (searchInstance<false>(context, number)) {
     context.occluder = item;
-    return;
+    return true;
   }
   if (context.state->nearest < before)
     context.found = item;
-  ray.tfar = context.end(context.limit());
+  return false;
+}
+
+/// Searches one for any hit.
+bool searchForAny(const EmbreeContext &context, unsigned number) {
+  if (!searchInstance<true>(context, number))
+    return false;
+  context.occluder = {number, true};
+  return true;
+}
+
+void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
+  const EmbreeContext &context = contextOf(arguments);
+  setEnd(context, reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray,
+         searchForNearest(context, arguments->primID));
 }
 
 void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
-  if (!searchInstance<true>(contextOf(arguments), arguments->primID))
-    return;
-  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
-  contextOf(arguments).occluder = {arguments->primID, true};
+  if (searchForAny(contextOf(arguments), arguments->primID))
+    reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
 } // namespace
@@ -231,6 +244,28 @@ bool EmbreeScene::Implementation::isInInstance(const EmbreeContext &context, std
 void EmbreeScene::Implementation::searchInInstance(const EmbreeContext &context,
                                                    std::uint32_t number) {
   searchInstance<false>(context, number);
+}
+
+bool EmbreeScene::Implementation::searchList(const EmbreeContext &context, bool anyHit) {
+  const EmbreeSpace &world = *context.space;
+  const auto primitives = unsigned(world.primitives.size());
+  const auto search = [&](unsigned i) {
+    if (i < primitives)
+      return anyHit ? testPrimitive<device::TriangleRay>(context, i)
+                    : searchPrimitive<device::TriangleRay>(context, i);
+    return anyHit ? searchForAny(context, i - primitives)
+                  : searchForNearest(context, i - primitives);
+  };
+  ItemList::Entered entered =
+      world.list.enter(*context.ray, context.state->Epsilon, context.limit());
+  while (entered.items) {
+    const unsigned i = entered.takeNearest();
+    if (!(entered.near[i] <= context.limit()))
+      return false;
+    if (search(i))
+      return true;
+  }
+  return false;
 }
 
 template <typename Ray>

@@ -89,6 +89,9 @@ struct EmbreeScene::Implementation {
   /// Searches one of them for the nearest hit.
   static void searchInInstance(const EmbreeContext &context, std::uint32_t number);
 
+  /// Searches the items of the world's list (ItemList.h). True if the search is over.
+  static bool searchList(const EmbreeContext &context, bool anyHit);
+
   /// Tests what the last camera ray has hit.
   [[gnu::always_inline]] void testLastHit(EmbreeContext &context) const {
     RtslState &state = *context.state;
@@ -132,23 +135,27 @@ struct EmbreeScene::Implementation {
       if (last.isMet(number, meets))
         return device::endSearch(state);
     }
-    if (anyHit) {
+    const bool isFromCamera = !anyHit && state.leaves == RTSL_NO_HIT && !context.endsIfHidden;
+    if (isFromCamera)
+      testLastHit(context);
+    const bool isOver = !world.list.isEmpty() && searchList(context, anyHit);
+    if (isOver || world.isTreeEmpty()) {
+      // no search of the tree
+    } else if (anyHit) {
       RTCRay ray;
       fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
     } else {
-      const bool isFromCamera = state.leaves == RTSL_NO_HIT && !context.endsIfHidden;
-      if (isFromCamera)
-        testLastHit(context);
       RTCRayHit rayHit;
       fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.nearest));
       rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(tree, &context.embree, &rayHit);
-      if (isFromCamera)
-        LastHit::ofThread().learn(number, context.found);
-      device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
     }
+    if (isFromCamera)
+      LastHit::ofThread().learn(number, context.found);
+    if (!anyHit)
+      device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
     if (context.occluder.number != Occluder::none)
       last.learn(number, context.occluder);
     return device::endSearch(state);

@@ -176,6 +176,8 @@ void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
   context.seesAll = false;
   context.endsIfHidden = false;
   context.toEmbree = device::powerOfTwo(exponent);
+  if (!self->world.list.isEmpty() && Implementation::searchList(context, false))
+    return;
   RTCRayHit rayHit;
   Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),
                        context.end(context.limit()));

@@ -6,7 +6,8 @@
 // rounding. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower.
 // RTSL primitives are user geometry as well, and so are instances with transforms of meshes and of
 // objects with several primitives: these have a tree of their own, which the ray in object space is
-// traced through from a callback.
+// traced through from a callback. Where there are few of both, they are tested without a tree
+// (ItemList.h).
 //
 // Embree's box test has rounding errors that depend on the distance of a ray's origin. Boxes are
 // enlarged for origins up to some distance; for others there is another tree over the same blocks,

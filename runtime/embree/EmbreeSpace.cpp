@@ -150,8 +150,10 @@ void buildLevel(EmbreeLevel &level) {
   if (space.follows)
     rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_DYNAMIC);
   attach(level, space.blocks.size(), boundBlock, blockCallbacks(space.isWorld));
-  attach(level, space.primitives.size(), boundPrimitive, primitiveCallbacks(space.isWorld));
-  attach(level, space.instances.size(), boundInstance, instanceCallbacks());
+  if (space.list.isEmpty()) {
+    attach(level, space.primitives.size(), boundPrimitive, primitiveCallbacks(space.isWorld));
+    attach(level, space.instances.size(), boundInstance, instanceCallbacks());
+  }
   rtcCommitScene(level.scene);
   checkEmbree(*space.scene);
 }
@@ -212,12 +214,22 @@ void setBounds(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
     }
 }
 
+/// Lists the items of the world, where they are.
+void listItems(EmbreeSpace &space) {
+  if (!space.isWorld || space.primitives.size() + space.instances.size() > ItemList::most)
+    return;
+  std::vector<RtslBox> boxes;
+  addBoxes(space, boxes);
+  space.list = ItemList(boxes);
+}
+
 } // namespace
 
 void buildSpace(EmbreeSpace &space, unsigned threads) {
   space.blocks = makeTriangleBlocks(space.meshes, threads);
   if (!space.isWorld)
     setBounds(space, boxesOf(space));
+  listItems(space);
   addLevels(space);
   buildLevel(*space.levels[0]);
   space.firstLevel = space.levels[0]->scene;
@@ -309,6 +321,7 @@ bool updateTree(EmbreeSpace &space, unsigned threads) {
     return true;
   }
   setBounds(space, boxes);
+  listItems(space);
   releaseDistantLevels(space);
   EmbreeLevel &level = *space.levels[0];
   for (const RTCGeometry geometry : level.geometries)

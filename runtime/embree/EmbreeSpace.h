@@ -9,6 +9,7 @@
 #include "runtime/accel/Refit.h"
 #include "runtime/accel/TriangleBlocks.h"
 #include "runtime/embree/EmbreeScene.h"
+#include "runtime/embree/ItemList.h"
 
 #include <embree3/rtcore.h>
 
@@ -64,12 +65,14 @@ struct EmbreeSpace {
   LargeArray<TriangleBlock> blocks;
   std::vector<EmbreePrimitive> primitives;
   std::vector<EmbreeInstance> instances; // of the world
-  RtslBox bounds;                        // of all that is tested in the space
-  std::vector<MeshUse> meshes;           // in `blocks`
-  BoxOrder boxesWhenBuilt;               // once something has moved
-  bool follows = false;                  // since then
-  std::uint64_t moves = 0;               // Scene::movesOfMesh, of a mesh's space
-  std::vector<RtslBox> boxes;            // EmbreeScene::rememberBoxes: of all but `blocks`
+  // the boxes of primitives, then those of instances, if the world has few: they are not in trees
+  ItemList list;
+  RtslBox bounds;              // of all that is tested in the space
+  std::vector<MeshUse> meshes; // in `blocks`
+  BoxOrder boxesWhenBuilt;     // once something has moved
+  bool follows = false;        // since then
+  std::uint64_t moves = 0;     // Scene::movesOfMesh, of a mesh's space
+  std::vector<RtslBox> boxes;  // EmbreeScene::rememberBoxes: of all but `blocks`
   // by largestOrigin; the first one is built
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
   float firstLevelOrigin = 0; // of levels[0]
@@ -78,6 +81,9 @@ struct EmbreeSpace {
   // not built.
   float secondLevelOrigin = 0;
   mutable std::atomic<RTCScene> secondLevel{nullptr};
+
+  /// Is all that the world has in its list?
+  bool isTreeEmpty() const { return !list.isEmpty() && blocks.size() == 0; }
 
   /// The tree for rays from this origin.
   RTCScene treeFor(device::Vec3 origin) const {

@@ -375,6 +375,7 @@ inline float emittedPower(const RtslLaunch &launch, uint32_t number, uint32_t pa
   setRay(state, point + toEye, toEye * -1.0f, {0, 0, RTSL_NO_HIT, 0}, 1);
   state.instance = number;
   state.primitive = part;
+  keepVertices(state, nullptr);
   for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
     state.attributes[i] = 0; // nothing was intersected
   describeHit(state);

@@ -408,9 +408,13 @@ typedef struct RtslState {
   uint32_t areAttributesLost; // 1: a hit that lost has overwritten those of the hit so far
   int32_t wantedChild;        // while `visit` of a selector runs: which child leads on,
   uint32_t isChildVisited;    // and 1: visitChild was called with it
+  // Of the triangle that is the hit so far, where the traversal has read its vertices; null: not
+  // known. Never read on a GPU.
+  const float *vertices; // coordinate `axis` of vertex i: (3 i + axis) * RTSL_VERTEX_STRIDE
 } RtslState;
 
 #define RTSL_NO_HIT 0xffffffffu
+#define RTSL_VERTEX_STRIDE 8
 
 /// The bit of a ray type in RtslInstance::anyHit. If two types share a bit, `anyHit` may be called
 /// without effect.

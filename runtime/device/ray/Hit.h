@@ -28,6 +28,14 @@ inline bool wins(const RtslState &state, float t, uint32_t instance, uint32_t pr
          (instance < state.instance || (instance == state.instance && primitive < state.primitive));
 }
 
+/// To be called when the state has another hit: RtslState::vertices of that.
+inline void keepVertices([[maybe_unused]] RtslState &state,
+                         [[maybe_unused]] const float *vertices) {
+#ifndef __NVPTX__
+  state.vertices = vertices;
+#endif
+}
+
 /// `t` is the distance of the hit, `compared` the distance for `wins`.
 inline void commit(RtslState &state, float t, float compared, uint32_t instance,
                    uint32_t primitive) {
@@ -35,6 +43,7 @@ inline void commit(RtslState &state, float t, float compared, uint32_t instance,
   state.nearest = compared;
   state.instance = instance;
   state.primitive = primitive;
+  keepVertices(state, nullptr);
 }
 
 /// `hit(t)`: is it the nearest hit of the primitive that is being tested?

@@ -209,6 +209,7 @@ struct CommittedHit {
     state.v = v;
     state.instance = instance;
     state.primitive = primitive;
+    keepVertices(state, nullptr);
     for (uint32_t i = 0; i < RTSL_MAX_ATTRIBUTE_WORDS; ++i)
       state.attributes[i] = attributes[i];
   }

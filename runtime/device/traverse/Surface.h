@@ -195,7 +195,7 @@ inline void clearCoordinates(RtslState &state, uint32_t needs) {
 inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint32_t needs) {
   const RtslLaunch &launch = *state.launch;
   const RtslMesh &mesh = launch.meshes[instance.mesh];
-  const TriangleVertices p = triangleVertices(launch, mesh, state.primitive, state.Time);
+  const TriangleVertices p = verticesOfHit(state, mesh);
   describeTriangle(state, mesh, p, needs);
   if (needs & RTSL_NEEDS_ATTRIBUTES)
     describeAttributes(state, mesh);

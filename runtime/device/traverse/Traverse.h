@@ -75,6 +75,22 @@ inline TriangleVertices triangleVertices(const RtslLaunch &launch, const RtslMes
           vertexAt(mesh, mesh.positions, index[2], time)};
 }
 
+/// The vertices of the triangle of state's hit. On the host they are in a cache if they are read
+/// where the traversal has just read them; those of the mesh, of which three indices must be loaded
+/// first, often are in none.
+inline TriangleVertices verticesOfHit(const RtslState &state, const RtslMesh &mesh) {
+#ifndef __NVPTX__
+  if (const float *vertices = state.vertices) {
+    const auto vertex = [&](int i) -> Vec3 {
+      const float *at = vertices + 3 * i * RTSL_VERTEX_STRIDE;
+      return {at[0], at[RTSL_VERTEX_STRIDE], at[2 * RTSL_VERTEX_STRIDE]};
+    };
+    return {vertex(0), vertex(1), vertex(2)};
+  }
+#endif
+  return triangleVertices(*state.launch, mesh, state.primitive, state.Time);
+}
+
 /// The words of an item of the tree.
 struct ItemWords {
   Words words[3];

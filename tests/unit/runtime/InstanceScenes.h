@@ -84,6 +84,10 @@ inline Mesh movingClump(std::mt19937 &random, int triangles) {
   return movingMesh(std::move(keys), {0.125f, 0.25f, 0.875f}, {"a", "b", "c"});
 }
 
+/// So few instances of randomScene that a traversal by Embree lists them
+/// (runtime/embree/ItemList.h).
+constexpr int few = 10;
+
 /// Instances of three meshes, of which two are in world space too, of spheres, and of rows of
 /// spheres; some of them below selectors, one of which is below the other. One mesh moves, and so
 /// do some instances.

@@ -91,11 +91,20 @@ private:
   RtslLaunch launch{}; // its scene needs nothing, and all triangles have back faces
 };
 
+/// The vertices of a triangle of the block.
+rtsl::device::TriangleVertices verticesIn(const TriangleBlock &block, std::uint32_t instance,
+                                          std::uint32_t triangle) {
+  unsigned lane = 0;
+  while (block.instance[lane] != instance || block.triangle[lane] != triangle)
+    ++lane;
+  return block.lane(lane);
+}
+
 } // namespace
 
 TEST(TriangleBlock, FindsWhatTheTrianglesFindOneByOne) {
   Blocks blocks(1);
-  int hits = 0;
+  int hits = 0, kept = 0;
   for (int exponent = -140; exponent <= 58; ++exponent)
     for (int i = 0; i < 400; ++i) {
       const float scale = std::ldexp(1.0f, exponent);
@@ -110,8 +119,16 @@ TEST(TriangleBlock, FindsWhatTheTrianglesFindOneByOne) {
                                                    block.instance[lane], block.triangle[lane]);
       ASSERT_EQ(found, foundAlone) << exponent << ' ' << i;
       ASSERT_EQ(testBlock(any, ray, block, true), found);
+      if (found && together.vertices) {
+        const auto expected = verticesIn(block, together.instance, together.primitive),
+                   read = rtsl::device::verticesOfHit(together, RtslMesh{});
+        ASSERT_EQ(std::memcmp(&read, &expected, sizeof read), 0) << exponent << ' ' << i;
+        ++kept;
+      }
+      together.vertices = alone.vertices;
       ASSERT_EQ(std::memcmp(&together, &alone, sizeof alone), 0) << exponent << ' ' << i;
       hits += found;
     }
   EXPECT_GT(hits, 199 * 100);
+  EXPECT_GT(kept, hits / 4);
 }

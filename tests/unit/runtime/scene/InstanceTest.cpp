@@ -96,6 +96,8 @@ TEST(Instances, AreFoundAlikeByEveryTraversal) {
   HitCounts hits;
   for (unsigned seed : {3, 11, 12, 13})
     ASSERT_NO_FATAL_FAILURE(traceInEveryWay(randomScene(seed, 60), seed, hits));
+  for (unsigned seed : {14, 15})
+    ASSERT_NO_FATAL_FAILURE(traceInEveryWay(randomScene(seed, few), seed, hits));
   EXPECT_GT(hits.all, 8000);
   EXPECT_GT(hits.ofInstances, 6000);
   EXPECT_GT(hits.inMotion, 100);

@@ -1,0 +1,99 @@
+//===- ItemList.h - a few items of the world, without a tree --------------===//
+//
+// Embree calls back for each primitive and each instance that a ray reaches. If the world has few
+// of them, they are not in Embree's tree: a ray tests all of their boxes, eight at a time, and
+// then the items whose boxes it enters. What these hit makes the search of the tree, which has only
+// triangles then, shorter. The operations are those of runtime/device/traverse/BoxRange.h.
+//
+//===----------------------------------------------------------------------===//
+#pragma once
+
+#include "runtime/accel/TriangleBlock.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace rtsl::runtime {
+
+class ItemList {
+public:
+  static constexpr std::size_t most = 32;
+
+  /// Where a ray enters the boxes of items.
+  struct Entered {
+    std::uint32_t items;          // bit i: item i is entered before the limit
+    alignas(32) float near[most]; // of those: they hold no hit before it
+
+    /// Takes out the item that is entered first; there must be one.
+    unsigned takeNearest() {
+      auto nearest = unsigned(__builtin_ctz(items));
+      for (std::uint32_t others = items & (items - 1); others != 0; others &= others - 1) {
+        const auto i = unsigned(__builtin_ctz(others));
+        nearest = near[i] < near[nearest] ? i : nearest;
+      }
+      items &= ~(1u << nearest);
+      return nearest;
+    }
+  };
+
+  ItemList() = default;
+  /// At most `most` boxes.
+  explicit ItemList(const std::vector<RtslBox> &boxes)
+      : eights((boxes.size() + lanes - 1) / lanes) {
+    for (std::size_t i = 0; i < lanes * eights; ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        const bool isEmpty = i >= boxes.size(); // then no ray enters it
+        EightBoxes &eight = groups[i / lanes];
+        eight.lower[axis][i % lanes] = isEmpty ? device::infinity : boxes[i].lower[axis];
+        eight.upper[axis][i % lanes] = isEmpty ? -device::infinity : boxes[i].upper[axis];
+      }
+  }
+
+  bool isEmpty() const { return eights == 0; }
+
+  /// The items that may have hits from `epsilon` on, up to `limit`.
+  [[gnu::always_inline]] Entered enter(const device::TriangleRay &ray, float epsilon,
+                                       float limit) const {
+    Entered entered;
+    entered.items = 0;
+    for (std::size_t i = 0; i < eights; ++i)
+      entered.items |= enterEight(ray, groups[i], epsilon, limit, entered.near + lanes * i)
+                       << lanes * i;
+    return entered;
+  }
+
+private:
+  static constexpr std::size_t lanes = TriangleBlock::lanes;
+  struct alignas(32) EightBoxes {
+    float lower[3][lanes], upper[3][lanes];
+  };
+
+  /// rangeInBox, isEmpty and widened for eight boxes. Returns the lanes that are entered.
+  [[gnu::always_inline]] static unsigned enterEight(const device::TriangleRay &ray,
+                                                    const EightBoxes &boxes, float epsilon,
+                                                    float limit, float *nears) {
+    Lanes near = _mm256_setzero_ps(), far = all(device::infinity);
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const float inverse = ray.inverse[axis];
+      const Lanes lower = _mm256_load_ps(boxes.lower[axis]),
+                  upper = _mm256_load_ps(boxes.upper[axis]);
+      const Lanes origin = all(ray.origin[axis]);
+      near = maximum(((inverse < 0 ? upper : lower) - origin) * all(inverse), near);
+      far = minimum(((inverse < 0 ? lower : upper) - origin) * all(inverse), far);
+    }
+    const Lanes isMet = _mm256_cmp_ps(near, far * all(device::bvhSlack), _CMP_LE_OQ);
+    near = near * all(1.0f - device::rangeShare);
+    far = far * all(1.0f + device::rangeShare);
+    _mm256_store_ps(nears, near);
+    const Lanes isInRange = _mm256_and_ps(_mm256_cmp_ps(near, all(limit), _CMP_LE_OQ),
+                                          _mm256_cmp_ps(far, all(epsilon), _CMP_GE_OQ));
+    return unsigned(_mm256_movemask_ps(_mm256_and_ps(isMet, isInRange)));
+  }
+
+  std::size_t eights = 0;
+  std::array<EightBoxes, most / lanes> groups;
+};
+
+} // namespace rtsl::runtime
