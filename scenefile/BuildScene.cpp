@@ -163,61 +163,75 @@ private:
     const ClassInfo *classInfo = program.find(object.className.text);
     ObjectValues values;
     values.place = object.className.place;
+    // Where a value has an error, those of the others are still reported.
+    bool isRefused = false;
+    const auto valueOf = [&](auto read) {
+      Value value = Value::refused();
+      isRefused |= !attempt([&] { value = read(); });
+      return value;
+    };
     if (object.constructor && object.constructor->kind == Kind::Array) {
       std::vector<Value> arguments;
       const auto &elements = object.constructor->elements;
       for (std::size_t i = 0; i < elements.size(); ++i)
-        arguments.push_back(
-            convert(elements[i],
-                    classInfo && i < classInfo->parameters.size() ? &classInfo->parameters[i].type
-                                                                  : nullptr,
-                    fmt::format("argument {} of `{}`", i + 1, object.className.text)));
+        arguments.push_back(valueOf([&] {
+          return convert(elements[i],
+                         classInfo && i < classInfo->parameters.size()
+                             ? &classInfo->parameters[i].type
+                             : nullptr,
+                         fmt::format("argument {} of `{}`", i + 1, object.className.text));
+        }));
       values.constructor = std::move(arguments);
     } else if (object.constructor) {
       std::vector<NamedValue> arguments;
-      for (const auto &[key, value] : object.constructor->members)
+      for (const auto &[key, json] : object.constructor->members)
         arguments.push_back(
-            {key.text,
-             convert(value, classInfo ? typeOf(classInfo->parameters, key.text) : nullptr,
-                     fmt::format("parameter `{}` of `{}`", key.text, object.className.text)),
+            {key.text, valueOf([&, &key = key, &json = json] {
+               return convert(
+                   json, classInfo ? typeOf(classInfo->parameters, key.text) : nullptr,
+                   fmt::format("parameter `{}` of `{}`", key.text, object.className.text));
+             }),
              object.constructor->place(key)});
       values.constructor = std::move(arguments);
     }
-    ErrorCollector ofMembers;
-    const auto set = [&](const MemberInfo *member, const LocatedName &key, const JsonValue &json,
-                         const std::string &what) {
+    const auto ofMember = [&](const MemberInfo *member, const JsonValue &json,
+                              const std::string &what) {
       const bool mayBeEmpty =
           member && member->hasDefault && member->type.kind == ValueType::Kind::Reference;
-      values.members.push_back(
-          {key.text, convert(json, member ? &member->type : nullptr, what, mayBeEmpty), key.place});
+      return convert(json, member ? &member->type : nullptr, what, mayBeEmpty);
     };
     if (classInfo)
       for (const MemberInfo &member : classInfo->members)
         if (const VariableDefinition *variable = variables.of(member, object))
-          ofMembers.attempt([&] {
-            const Variables::Taking taking(variables, *variable);
-            set(&member, {member.name, variable->first}, *variable->second,
-                fmt::format("the variable `{}`, which member `{}` of `{}` takes,", member.name,
-                            member.name, name));
-          });
-    for (const auto &[key, value] : object.members)
-      ofMembers.attempt([&, &key = key, &value = value] {
-        set(classInfo ? find(classInfo->members, key.text) : nullptr, key, *value,
-            fmt::format("member `{}` of `{}`", key.text, name));
-      });
+          values.members.push_back(
+              {member.name, valueOf([&] {
+                 const Variables::Taking taking(variables, *variable);
+                 return ofMember(&member, *variable->second,
+                                 fmt::format("the variable `{}`, which member `{}` of `{}` takes,",
+                                             member.name, member.name, name));
+               }),
+               variable->first});
+    for (const auto &[key, json] : object.members)
+      values.members.push_back({key.text, valueOf([&, &key = key, &json = json] {
+                                  return ofMember(
+                                      classInfo ? find(classInfo->members, key.text) : nullptr,
+                                      *json, fmt::format("member `{}` of `{}`", key.text, name));
+                                }),
+                                key.place});
     if (launch && classInfo)
       for (const MemberInfo &member : classInfo->members)
         if (member.type.isOutput && !isGiven(object, member.name) && !variables.of(member, object))
-          ofMembers.attempt([&] {
-            values.members.push_back(
-                {member.name, outputOf(member, name, *launch, object.place), object.place});
-          });
-    ofMembers.throwIfAny();
-    if (complete)
+          values.members.push_back(
+              {member.name, valueOf([&] { return outputOf(member, name, *launch, object.place); }),
+               object.place});
+    if (complete && !isRefused)
       complete(object.className.text, values);
     if (classInfo && leavesOut(*classInfo, values))
       values.variablePlaces = variablePlaces.of(object);
-    return scene.addObject(object.className.text, values, name);
+    const RtslRef added = scene.addObject(object.className.text, values, name);
+    if (isRefused)
+      throw Refused();
+    return added;
   }
 
   /// Is a public member without a default not set?

@@ -87,6 +87,8 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
   }
   if (!found->isPublic)
     throw Error(message::memberNotPublic(one.name, classInfo.name), one.place ? one.place : place);
+  if (one.value.kind == Value::Kind::Refused)
+    return;
   storeValue(found->type, one.value, record + found->offset, context,
              fmt::format("member `{}` of `{}`", one.name, name), place);
   checkRange(classInfo, *found, record, context.colorComponents, name, &one.value, place);
@@ -100,12 +102,20 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
   const std::vector<const Value *> arguments = matchArguments(classInfo, values);
   // Words, for the packed arguments are read as such.
   std::vector<std::uint32_t> packed(classInfo.parameterSize / 4 + 1, 0);
+  bool isRefused = false;
+  ErrorCollector errors;
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    storeValue(parameters[i].type, *arguments[i],
-               reinterpret_cast<std::uint8_t *>(packed.data()) + parameters[i].offset, context,
-               fmt::format("parameter `{}` of `{}`", parameters[i].name, classInfo.name),
-               values.place);
-  return packed;
+    if (arguments[i]->kind == Value::Kind::Refused)
+      isRefused = true;
+    else
+      errors.attempt([&] {
+        storeValue(parameters[i].type, *arguments[i],
+                   reinterpret_cast<std::uint8_t *>(packed.data()) + parameters[i].offset, context,
+                   fmt::format("parameter `{}` of `{}`", parameters[i].name, classInfo.name),
+                   values.place);
+      });
+  errors.throwIfAny();
+  return isRefused ? std::vector<std::uint32_t>() : packed;
 }
 
 void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,

@@ -16,10 +16,10 @@
 
 namespace rtsl::runtime {
 
-/// The arguments of the class's constructor, packed as it reads them, in words. Throws BadArguments
-/// if the class has no constructor, or if a parameter has no argument or two, or an argument no
-/// parameter; WrongType, OutOfRange,
-/// WrongClass.
+/// The arguments of the class's constructor, packed as it reads them, in words; empty if one of
+/// them is refused. Throws BadArguments if the class has no constructor, or if a parameter has no
+/// argument or two, or an argument no parameter; all errors of values at once: WrongType,
+/// OutOfRange, WrongClass.
 std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const ObjectValues &values,
                                          const StoreContext &context);
 

@@ -4,6 +4,7 @@
 #include "runtime/scene/ObjectValues.h"
 #include "runtime/scene/References.h"
 #include "support/ClosestName.h"
+#include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/format.h>
@@ -93,10 +94,17 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
     if (classInfo.initialize)
       callOutsideOfRays(launch(), object.reference,
                         [&](RtslState &state) { classInfo.initialize(&state, object.reference); });
-    runConstructor(object, values, launch);
-    storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
-    checkUnset(classInfo, object.name, values, recordOf(object));
-    checkOwnValues(classInfo, object.name, values, recordOf(object), code->colorComponents);
+    ErrorCollector errors;
+    bool isConstructed = false;
+    errors.attempt([&] { isConstructed = runConstructor(object, values, launch); });
+    errors.attempt([&] {
+      storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
+    });
+    errors.throwIfAny();
+    if (isConstructed) {
+      checkUnset(classInfo, object.name, values, recordOf(object));
+      checkOwnValues(classInfo, object.name, values, recordOf(object), code->colorComponents);
+    }
     measureChain(object);
   } catch (...) { // an object is added completely or not at all
     objects.pop_back();
@@ -123,17 +131,20 @@ void Objects::setRecord(RtslRef reference, const std::vector<std::uint8_t> &reco
   measureChain(object);
 }
 
-void Objects::runConstructor(const Object &object, const ObjectValues &values,
+bool Objects::runConstructor(const Object &object, const ObjectValues &values,
                              const std::function<RtslLaunch()> &launch) {
   const ClassInfo &classInfo = *object.classInfo;
   if (!classInfo.hasConstructor && std::holds_alternative<std::monostate>(values.constructor))
-    return;
+    return true;
   const std::vector<std::uint32_t> arguments =
       packArguments(classInfo, values, storeContext(object));
+  if (arguments.empty())
+    return false;
   if (classInfo.construct)
     callOutsideOfRays(launch(), object.reference, [&](RtslState &state) {
       classInfo.construct(&state, object.reference, arguments.data());
     });
+  return true;
 }
 
 bool Objects::derivesFrom(const ClassInfo *info, const std::string &className) const {

@@ -99,7 +99,8 @@ public:
   void cutBack(const Extent &to);
 
 private:
-  void runConstructor(const Object &object, const ObjectValues &values,
+  /// Gives whether it could: arguments may be refused.
+  bool runConstructor(const Object &object, const ObjectValues &values,
                       const std::function<RtslLaunch()> &launch);
   void measureChain(const Object &object);
   bool derivesFrom(const ClassInfo *info, const std::string &className) const;

@@ -20,7 +20,7 @@ namespace rtsl::runtime {
 /// dimension). A buffer of numbers may also be a block of memory in its own layout.
 class Value {
 public:
-  enum class Kind : std::uint8_t { Number, Boolean, Reference, List, Block };
+  enum class Kind : std::uint8_t { Number, Boolean, Reference, List, Block, Refused };
   using Words = runtime::Words;
 
   Value(double number) : kind(Kind::Number), number(number) {}
@@ -34,6 +34,13 @@ public:
     Value value(0.0);
     value.kind = Kind::Reference;
     value.object = object;
+    return value;
+  }
+
+  /// In place of a value with an error that is known: the object's other values are still checked.
+  static Value refused() {
+    Value value(0.0);
+    value.kind = Kind::Refused;
     return value;
   }
 

@@ -27,6 +27,8 @@ const char *describe(const Value &value) {
     return "a list";
   case Value::Kind::Block:
     return "a block of memory";
+  case Value::Kind::Refused:
+    break;
   }
   return "something else";
 }

@@ -416,6 +416,31 @@ class AllAtOnce(Case):
         expected = [said for _, _, *said in self.MISTAKES] + [said for _, *said in self.IMPORTS]
         self.check(every, [said for said in expected if said[0] != "E0810"])
 
+    def test_all_values_of_an_object(self):
+        scene = self.scene()
+        scene["camera"] = {
+            "class": "PerspectiveCamera",
+            "constructor": {"eye": [0, 1], "target": [0, 0, 0], "up": "y"},
+            "fieldOfView": "wide",
+        }
+        scene["objects"][1]["primitive"].update(center=[0, 0], radius="x")
+        scene["materials"]["clay"].update(albedo="nothing", reflectance=[1, 2])
+        scene["lights"][0].update(power=3, position=[0, "high", 0])
+        self.check(
+            scene,
+            [
+                ("E0804", "parameter `eye`"),
+                ("E0804", "parameter `up`"),
+                ("E0804", "member `fieldOfView`"),
+                ("E0804", "member `center`"),
+                ("E0804", "member `radius`"),
+                ("E0806", "`nothing`"),
+                ("E0804", "member `reflectance`"),
+                ("E0812", "no member `power`"),
+                ("E0804", "member `position`"),
+            ],
+        )
+
     def test_overrides_with_mistakes(self):
         """Nothing is said of what they might have added."""
         scene = self.scene()
