@@ -166,8 +166,8 @@ inline Lanes movedInto(Lanes near, Lanes far, Lanes t) {
     const Lanes lower = minimum(a, b, c), upper = maximum(a, b, c);
     const float inverse = ray.inverse[axis];
     const Lanes origin = all(ray.origin[axis]);
-    const Lanes first = (inverse < 0 ? upper : lower) - origin,
-                last = (inverse < 0 ? lower : upper) - origin;
+    const Lanes first = _mm256_blendv_ps(lower, upper, all(inverse)) - origin,
+                last = _mm256_blendv_ps(upper, lower, all(inverse)) - origin;
     near = maximum(first * all(inverse), near);
     far = minimum(last * all(inverse), far);
   }

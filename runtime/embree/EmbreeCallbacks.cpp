@@ -179,11 +179,9 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
     exponent = device::exponentOf(device::largest(ray.direction));
   }
   context.toEmbree = device::powerOfTwo(exponent);
-  const float origin[3] = {ray.origin.x, ray.origin.y, ray.origin.z};
-  const float direction[3] = {ray.direction.x, ray.direction.y, ray.direction.z};
   const auto fill = [&](RTCRay &inner) {
-    Implementation::fill(inner, origin, direction, state.Epsilon, context.toEmbree,
-                         device::powerOfTwo(-exponent), context.end(outer.limit()));
+    Implementation::fill(inner, ray, state.Epsilon, context.toEmbree, device::powerOfTwo(-exponent),
+                         context.end(outer.limit()));
   };
   const RTCScene tree = one.inside->treeFor(ray.origin);
   if constexpr (anyHit) {

@@ -11,13 +11,13 @@
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/embree/EmbreeScene.h"
 #include "runtime/embree/EmbreeSpace.h"
+#include "runtime/embree/EnterSpace.h"
 #include "runtime/embree/LastHit.h"
 #include "runtime/embree/LastOccluders.h"
 
 #include <embree3/rtcore.h>
 
 #include <cstdint>
-#include <cstring>
 #include <map>
 #include <memory>
 #include <string>
@@ -62,26 +62,21 @@ struct EmbreeScene::Implementation {
   ~Implementation();
 
   /// Fills Embree's ray. With factors of 1 the values are copied.
-  static void fill(RTCRay &ray, const float origin[3], const float direction[3], float epsilon,
-                   float toEmbree, float fromEmbree, float end) {
-    std::memcpy(&ray.org_x, origin, 3 * sizeof(float));
-    if (fromEmbree == 1) {
-      std::memcpy(&ray.dir_x, direction, 3 * sizeof(float));
-    } else {
-      ray.dir_x = direction[0] * fromEmbree;
-      ray.dir_y = direction[1] * fromEmbree;
-      ray.dir_z = direction[2] * fromEmbree;
-    }
+  static void fill(RTCRay &ray, const device::TriangleRay &from, float epsilon, float toEmbree,
+                   float fromEmbree, float end) {
+    ray.org_x = from.origin.x;
+    ray.org_y = from.origin.y;
+    ray.org_z = from.origin.z;
+    const bool isScaled = fromEmbree != 1;
+    ray.dir_x = isScaled ? from.direction.x * fromEmbree : from.direction.x;
+    ray.dir_y = isScaled ? from.direction.y * fromEmbree : from.direction.y;
+    ray.dir_z = isScaled ? from.direction.z * fromEmbree : from.direction.z;
     ray.tnear = device::maximum(epsilon * toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
     ray.tfar = end;
     ray.time = 0;
     ray.mask = ~0u;
     ray.id = 0;
     ray.flags = 0;
-  }
-  static void fill(RTCRay &ray, const RtslState &state, float toEmbree, float fromEmbree,
-                   float end) {
-    fill(ray, state.RayOrigin, state.RayDirection, state.Epsilon, toEmbree, fromEmbree, end);
   }
 
   /// Does the ray of the context hit anything in one of the world's instances?
@@ -110,8 +105,8 @@ struct EmbreeScene::Implementation {
   /// `toEmbree` and `fromEmbree` are powers of two that convert our t to Embree's, and back.
   [[gnu::always_inline]] std::uint32_t query(RtslState &state, std::uint32_t how, float toEmbree,
                                              float fromEmbree) const {
-    const device::TriangleRay triangleRay =
-        device::makeTriangleRay(device::load(state.RayOrigin), device::load(state.RayDirection));
+    device::TriangleRay triangleRay;
+    makeRay(state.RayOrigin, state.RayDirection, triangleRay);
     device::beginSearch(state);
     EmbreeContext context;
     rtcInitIntersectContext(&context.embree);
@@ -143,11 +138,12 @@ struct EmbreeScene::Implementation {
       // no search of the tree
     } else if (anyHit) {
       RTCRay ray;
-      fill(ray, state, toEmbree, fromEmbree, context.end(state.HitDistance));
+      fill(ray, triangleRay, state.Epsilon, toEmbree, fromEmbree, context.end(state.HitDistance));
       rtcOccluded1(tree, &context.embree, &ray);
     } else {
       RTCRayHit rayHit;
-      fill(rayHit.ray, state, toEmbree, fromEmbree, context.end(state.nearest));
+      fill(rayHit.ray, triangleRay, state.Epsilon, toEmbree, fromEmbree,
+           context.end(state.nearest));
       rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(tree, &context.embree, &rayHit);

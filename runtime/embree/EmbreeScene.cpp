@@ -179,8 +179,8 @@ void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
   if (!self->world.list.isEmpty() && Implementation::searchList(context, false))
     return;
   RTCRayHit rayHit;
-  Implementation::fill(rayHit.ray, state, context.toEmbree, device::powerOfTwo(-exponent),
-                       context.end(context.limit()));
+  Implementation::fill(rayHit.ray, ray, state.Epsilon, context.toEmbree,
+                       device::powerOfTwo(-exponent), context.end(context.limit()));
   rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(self->world.treeFor(device::load(state.RayOrigin)), &context.embree, &rayHit);

@@ -1,9 +1,10 @@
 //===- EnterSpace.h - a ray enters an instance that has its own space -----===//
 //
-// What device::enterInstance does, and a test of the box of everything in the space, with x, y and
-// z in lanes of one register. The operations are those of runtime/device/traverse/Instance.h,
-// BoxRange.h and Triangle.h, in the same order, and so are the bits. Rays that those treat
-// separately, and instances that move, whose origin is NaN here, are left to them.
+// What device::makeTriangleRay and device::enterInstance do, and a test of the box of everything in
+// the space, with x, y and z in lanes of one register. The operations are those of
+// runtime/device/traverse/Instance.h, BoxRange.h and Triangle.h, in the same order, and so are the
+// bits. Rays that those treat separately, and instances that move, whose origin is NaN here, are
+// left to them.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -70,6 +71,54 @@ inline bool holds(Axes comparison) {
   return int(0x192au >> 2 * combination & 3);
 }
 
+/// The numbers of device::TriangleRay that depend on the direction.
+struct DirectionAxes {
+  Axes direction, inverse;
+  int longest;
+  Axes turned; // the direction along kx, ky and kz
+
+  [[gnu::always_inline]] explicit DirectionAxes(Axes direction)
+      : direction(direction), inverse(_mm_set1_ps(1) / direction), longest(longestAxis(direction)),
+        turned(along(direction)) {}
+
+  /// The components along kx, ky and kz, without jumps, which would often be mispredicted.
+  Axes along(Axes vector) const { return _mm_permutevar_ps(vector, _mm_load_si128(&order())); }
+  /// Is its length one that makeTriangleRay does not treat separately?
+  bool isUsual() const {
+    const float length = __builtin_fabsf(turned[2]);
+    return length > 0x1p-30f && length < 0x1p30f;
+  }
+  /// makeTriangleRay, if isUsual().
+  [[gnu::always_inline]] void fill(device::TriangleRay &ray, Axes origin) const {
+    ray.origin = vectorOf(origin);
+    ray.direction = vectorOf(direction);
+    ray.inverse = vectorOf(inverse);
+    ray.kx = axes[longest][0];
+    ray.ky = axes[longest][1];
+    ray.kz = longest;
+    ray.turned = vectorOf(along(origin));
+    ray.sz = along(inverse)[2];
+    ray.sx = turned[0] * ray.sz;
+    ray.sy = turned[1] * ray.sz;
+    ray.directionExponent = 0;
+  }
+
+private:
+  alignas(16) static constexpr std::int32_t axes[3][4] = {{1, 2, 0, 0}, {2, 0, 1, 0}, {0, 1, 2, 0}};
+  const __m128i &order() const { return *reinterpret_cast<const __m128i *>(axes[longest]); }
+};
+
+/// device::makeTriangleRay for a ray whose components have just been stored, one by one: to load
+/// several at once would have to wait until the stores have left the processor.
+[[gnu::always_inline]] inline void makeRay(const float origin[3], const float direction[3],
+                                           device::TriangleRay &ray) {
+  const DirectionAxes axes(_mm_setr_ps(direction[0], direction[1], direction[2], 0));
+  if (axes.isUsual())
+    axes.fill(ray, _mm_setr_ps(origin[0], origin[1], origin[2], 0));
+  else
+    ray = device::makeTriangleRay(device::load(origin), device::load(direction));
+}
+
 /// Does the ray enter the box of the space before `limit`? It is that of a tree's root, tested
 /// before Embree begins, and turns with the instance, whose box in world space may be larger.
 inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
@@ -110,29 +159,12 @@ inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
   const Axes origin = product(instance.inverse, _mm256_cvtps_pd(worldOrigin) -
                                                     _mm256_cvtps_pd(axesAt(instance.translation)));
   const Axes direction = product(instance.inverse, _mm256_cvtps_pd(axesAt(&world.direction.x)));
-  const Axes inverse = _mm_set1_ps(1) / direction;
-  const int longest = longestAxis(direction);
-  alignas(16) static constexpr std::int32_t along[3][4] = {
-      {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 1, 2, 0}};
-  const __m128i order = _mm_load_si128(reinterpret_cast<const __m128i *>(along[longest]));
-  const Axes turned = _mm_permutevar_ps(direction, order);
-  const float length = __builtin_fabsf(turned[2]);
-  if (!holds(_mm_cmplt_ps(absolute(origin), _mm_set1_ps(device::infinity))) ||
-      !(length > 0x1p-30f && length < 0x1p30f))
+  const DirectionAxes axes(direction);
+  if (!holds(_mm_cmplt_ps(absolute(origin), _mm_set1_ps(device::infinity))) || !axes.isUsual())
     return enterAnySpace(launch, world, number, bounds, time, epsilon, limit, entered);
-  if (!entersBounds(rangeInBox(bounds.lower, bounds.upper, origin, inverse), epsilon, limit))
+  if (!entersBounds(rangeInBox(bounds.lower, bounds.upper, origin, axes.inverse), epsilon, limit))
     return false;
-  entered.origin = vectorOf(origin);
-  entered.direction = vectorOf(direction);
-  entered.inverse = vectorOf(inverse);
-  entered.kx = along[longest][0];
-  entered.ky = along[longest][1];
-  entered.kz = longest;
-  entered.turned = vectorOf(_mm_permutevar_ps(origin, order));
-  entered.sz = _mm_permutevar_ps(inverse, order)[2];
-  entered.sx = turned[0] * entered.sz;
-  entered.sy = turned[1] * entered.sz;
-  entered.directionExponent = 0;
+  axes.fill(entered, origin);
   entered.instance = number;
   entered.range = widened;
   return true;

@@ -45,8 +45,8 @@ public:
       for (int axis = 0; axis < 3; ++axis) {
         const bool isEmpty = i >= boxes.size(); // then no ray enters it
         EightBoxes &eight = groups[i / lanes];
-        eight.lower[axis][i % lanes] = isEmpty ? device::infinity : boxes[i].lower[axis];
-        eight.upper[axis][i % lanes] = isEmpty ? -device::infinity : boxes[i].upper[axis];
+        eight.sides[0][axis][i % lanes] = isEmpty ? device::infinity : boxes[i].lower[axis];
+        eight.sides[1][axis][i % lanes] = isEmpty ? -device::infinity : boxes[i].upper[axis];
       }
   }
 
@@ -66,7 +66,7 @@ public:
 private:
   static constexpr std::size_t lanes = TriangleBlock::lanes;
   struct alignas(32) EightBoxes {
-    float lower[3][lanes], upper[3][lanes];
+    float sides[2][3][lanes]; // lower, upper
   };
 
   /// rangeInBox, isEmpty and widened for eight boxes. Returns the lanes that are entered.
@@ -77,11 +77,12 @@ private:
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
       const float inverse = ray.inverse[axis];
-      const Lanes lower = _mm256_load_ps(boxes.lower[axis]),
-                  upper = _mm256_load_ps(boxes.upper[axis]);
+      const unsigned first = inverse < 0; // an index, because a branch would often be mispredicted
+      const Lanes enters = _mm256_load_ps(boxes.sides[first][axis]),
+                  leaves = _mm256_load_ps(boxes.sides[1 - first][axis]);
       const Lanes origin = all(ray.origin[axis]);
-      near = maximum(((inverse < 0 ? upper : lower) - origin) * all(inverse), near);
-      far = minimum(((inverse < 0 ? lower : upper) - origin) * all(inverse), far);
+      near = maximum((enters - origin) * all(inverse), near);
+      far = minimum((leaves - origin) * all(inverse), far);
     }
     const Lanes isMet = _mm256_cmp_ps(near, far * all(device::bvhSlack), _CMP_LE_OQ);
     near = near * all(1.0f - device::rangeShare);

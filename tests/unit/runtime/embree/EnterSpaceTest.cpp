@@ -1,5 +1,5 @@
-// A ray enters an instance in lanes, beside device::enterInstance and the test of the box: the same
-// answer, and the same ray to the bit.
+// A ray is made in lanes, and enters an instance in lanes, beside device::makeTriangleRay,
+// device::enterInstance and the test of the box: the same answer, and the same ray to the bit.
 #include "runtime/embree/EnterSpace.h"
 
 #include <gtest/gtest.h>
@@ -135,11 +135,15 @@ bool sameBits(float a, float b) {
 bool sameBits(Vec3 a, Vec3 b) {
   return sameBits(a.x, b.x) && sameBits(a.y, b.y) && sameBits(a.z, b.z);
 }
-bool sameBits(const InstanceRay &a, const InstanceRay &b) {
+bool sameBits(const device::TriangleRay &a, const device::TriangleRay &b) {
   return sameBits(a.origin, b.origin) && sameBits(a.direction, b.direction) &&
          sameBits(a.inverse, b.inverse) && a.kx == b.kx && a.ky == b.ky && a.kz == b.kz &&
          sameBits(a.turned, b.turned) && sameBits(a.sx, b.sx) && sameBits(a.sy, b.sy) &&
-         sameBits(a.sz, b.sz) && a.directionExponent == b.directionExponent &&
+         sameBits(a.sz, b.sz) && a.directionExponent == b.directionExponent;
+}
+bool sameBits(const InstanceRay &a, const InstanceRay &b) {
+  return sameBits(static_cast<const device::TriangleRay &>(a),
+                  static_cast<const device::TriangleRay &>(b)) &&
          a.instance == b.instance && a.range.near == b.range.near && a.range.far == b.range.far;
 }
 
@@ -149,6 +153,9 @@ unsigned compare(Form form, unsigned count) {
   unsigned entries = 0;
   for (unsigned i = 0; i < count; ++i) {
     const Case one = cases.make(form);
+    device::TriangleRay made;
+    runtime::makeRay(&one.ray.origin.x, &one.ray.direction.x, made);
+    EXPECT_TRUE(sameBits(made, one.ray)) << "case " << i;
     const RtslLaunch launch = one.launch();
     InstanceRay lanes, each;
     runtime::EmbreeSpace inside;
