@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -22,13 +23,16 @@ std::vector<std::string_view> wordsOf(std::string_view line) {
   }
 }
 
-/// Whether a word is a number, and nothing else; also one that the type cannot represent.
+/// Whether a word is a number, and nothing else. One that the type cannot represent is the largest
+/// one of its sign.
 template <typename Number>
 bool readWhole(std::string_view word, Number &number) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-')
     word.remove_prefix(1);
   const char *end = word.data() + word.size();
   const auto [after, error] = std::from_chars(word.data(), end, number);
+  if (error == std::errc::result_out_of_range)
+    number = (word[0] == '-' ? -1 : 1) * std::numeric_limits<Number>::max();
   return after == end && error != std::errc::invalid_argument;
 }
 

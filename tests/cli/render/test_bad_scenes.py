@@ -162,6 +162,7 @@ class BadScenes(Case):
             ("f 1 2 3/a", "in line 2: `3/a` is not a number"),
             ("f 1 2 0", "in line 2: it has the corner 0, and there are 3 vertices"),
             ("f 1 2 -1", "in line 2: it has the corner -1, and there are 3 vertices"),
+            ("f 1 2 " + 20 * "9", f"in line 2: it has the corner {2**63 - 1}, and there are 3"),
         ):
             self.write("line.obj", "# a comment\n" + line + "\n" + TRIANGLE)
             message = self.render("--set", "objects.3.mesh=line.obj")
