@@ -3,7 +3,7 @@
 // Embree finds the boxes that a ray meets; their contents are tested by the same functions as in
 // our own tree, so that both find the same hits, bit for bit. Embree's own triangles are not
 // suitable: near edges, between coincident triangles and for needles its test depends on its own
-// rounding. So triangles are user geometry, eight in a block (TriangleBlock.h), which is no slower.
+// rounding. So triangles are user geometry, eight in a block (TriangleBlock.h): hardly any slower.
 // RTSL primitives are user geometry as well, and so are instances with transforms of meshes and of
 // objects with several primitives: these have a tree of their own, which the ray in object space is
 // traced through from a callback. Where there are few of both, they are tested without a tree
