@@ -85,7 +85,8 @@ declarator
     : IDENTIFIER dimension* range? ( ASSIGN initializer )?
     ;
 
-// The values that a member may have, as an interval: a round bracket excludes its bound.
+// The values that a member, or a parameter of a constructor, may have, as an interval: a round
+// bracket excludes its bound.
 //
 //     public float roughness in [0, 1] = 0.2, radius in (0, inf);
 range
@@ -102,7 +103,7 @@ parameters
     ;
 
 parameter
-    : qualifier* typeName ( IDENTIFIER dimension* ( ASSIGN initializer )? )?
+    : qualifier* typeName ( IDENTIFIER dimension* range? ( ASSIGN initializer )? )?
     ;
 
 functionBody

@@ -91,7 +91,8 @@ std::string parameterText(const Variable &parameter) {
   static const char *const directions[] = {"", "out ", "inout "};
   return std::string(parameter.isConst ? "const " : "") +
          directions[static_cast<int>(parameter.direction)] + toString(parameter.type) +
-         (parameter.name.empty() ? "" : " " + parameter.name);
+         (parameter.name.empty() ? "" : " " + parameter.name) +
+         (parameter.values ? " in " + toString(*parameter.values) : "");
 }
 
 const char *opText(ast::BinaryOp op) {

@@ -111,10 +111,12 @@ runtime::ClassInfo reflect(const typed::Class &info, ir::ClassOp record, ir::Str
   if (const typed::Function *constructor = findConstructor(info); constructor && parameters) {
     result.hasConstructor = true;
     result.parameterSize = ir::sizeInBytes(parameters);
-    for (unsigned i = 0; i < constructor->parameters.size(); ++i)
+    for (unsigned i = 0; i < constructor->parameters.size(); ++i) {
       result.parameters.push_back(
           reflectMember(parameters.getFieldNames()[i].str(), constructor->parameters[i]->type,
                         ir::fieldOffset(parameters, i), parameters.getFieldTypes()[i]));
+      result.parameters.back().values = constructor->parameters[i]->values;
+    }
   }
 
   std::set<std::string> methods;

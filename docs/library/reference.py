@@ -10,7 +10,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENT = ROOT / "docs/library.md"
 BEGIN, END = "<!-- reference: begin -->\n", "<!-- reference: end -->\n"
 MEMBER = re.compile(
-    r"^ *public (optional )?([\w\[\]]+) (\w+(?:\[\])*)(?: = (.*?))?;(?: +// (.*))?$"
+    r"^ *public (optional )?([\w\[\]]+) (\w+(?:\[\])*)(?: in ([\[(].*?[\])]))?(?: = (.*?))?;"
+    r"(?: +// (.*))?$"
 )
 FUNCTION = re.compile(r"((?:^// .*\n)+)^(\w+ \w+\([^)]*\)) \{", re.M)
 
@@ -29,14 +30,15 @@ def members(text):
         found = MEMBER.match(line)
         if not found:
             continue
-        optional, kind, name, default, comment = found.groups()
+        optional, kind, name, values, default, comment = found.groups()
         column = line.find("//")
         for below in lines[i + 1 :] if comment else []:
             if below[:column].strip() or not below.startswith("// ", column):
                 break
             comment += " " + below[column + 3 :].strip()
         given = f"`{default}`" if default else "none" if optional or "[]" in name else "required"
-        yield f"| `{name}` | `{kind}` | {given} | {comment or ''} |"
+        values = f"`{values}`" if values else ""
+        yield f"| `{name}` | `{kind}` | {values} | {given} | {comment or ''} |"
 
 
 def class_section(path):
@@ -48,17 +50,17 @@ def class_section(path):
         re.M,
     )
     base = re.search(r"^(?:default )?class \w+(?: : (\w+))?", text, re.M).group(1)
-    constructor = re.search(r"void constructor\(([^)]*)\)", text)
+    constructor = re.search(r"void constructor\((.*?)\) \{", text, re.S)
     yield f"### {path.stem}\n"
     if (ROOT / f"docs/library/{path.stem}.png").exists():
         yield f"![{path.stem}](library/{path.stem}.png)\n"
     yield prose(head.group(1)) + "\n"
     yield (f"A class of `{base}`." if base else "A [helper class](language.md#8-classes).") + (
-        f" Constructor: `{constructor.group(1)}`." if constructor else ""
+        f" Constructor: `{' '.join(constructor.group(1).split())}`." if constructor else ""
     ) + "\n"
     rows = list(members(text))
     if rows:
-        yield "| parameter | type | default | |\n|---|---|---|---|"
+        yield "| parameter | type | range | default | |\n|---|---|---|---|---|"
         yield from rows
         yield ""
 

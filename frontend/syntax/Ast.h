@@ -190,7 +190,7 @@ struct ErrorExpr : ExprOf<ExprKind::Error> {};
 enum class Access { None, Public, Private, Scratch }; // of members
 enum class Direction { In, Out, InOut };              // of parameters
 
-/// `in [low, high)`, the values that a member may have.
+/// `in [low, high)`, the values that a member or a parameter of a constructor may have.
 struct ValueRange {
   ExprPtr low, high; // null: there is no range
   bool includesLow = false, includesHigh = false;

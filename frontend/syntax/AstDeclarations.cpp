@@ -207,14 +207,14 @@ TypeName AstBuilder::buildType(Parser::TypeNameContext *context,
   return type;
 }
 
-/// The range of a member. Those of other variables are reported and left out.
+/// The range of a member or parameter. Those of other variables are reported and left out.
 ValueRange AstBuilder::buildRange(Parser::RangeContext *context, Place place) {
   ValueRange values;
   const auto bounds = context->expr();
   if (context->exception || bounds.size() != 2)
     return values;
   values.range = range(context);
-  if (place != Place::Member) {
+  if (place != Place::Member && place != Place::Parameter) {
     diagnostics.report(Code::misplacedRange, values.range, "it is for public members of classes")
         .fix(values.range, "");
     return values;
@@ -271,6 +271,8 @@ VariableDecl AstBuilder::buildParameter(Parser::ParameterContext *context) {
   parameter.type = buildType(context->typeName(), context->dimension());
   if (auto *identifier = context->IDENTIFIER())
     parameter.name = name(identifier);
+  if (auto *values = context->range())
+    parameter.values = buildRange(values, Place::Parameter);
   if (auto *initializer = context->initializer())
     parameter.init = buildInitializer(initializer);
   parameter.range = range(context);

@@ -281,8 +281,9 @@ int rtslUnmapVertices(RtslScene *scene, int32_t mesh);
 /* The first object of this name: an image, texture, material or helper of a scene file, or of the
  * class, if it was created without a name. */
 RtslObject rtslSceneFind(const RtslScene *scene, const char *name);
-/* Sets a public member of an object that exists. Bounds of primitives are computed anew; if they
- * are wrong, it fails and the member stays as it was. */
+/* Sets a public member of an object that exists. If the value is not in the member's range, or the
+ * bounds of a primitive, which are computed anew, are wrong, it fails and the member stays as it
+ * was. */
 int rtslSetMember(RtslScene *scene, RtslObject object, const char *member, const double *numbers,
                   size_t count);
 int rtslSetMemberObject(RtslScene *scene, RtslObject object, const char *member, RtslObject value);

@@ -75,36 +75,36 @@ void forEachKey(const Value &value, const Visit &visit) {
 
 } // namespace
 
-void checkRange(const ClassInfo &classInfo, const MemberInfo &member, const std::uint8_t *record,
-                std::uint32_t colorComponents, const std::string &name, const Value *value,
-                const std::optional<Place> &fallback) {
-  if (!member.values)
+void checkRange(const MemberInfo &declared, const std::uint8_t *start,
+                std::uint32_t colorComponents, const std::string &owner, const std::string &what,
+                const Value *value, const std::optional<Place> &fallback) {
+  if (!declared.values)
     return;
-  const Range &range = *member.values;
+  const ValueType &type = declared.type;
+  const Range &range = *declared.values;
   const auto outside = [&](double number, const Value *at) {
-    return Error(message::memberOutOfRange(member.name, name, fmt::format("{}", float(number)),
-                                           toString(range)),
+    return Error(message::valueOutOfRange(what, numberText(number), toString(range)),
                  at && at->place ? at->place : fallback)
-        .note(fmt::format("class `{}` declares `{} {} in {}`", classInfo.name, member.type.name,
-                          member.name, toString(range)));
+        .note(fmt::format("`{}` has `{} {} in {}`", owner, type.name, declared.name,
+                          toString(range)));
   };
   if (value) { // in whichever frame
     ErrorCollector errors;
     forEachKey(*value, [&](const Value &key) {
       const bool isFloat =
-          member.type.kind == ValueType::Kind::Float || member.type.kind == ValueType::Kind::Color;
-      if (!range.contains(isFloat ? double(float(key.number)) : key.number))
-        errors.add(outside(key.number, &key));
+          type.kind == ValueType::Kind::Float || type.kind == ValueType::Kind::Color;
+      const double number = isFloat ? double(float(key.number)) : key.number;
+      if (!range.contains(number))
+        errors.add(outside(number, &key));
     });
     errors.throwIfAny();
   }
 
-  const std::optional<Component> found =
-      firstOutside(member.type, range, record + member.offset, colorComponents);
+  const std::optional<Component> found = firstOutside(type, range, start, colorComponents);
   if (!found)
     return;
   const Value *at = value;
-  if (value && (member.type.kind != ValueType::Kind::Color || colorComponents == 3)) {
+  if (value && (type.kind != ValueType::Kind::Color || colorComponents == 3)) {
     std::size_t position = found->position;
     if (const Value *component = componentAt(*value, position))
       at = component; // else one number is for all components

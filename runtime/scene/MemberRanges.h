@@ -10,11 +10,12 @@
 
 namespace rtsl::runtime {
 
-/// Throws OutOfRange if a component of a member, in the object's record, is not in the member's
-/// range. `name` is the object's; `value`, from which the member was stored, has the error's place,
-/// otherwise `fallback`. Null: the value is the class's own.
-void checkRange(const ClassInfo &classInfo, const MemberInfo &member, const std::uint8_t *record,
-                std::uint32_t colorComponents, const std::string &name, const Value *value,
-                const std::optional<Place> &fallback);
+/// Throws OutOfRange if a component of a member or parameter, stored from `start` on, is not in its
+/// range. `owner` is its class, and `what` names it in messages ("member `radius` of `ball`"). The
+/// error's place is that of `value`, from which it was stored, or else `fallback`. No value: the
+/// class itself set it.
+void checkRange(const MemberInfo &declared, const std::uint8_t *start,
+                std::uint32_t colorComponents, const std::string &owner, const std::string &what,
+                const Value *value, const std::optional<Place> &fallback);
 
 } // namespace rtsl::runtime

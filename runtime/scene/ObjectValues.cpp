@@ -19,8 +19,9 @@ namespace {
 std::string listParameters(const ClassInfo &info) {
   std::string text = info.name + "(";
   for (std::size_t i = 0; i < info.parameters.size(); ++i)
-    text += fmt::format("{}{} {}", i ? ", " : "", info.parameters[i].type.name,
-                        info.parameters[i].name);
+    text += fmt::format(
+        "{}{} {}{}", i ? ", " : "", info.parameters[i].type.name, info.parameters[i].name,
+        info.parameters[i].values ? " in " + toString(*info.parameters[i].values) : "");
   return text + ")";
 }
 
@@ -89,9 +90,10 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
     throw Error(message::memberNotPublic(one.name, classInfo.name), one.place ? one.place : place);
   if (one.value.kind == Value::Kind::Refused)
     return;
-  storeValue(found->type, one.value, record + found->offset, context,
-             fmt::format("member `{}` of `{}`", one.name, name), place);
-  checkRange(classInfo, *found, record, context.colorComponents, name, &one.value, place);
+  const std::string what = fmt::format("member `{}` of `{}`", one.name, name);
+  storeValue(found->type, one.value, record + found->offset, context, what, place);
+  checkRange(*found, record + found->offset, context.colorComponents, classInfo.name, what,
+             &one.value, place);
 }
 
 } // namespace
@@ -104,16 +106,18 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
   std::vector<std::uint32_t> packed(classInfo.parameterSize / 4 + 1, 0);
   bool isRefused = false;
   ErrorCollector errors;
+  const auto pack = [&](const MemberInfo &parameter, const Value &argument) {
+    auto *start = reinterpret_cast<std::uint8_t *>(packed.data()) + parameter.offset;
+    const std::string what = fmt::format("parameter `{}` of `{}`", parameter.name, classInfo.name);
+    storeValue(parameter.type, argument, start, context, what, values.place);
+    checkRange(parameter, start, context.colorComponents, classInfo.name, what, &argument,
+               values.place);
+  };
   for (std::size_t i = 0; i < parameters.size(); ++i)
     if (arguments[i]->kind == Value::Kind::Refused)
       isRefused = true;
     else
-      errors.attempt([&] {
-        storeValue(parameters[i].type, *arguments[i],
-                   reinterpret_cast<std::uint8_t *>(packed.data()) + parameters[i].offset, context,
-                   fmt::format("parameter `{}` of `{}`", parameters[i].name, classInfo.name),
-                   values.place);
-      });
+      errors.attempt([&] { pack(parameters[i], *arguments[i]); });
   errors.throwIfAny();
   return isRefused ? std::vector<std::uint32_t>() : packed;
 }
@@ -135,9 +139,11 @@ void checkOwnValues(const ClassInfo &classInfo, const std::string &name, const O
                     const std::uint8_t *record, std::uint32_t colorComponents) {
   ErrorCollector errors;
   for (const MemberInfo &member : classInfo.members)
-    if ((member.hasDefault || classInfo.hasConstructor) && !isGiven(member, values))
+    if (member.values && (member.hasDefault || classInfo.hasConstructor) &&
+        !isGiven(member, values))
       errors.attempt([&] {
-        checkRange(classInfo, member, record, colorComponents, name, nullptr, values.place);
+        checkRange(member, record + member.offset, colorComponents, classInfo.name,
+                   fmt::format("member `{}` of `{}`", member.name, name), nullptr, values.place);
       });
   errors.throwIfAny();
 }

@@ -53,6 +53,11 @@ std::unique_ptr<typed::Function> Program::declareFunction(const ast::FunctionDec
       diagnostics.report(Code::voidVariable, source.type.range, parameter->name);
       parameter->type = types.error;
     }
+    if (source.values.isGiven() && !(scope && function->name == "constructor"))
+      diagnostics.report(Code::misplacedRange, source.values.range,
+                         "of functions, only constructors have parameters that the scene sets");
+    else
+      parameter->values = rangeOf(checker, source.values, parameter->type);
     if (source.init)
       diagnostics.report(Code::parameterDefault, source.init->range, parameter->name)
           .note("write a second function with fewer parameters");

@@ -1,4 +1,4 @@
-//===- MemberRange.cpp - `in [low, high]` after the name of a member ------===//
+//===- MemberRange.cpp - `in [low, high]` after a name --------------------===//
 #include "sema/check/FunctionChecker.h"
 #include "sema/check/Program.h"
 #include "sema/fold/ConstantFold.h"
@@ -40,15 +40,6 @@ static bool isInfinity(const ast::Expr &bound, bool isLow) {
   return name && name->name == "inf";
 }
 
-/// Why the member cannot have a range, or null.
-static const char *whyNoRange(const ast::VariableDecl &declaration, const typed::Member &member,
-                              const Type *number) {
-  return member.access != ast::Access::Public ? "it is for public members, which the scene sets"
-         : !number ? "it is for numbers, vectors, colors, and arrays and buffers of them"
-         : declaration.directionRange.isValid() ? "the program writes this buffer"
-                                                : nullptr;
-}
-
 /// One bound; none, and reported, if it is not a constant of the member's numbers.
 static std::optional<double> boundOf(FunctionChecker &checker, const ast::Expr &bound, bool isLow,
                                      const Type *number) {
@@ -61,9 +52,18 @@ static std::optional<double> boundOf(FunctionChecker &checker, const ast::Expr &
   return toDouble(known->scalars.front(), number);
 }
 
-/// The range as it is written; none, and reported, if it is wrong.
-static std::optional<Range> rangeOf(FunctionChecker &checker, const ast::ValueRange &written,
-                                    const Type *number, Diagnostics &diagnostics) {
+/// The range that a member or parameter of this type has; none if none is written, or if it is
+/// wrong, which is reported.
+std::optional<Range> Program::rangeOf(FunctionChecker &checker, const ast::ValueRange &written,
+                                      const Type *type) {
+  if (!written.isGiven() || type->isError())
+    return std::nullopt;
+  const Type *number = numberOf(type, types);
+  if (!number) {
+    diagnostics.report(Code::misplacedRange, written.range,
+                       "it is for numbers, vectors, colors, and arrays and buffers of them");
+    return std::nullopt;
+  }
   const std::optional<double> low = boundOf(checker, *written.low, true, number);
   const std::optional<double> high = boundOf(checker, *written.high, false, number);
   if (!low || !high)
@@ -87,22 +87,24 @@ static std::optional<Range> rangeOf(FunctionChecker &checker, const ast::ValueRa
 void Program::checkRange(FunctionChecker &checker, const ast::VariableDecl &declaration,
                          typed::Member &member) {
   const ast::ValueRange &written = declaration.values;
-  if (!written.isGiven() || member.type->isError())
-    return;
-  const Type *number = numberOf(member.type, types);
-  if (const char *reason = whyNoRange(declaration, member, number)) {
-    diagnostics.report(Code::misplacedRange, written.range, reason);
+  const char *whyNot = !written.isGiven()                     ? nullptr
+                       : member.access != ast::Access::Public ? "the scene sets public members only"
+                       : declaration.directionRange.isValid() ? "the program writes this buffer"
+                                                              : nullptr;
+  if (whyNot) {
+    diagnostics.report(Code::misplacedRange, written.range, whyNot);
     return;
   }
-  member.values = rangeOf(checker, written, number, diagnostics);
+  member.values = rangeOf(checker, written, member.type);
+  if (!member.values || !member.init)
+    return;
 
-  const std::optional<typed::Constant> known =
-      member.init ? evaluate(*member.init) : std::optional<typed::Constant>();
+  const std::optional<typed::Constant> known = evaluate(*member.init);
+  const Type *number = numberOf(member.type, types);
   const auto isOutside = [&](typed::Constant::Scalar scalar) {
     return !member.values->contains(toDouble(scalar, number));
   };
-  if (member.values && known &&
-      std::any_of(known->scalars.begin(), known->scalars.end(), isOutside))
+  if (known && std::any_of(known->scalars.begin(), known->scalars.end(), isOutside))
     diagnostics
         .report(Code::defaultOutOfRange, declaration.init->range, member.name,
                 toString(*member.values))

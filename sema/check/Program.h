@@ -175,6 +175,9 @@ private:
   std::vector<ClassScope *> classesBaseFirst();
   void declareMembers(ClassScope &scope);
   void declareMember(ClassScope &scope, const ast::VariableDecl &declaration);
+  // MemberRange.cpp
+  std::optional<Range> rangeOf(FunctionChecker &checker, const ast::ValueRange &written,
+                               const Type *type);
   void checkRange(FunctionChecker &checker, const ast::VariableDecl &declaration,
                   typed::Member &member);
   void checkMemberQualifiers(const ClassScope &scope, const ast::VariableDecl &declaration,

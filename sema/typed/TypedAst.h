@@ -57,6 +57,7 @@ struct Variable {
   const Type *type = nullptr;
   bool isConst = false;
   ast::Direction direction = ast::Direction::In; // parameters
+  std::optional<Range> values; // of a constructor's parameter: which its components may have
   std::unique_ptr<Constant>
       constant; // const with a known value: uses become literals, except for arrays and structs
   ExprPtr init; // globals: always a constant expression

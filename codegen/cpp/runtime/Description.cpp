@@ -111,13 +111,25 @@ static Declarations describeStructs(const Context &context) {
   return functions;
 }
 
-/// `described.constructor<&Class::Class>({"parameter", ...})`
+/// `rtsl::Range{0.0f, 1.0f, true, true}`: the bounds, and whether they belong to it.
+static Code shownRange(const Range &range) {
+  const auto bound = [](double value) { // large integers are no floats
+    const auto rounded = float(value);
+    return double(rounded) == value ? floatLiteral(rounded) : doubleLiteral(value);
+  };
+  return list("rtsl::Range", {bound(range.low), bound(range.high), boolean(range.includesLow),
+                              boolean(range.includesHigh)});
+}
+
+/// `described.constructor<&Class::Class>({"parameter", {"parameter", range}, ...})`
 static Code describeConstructor(const Names &names, const Code &described,
                                 const typed::Function &constructor) {
   std::vector<Code> parameters;
   for (std::size_t i = 0; i < constructor.parameters.size(); ++i) {
-    const std::string &parameter = constructor.parameters[i]->name;
-    parameters.push_back(string(parameter.empty() ? "unnamed" + std::to_string(i) : parameter));
+    const typed::Variable &parameter = *constructor.parameters[i];
+    const Code name =
+        string(parameter.name.empty() ? "unnamed" + std::to_string(i) : parameter.name);
+    parameters.push_back(parameter.values ? list("", {name, shownRange(*parameter.values)}) : name);
   }
   const std::string address = "&" + names.of(constructor.owner) + "::" + names.of(&constructor);
   return callMember(described, withParameters("constructor", {address}),
@@ -137,12 +149,6 @@ static std::vector<Code> shownMethods(const typed::Class &definition) {
   for (const std::string &method : methods)
     shown.push_back(string(method));
   return shown;
-}
-
-/// `rtsl::Range{0.0f, 1.0f, true, true}`: the bounds, and whether they belong to it.
-static Code shownRange(const Range &range) {
-  return list("rtsl::Range", {doubleLiteral(range.low), doubleLiteral(range.high),
-                              boolean(range.includesLow), boolean(range.includesHigh)});
 }
 
 /// `described.member("name", &Class::name, rtsl::Access::Public)`

@@ -152,6 +152,8 @@ private:
       list.push_back({{"name", parameter->name},
                       {"type", toString(parameter->type)},
                       {"direction", directions[static_cast<int>(parameter->direction)]}});
+      if (parameter->values)
+        list.back()["range"] = toString(*parameter->values);
     }
     return list;
   }

@@ -247,6 +247,15 @@ inline void initialize(RtslState *state, RtslRef reference) {
 enum class Access { Public, Private };
 enum class Default { None, Given, Required };
 
+/// Of a constructor: its name, and the range of its argument.
+struct Parameter {
+  Parameter(const char *name, const std::optional<Range> &values = std::nullopt)
+      : name(name), values(values) {}
+
+  const char *name;
+  std::optional<Range> values;
+};
+
 template <typename Class>
 class ClassDescription {
 public:
@@ -274,17 +283,18 @@ public:
   }
 
   template <auto Function>
-  ClassDescription &constructor(std::initializer_list<const char *> names) {
+  ClassDescription &constructor(std::initializer_list<Parameter> parameters) {
     using Shape = detail::Constructor<decltype(Function)>;
     std::vector<runtime::ValueType> types = Shape::parameters();
     std::size_t i = 0;
-    for (const char *name : names) {
-      runtime::MemberInfo parameter;
-      parameter.name = name;
-      parameter.type = std::move(types[i++]);
-      parameter.offset = info.parameterSize;
-      info.parameterSize += parameter.type.size;
-      info.parameters.push_back(std::move(parameter));
+    for (const Parameter &parameter : parameters) {
+      runtime::MemberInfo described;
+      described.name = parameter.name;
+      described.type = std::move(types[i++]);
+      described.offset = info.parameterSize;
+      described.values = parameter.values;
+      info.parameterSize += described.type.size;
+      info.parameters.push_back(std::move(described));
     }
     info.hasConstructor = true;
     info.construct = &Shape::template construct<Class, Function>;

@@ -233,7 +233,28 @@ class ClosedForms(MediaCase):
             self.assertLess(math.hypot(*both), 0.12 * other)
 
 
+# A medium of an author whose members have no ranges.
+FREE = """
+import std.media.Medium;
+import std.phase;
+class Free : Medium {
+  public color lost = color(1.0), kept = color(1.0);
+  public float g = 0.0;
+  Coefficients at(vec3 p) { return Coefficients(kept, kept + lost); }
+  float most() { return max(kept + lost); }
+  float phase(float cosine) { return phaseHenyeyGreenstein(cosine, g); }
+  vec3 deflect(vec3 before, vec2 seed) { return deflected(before, seed, g); }
+};
+"""
+PARTS = ["std.cameras", "std.primitives", "std.materials", "std.backgrounds"]
+
+
 class ImpossibleMedia(MediaCase):
+    def free(self, kept, lost, g=0, **rest):
+        self.write("free.rtsl", FREE)
+        medium = {"class": "Free", "kept": kept, "lost": lost, "g": g}
+        self.scene(medium, background=SKY, **{"import": [*PARTS, "free.rtsl"]}, **rest)
+
     def reported(self):
         """The samples that are not finite, and how many of all they are."""
         out, _ = self.run_rtslc("render", "scene.json", "-o", "a.exr", "--json", "--size", "4x4")
@@ -248,25 +269,21 @@ class ImpossibleMedia(MediaCase):
         self.assertEqual(bad, all_of_them)
 
     def test_impossible_coefficients_are_reported(self):
-        for medium in (
-            {"scattering": -1},
-            {"absorption": -1},
-            {"scattering": -1, "absorption": 3},
-            {"scattering": 3e38, "absorption": 3e38},
-        ):
-            self.scene({"class": "HomogeneousMedium", **medium}, spp=1, background=SKY)
+        for kept, lost in ((-1, 0), (0.5, -1), (-1, 3), (3e38, 3e38)):
+            self.free(kept, lost, spp=1)
             bad, all_of_them = self.reported()
-            self.assertGreater(bad, all_of_them / 2, medium)
+            self.assertGreater(bad, all_of_them / 2, (kept, lost))
 
     def test_any_anisotropy_is_one_of_the_range(self):
         """All light that goes in comes out."""
         for anisotropy in (-1, 1, 1e30):
-            self.scene(
-                {"class": "HomogeneousMedium", "scattering": 2, "anisotropy": anisotropy},
-                depth=200,
-                background=SKY,
-            )
+            self.free(2, 0, anisotropy, depth=200)
             self.assert_color([1, 1, 1], 0.01)
+
+    def test_the_library_states_ranges(self):
+        for member, value in (("scattering", -1), ("absorption", -1), ("anisotropy", 1)):
+            self.scene({"class": "HomogeneousMedium", member: value}, background=SKY)
+            self.assert_message(self.diagnose("check", "scene.json"), "E0805", f"`{member}`")
 
 
 class Scenes(MediaCase):

@@ -29,7 +29,7 @@ class Paint : rt_Material {
 };
 class Lens : rt_Light {
   public float power in (0, inf);
-  void constructor(float given) { power = given; }
+  void constructor(float given in [-2, 2]) { power = given; }
   void illumination() { rt_LightDirection = vec3(0.0, 0.0, power); rt_LightColor = color(1.0); }
 };
 """
@@ -90,7 +90,7 @@ class Ranges(Case):
                 (8, 20, text.format("depths", "-1e-09", "[0, inf)")),
             ],
         )
-        self.assertIn("class `Paint` declares `float roughness in [0, 1]`", str(found[0]["notes"]))
+        self.assertIn("`Paint` has `float roughness in [0, 1]`", str(found[0]["notes"]))
         (found,) = self.check({}, "--set", "materials.paint.roughness=1.0001")
         self.assertEqual((found["code"], found["range"]["begin"]["column"]), ("E0805", 33))
 
@@ -126,6 +126,15 @@ class Ranges(Case):
         self.assertEqual(found["code"], "E0805")
         self.assertIn("member `power` of `Lens (lights.0)` is -1", found["message"])
         self.assertEqual(self.check({}, lights=[{"class": "Lens", "constructor": [2]}]), [])
+
+    def test_arguments_of_constructors(self):
+        (found,) = self.check({}, lights=[{"class": "Lens", "constructor": [2.5]}])
+        self.assertEqual(
+            (found["code"], found["message"]),
+            ("E0805", "parameter `given` of `Lens` is 2.5, which is not in its range [-2, 2]"),
+        )
+        (found,) = self.check({}, lights=[{"class": "Lens"}])
+        self.assertIn("`Lens(float given in [-2, 2])`", str(found["notes"]))
 
     def test_nan_is_in_no_range(self):
         self.write("depths.npy", npy("f", [2], [1.0, math.nan]))

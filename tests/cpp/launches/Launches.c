@@ -335,7 +335,7 @@ static void passesOfFile(void) {
 static void mistakes(void) {
   const Places places = {0, 0, 0, 1, 1};
   const uint32_t sizes[] = {3, 1, 1};
-  const double infinite[12] = {HUGE_VAL}, one = 1, minus = -1;
+  const double infinite[12] = {HUGE_VAL}, one = 1, minus = -1, noNumber = NAN;
   const double flat[12] = {1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0};
   RtslRenderSettings settings = rtslRenderDefaults();
   World world = make(&places);
@@ -367,6 +367,8 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSetMember(scene, world.ball, "radius", &minus, 1));
   EXPECT_FAILURE(rtslSetMember(scene, world.row, "radius", &minus, 1));
   EXPECT_FAILURE(rtslSetMember(scene, 4711, "weight", &one, 1));
+  EXPECT_FAILURE(rtslSetMember(scene, world.marked, "weight", &minus, 1));
+  EXPECT_FAILURE(rtslSetMember(scene, world.marked, "weight", &noNumber, 1));
   settings.width = 0;
   EXPECT_FAILURE(rtslLaunch(scene, &settings));
   settings.width = 4, settings.slices = 0x7fffffff;

@@ -36,6 +36,8 @@ WORDS = (
     "inverted",
     "inverted",
     "reference 4711",
+    "member `weight` of `Marked` is -1, which is not in its range [0, inf)",
+    "member `weight` of `Marked` is nan, which is not in its range [0, inf)",
     "the width",
     "slices",
     "there is no file `nowhere.png`",
