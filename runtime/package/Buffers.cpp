@@ -1,6 +1,7 @@
 #include "runtime/package/Buffers.h"
 
 #include "runtime/buffers/BufferFiles.h"
+#include "runtime/scene/MemberRanges.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
@@ -22,6 +23,11 @@ class Writer {
 public:
   void number(std::uint64_t value) {
     bytes.append(reinterpret_cast<const char *>(&value), sizeof value);
+  }
+  void real(double value) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    number(bits);
   }
   void text(const std::string &value) {
     number(value.size());
@@ -61,6 +67,12 @@ public:
     }
     std::memcpy(&value, left.data(), sizeof value);
     left.remove_prefix(sizeof value);
+    return value;
+  }
+  double real() {
+    const std::uint64_t bits = number();
+    double value;
+    std::memcpy(&value, &bits, sizeof value);
     return value;
   }
   /// How many elements follow, which take 8 bytes at least.
@@ -128,6 +140,14 @@ std::string serialize(const std::vector<PackageBuffer> &buffers) {
     writer.number(buffer.hasLaunchSize);
     writer.number(buffer.setsLaunchSize);
   }
+  for (std::size_t i = 0; i < buffers.size(); ++i) // of the few that have one
+    if (const std::optional<Range> &values = buffers[i].values) {
+      writer.number(i);
+      writer.real(values->low);
+      writer.real(values->high);
+      writer.number(values->includesLow);
+      writer.number(values->includesHigh);
+    }
   return writer.bytes;
 }
 
@@ -145,7 +165,18 @@ bool parse(std::string_view bytes, std::vector<PackageBuffer> &buffers) {
         buffer.type.bufferRank < 1 || buffer.type.bufferRank > 3 || buffer.type.elementSize == 0;
     buffers.push_back(std::move(buffer));
   }
-  return !reader.isDamaged && reader.left.empty();
+  while (!reader.isDamaged && !reader.left.empty()) {
+    const std::uint64_t number = reader.number();
+    Range values;
+    values.low = reader.real();
+    values.high = reader.real();
+    values.includesLow = reader.number() != 0;
+    values.includesHigh = reader.number() != 0;
+    reader.isDamaged |= number >= buffers.size();
+    if (!reader.isDamaged)
+      buffers[number].values = values;
+  }
+  return !reader.isDamaged;
 }
 
 bool isWithin(const FlatScene &scene, const PackageBuffer &buffer) {
@@ -224,11 +255,30 @@ void LaunchBuffers::replace(const PackageBuffer &buffer, const std::vector<std::
   }
 }
 
+/// As checkRange(), of elements that were read for `--in`.
+static void checkElements(const PackageBuffer &buffer, const Value &value,
+                          std::uint32_t colorComponents, const std::string &what,
+                          const std::string &file) {
+  MemberInfo declared;
+  declared.name = buffer.name;
+  declared.type = buffer.type;
+  declared.values = buffer.values;
+  RtslBuffer elements{};
+  const auto address = reinterpret_cast<std::uint64_t>(value.words->data());
+  elements.addressLow = std::uint32_t(address);
+  elements.addressHigh = std::uint32_t(address >> 32);
+  std::copy(value.sizes.begin(), value.sizes.end(), elements.size);
+  checkRange(declared, reinterpret_cast<const std::uint8_t *>(&elements), colorComponents,
+             "the package", what, nullptr, Place{file, 0, 0, 0});
+}
+
 void LaunchBuffers::read(const PackageBuffer &buffer, const std::string &file) {
   BufferDescription description;
   description.file = file;
-  const Value value = readBuffer(description, buffer.type, flat.launch().colorComponents,
-                                 fmt::format("`--in {}`", buffer.name));
+  const std::uint32_t colorComponents = flat.launch().colorComponents;
+  const std::string what = fmt::format("`--in {}`", buffer.name);
+  const Value value = readBuffer(description, buffer.type, colorComponents, what);
+  checkElements(buffer, value, colorComponents, what, file);
   replace(buffer, value.sizes, value.words->data(), 4 * value.words->size());
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/scene/SceneData.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,7 @@ struct PackageBuffer {
   std::string name;            // of the member
   std::string sceneName;       // of the buffer in the scene's `buffers`; empty: it has none
   ValueType type;              // not a reference
+  std::optional<Range> values; // which the numbers of its elements may have
   std::uint64_t place = 0;     // of its RtslBuffer in the flat scene
   bool hasLaunchSize = false;  // an output buffer with an element for each launch index
   bool setsLaunchSize = false; // the launch has an index for each of its elements

@@ -85,8 +85,8 @@ void checkRange(const MemberInfo &declared, const std::uint8_t *start,
   const auto outside = [&](double number, const Value *at) {
     return Error(message::valueOutOfRange(what, numberText(number), toString(range)),
                  at && at->place ? at->place : fallback)
-        .note(fmt::format("`{}` has `{} {} in {}`", owner, type.name, declared.name,
-                          toString(range)));
+        .note(
+            fmt::format("{} has `{} {} in {}`", owner, type.name, declared.name, toString(range)));
   };
   if (value) { // in whichever frame
     ErrorCollector errors;

@@ -25,6 +25,11 @@ std::string listParameters(const ClassInfo &info) {
   return text + ")";
 }
 
+/// As messages name it.
+std::string ownerOf(const ClassInfo &info) {
+  return fmt::format("class `{}`", info.name);
+}
+
 /// The value of each parameter, in their order.
 std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const ObjectValues &values) {
   if (!classInfo.hasConstructor)
@@ -92,7 +97,7 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
     return;
   const std::string what = fmt::format("member `{}` of `{}`", one.name, name);
   storeValue(found->type, one.value, record + found->offset, context, what, place);
-  checkRange(*found, record + found->offset, context.colorComponents, classInfo.name, what,
+  checkRange(*found, record + found->offset, context.colorComponents, ownerOf(classInfo), what,
              &one.value, place);
 }
 
@@ -110,7 +115,7 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
     auto *start = reinterpret_cast<std::uint8_t *>(packed.data()) + parameter.offset;
     const std::string what = fmt::format("parameter `{}` of `{}`", parameter.name, classInfo.name);
     storeValue(parameter.type, argument, start, context, what, values.place);
-    checkRange(parameter, start, context.colorComponents, classInfo.name, what, &argument,
+    checkRange(parameter, start, context.colorComponents, ownerOf(classInfo), what, &argument,
                values.place);
   };
   for (std::size_t i = 0; i < parameters.size(); ++i)
@@ -142,7 +147,7 @@ void checkOwnValues(const ClassInfo &classInfo, const std::string &name, const O
     if (member.values && (member.hasDefault || classInfo.hasConstructor) &&
         !isGiven(member, values))
       errors.attempt([&] {
-        checkRange(member, record + member.offset, colorComponents, classInfo.name,
+        checkRange(member, record + member.offset, colorComponents, ownerOf(classInfo),
                    fmt::format("member `{}` of `{}`", member.name, name), nullptr, values.place);
       });
   errors.throwIfAny();

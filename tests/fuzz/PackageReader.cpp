@@ -50,6 +50,7 @@ runtime::Package smallPackage() {
   input.type.bufferRank = 1;
   input.type.name = "vec3[]";
   input.type.elementSize = 12;
+  input.values = Range{-1000, 1000, true, false};
   input.place = inputs;
   input.setsLaunchSize = true;
   runtime::PackageBuffer output = input;

@@ -4,7 +4,7 @@ import json
 import math
 import unittest
 
-from harness import Case
+from harness import DIAGNOSED, Case
 from numpy_files import npy
 
 SHADERS = """
@@ -90,7 +90,7 @@ class Ranges(Case):
                 (8, 20, text.format("depths", "-1e-09", "[0, inf)")),
             ],
         )
-        self.assertIn("`Paint` has `float roughness in [0, 1]`", str(found[0]["notes"]))
+        self.assertIn("class `Paint` has `float roughness in [0, 1]`", str(found[0]["notes"]))
         (found,) = self.check({}, "--set", "materials.paint.roughness=1.0001")
         self.assertEqual((found["code"], found["range"]["begin"]["column"]), ("E0805", 33))
 
@@ -140,6 +140,33 @@ class Ranges(Case):
         self.write("depths.npy", npy("f", [2], [1.0, math.nan]))
         (found,) = self.check({"depths": '{"buffer": "depths.npy"}'})
         self.assertIn("is nan, which is not in its range [0, inf)", found["message"])
+
+    def test_buffers_of_a_launch(self):
+        self.write(
+            "twice.rtsl",
+            "class Twice : rt_RayGeneration;\n"
+            "public float data[] in [0, inf);\n"
+            "public out float doubled[];\n"
+            "void generate() { doubled[int(rt_LaunchIndex.x)] = 2.0 * data[0]; }\n",
+        )
+        scene = {
+            "rtsl": 1,
+            "import": ["twice.rtsl"],
+            "rayGeneration": {"class": "Twice", "data": [1, 2]},
+            "render": {"engine": "programs", "size": [2, 1]},
+        }
+        self.write("scene.json", json.dumps(scene))
+        self.write("good.npy", npy("f", [3], [1.0, 0.0, 3.5]))
+        self.write("bad.npy", npy("f", [3], [1.0, -1.0, 3.5]))
+        self.run_rtslc("pack", "scene.json", "-o", "x.rtslpkg")
+        options = ("--target=host", "--out=doubled=doubled.npy")
+        self.run_package("x.rtslpkg", *options, "--in=data=good.npy")
+        _, packed = self.run_package("x.rtslpkg", *options, "--in=data=bad.npy", status=DIAGNOSED)
+        _, scene = self.run_rtslc(
+            "run", "scene.json", options[1], "--in=data=bad.npy", status=DIAGNOSED
+        )
+        self.assertIn("`--in data` is -1, which is not in its range [0, inf)", packed)
+        self.assertIn("is -1, which is not in its range [0, inf)", scene)
 
     def test_reflection(self):
         self.write("shaders.rtsl", SHADERS)

@@ -62,6 +62,7 @@ std::vector<runtime::PackageBuffer> buffersOf(const runtime::Scene &scene,
       if (key.text == member.name && value->kind == scene::JsonValue::Kind::String)
         buffer.sceneName = value->string;
     buffer.type = member.type;
+    buffer.values = member.values;
     buffer.place = records + launch.rayGeneration + member.offset;
     buffer.hasLaunchSize = member.type.isOutput && !scene::isGiven(object, member.name);
     const std::string &sized = description.render.sizeBuffer;

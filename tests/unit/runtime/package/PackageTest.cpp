@@ -121,6 +121,7 @@ TEST(Package, ContentsThatNoRenderingCanHaveAreFound) {
     buffer.name = "rays";
     buffer.type.bufferRank = 1;
     buffer.type.elementSize = 4;
+    buffer.values = Range{0, 1, true, false};
     buffer.place = sizeof(RtslLaunch) - sizeof(RtslBuffer);
     package.buffers = {buffer};
     change(package);
