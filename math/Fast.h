@@ -1,14 +1,15 @@
 // Approximations in single precision, for --fp=fast: the functions that shaders call most.
 //
-// Only float arithmetic (except in sin, cos and tan of |x| >= 2^13, which reduce in integers). Each
-// function states its error bound; `elementary-exhaustive fast` measures it over all floats. Errors
-// are relative to the result, or to the smallest normal float if the result is smaller. Zeros,
-// infinities, NaNs and domain errors are as in Elementary.h, except that any NaN may result.
-// Functions that are missing here are those of Elementary.h.
+// Only float arithmetic (except in sin, cos and tan of |x| >= 2^13, which are those of
+// Elementary.h). Each function states its error bound; `elementary-exhaustive fast` measures it
+// over all floats. Errors are relative to the result, or to the smallest normal float if the result
+// is smaller. Zeros, infinities, NaNs and domain errors are as in Elementary.h, except that any NaN
+// may result. Functions that are missing here are those of Elementary.h.
 #pragma once
 
 #include "math/ArcTangent2.h"
 #include "math/Power.h"
+#include "math/Trigonometric.h"
 #include "math/TrigonometricOfPi.h"
 #include "math/kernels/ArgumentReduction.h"
 #include "math/tables/ArcTangentTable.h"
@@ -93,13 +94,12 @@ struct Quadrant {
   float rest;
 };
 
-/// For finite a >= 0. Below 2^13, pi/2 in three parts of 9, 24 and 24 bits: the product of the
-/// quadrant's number with the first is exact.
+/// The largest argument that reduce() is for: the product of a quadrant's number with the first
+/// part of pi/2 is exact below it.
+inline constexpr float mostReduced = 0x1p13f;
+
+/// For 0 <= a < mostReduced: pi/2 in three parts of 9, 24 and 24 bits.
 inline Quadrant reduce(float a) {
-  if (a >= 0x1p13f) {
-    QuadrantReduction exact = reduceToQuadrant(a);
-    return {exact.quadrant, float(exact.rest.hi)};
-  }
   constexpr float first = 0x1.92p0f;
   constexpr float second = float(halfPi.hi - double(first));
   constexpr float third = float(halfPi.hi - double(first) - double(second) + halfPi.lo);
@@ -165,6 +165,15 @@ inline float firstQuadrantAngle(float y, float x) {
 [[gnu::cold, gnu::const, gnu::noinline]] inline float specialPower(float x, float y) {
   return device::pow(x, y);
 }
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialSine(float x) {
+  return device::sin(x);
+}
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialCosine(float x) {
+  return device::cos(x);
+}
+[[gnu::cold, gnu::const, gnu::noinline]] inline float specialTangent(float x) {
+  return device::tan(x);
+}
 [[gnu::cold, gnu::const, gnu::noinline]] inline float specialSineOfPi(float x) {
   return device::sinpi(x);
 }
@@ -224,26 +233,26 @@ inline float pow(float x, float y) {
   return fast::exp2(y * fast::log2(x));
 }
 
-/// sin(x), relative error below 2^-22, absolute error below 2^-23.
+/// sin(x), relative error below 2^-22, absolute error below 2^-23. Its reduction has no branch, so
+/// that the optimiser can share it with cos of the same argument.
 inline float sin(float x) {
   using namespace detail;
   float a = absolute(x);
-  if (!(a < infinity()))
-    return canonicalNaN();
-  Quadrant reduced = reduce(a);
+  bool isUsual = a < mostReduced;
+  Quadrant reduced = reduce(isUsual ? a : 0.0f);
   float y = series(reduced.rest, (reduced.quadrant & 1) != 0);
-  return withFlippedSign(y, ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit));
+  bool flips = ((reduced.quadrant & 2) != 0) != (bitsOf(x) >= floatSignBit);
+  return isUsual ? withFlippedSign(y, flips) : specialSine(x);
 }
 
 /// cos(x), relative error below 2^-22, absolute error below 2^-23.
 inline float cos(float x) {
   using namespace detail;
   float a = absolute(x);
-  if (!(a < infinity()))
-    return canonicalNaN();
-  Quadrant reduced = reduce(a);
+  bool isUsual = a < mostReduced;
+  Quadrant reduced = reduce(isUsual ? a : 0.0f);
   float y = series(reduced.rest, (reduced.quadrant & 1) == 0);
-  return withFlippedSign(y, ((reduced.quadrant + 1) & 2) != 0);
+  return isUsual ? withFlippedSign(y, ((reduced.quadrant + 1) & 2) != 0) : specialCosine(x);
 }
 
 /// sin(pi x), relative error below 2^-22. Its reduction has no branch, so that the optimiser can
@@ -272,8 +281,8 @@ inline float cospi(float x) {
 inline float tan(float x) {
   using namespace detail;
   float a = absolute(x);
-  if (!(a < infinity()))
-    return canonicalNaN();
+  if (!(a < mostReduced))
+    return specialTangent(x);
   Quadrant reduced = reduce(a);
   float sine = series(reduced.rest, false), cosine = series(reduced.rest, true);
   float y = (reduced.quadrant & 1) != 0 ? -cosine / sine : sine / cosine;
