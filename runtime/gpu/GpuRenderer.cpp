@@ -15,21 +15,34 @@ namespace rtsl::runtime {
 
 namespace {
 
+/// The threads of a multiprocessor that run at once.
+std::uint64_t threadsAtOnce(const CudaDevice &device, const CudaDevice::Kernel &kernel,
+                            unsigned ofBlock) {
+  return std::uint64_t(device.blocksAtOnce(kernel, ofBlock)) * ofBlock;
+}
+
+/// The threads of a block: many if that costs no occupancy and leaves no multiprocessor without
+/// work. The warps of a block begin with neighbouring samples, so its multiprocessor needs fewer
+/// instructions at the same time (docs/gpu.md compares the sizes).
+unsigned blockSize(const CudaDevice &device, const CudaDevice::Kernel &kernel,
+                   std::uint64_t pixels) {
+  constexpr unsigned large = 512;
+  const bool isWorkForAll = pixels >= std::uint64_t(large) * unsigned(device.multiprocessors());
+  const bool runsAsMany =
+      threadsAtOnce(device, kernel, large) == threadsAtOnce(device, kernel, threadsPerBlock);
+  return isWorkForAll && runsAsMany ? large : threadsPerBlock;
+}
+
 /// As many blocks as run at once and as there is work and memory for. Throws OutOfMemory if that is
 /// none.
-unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel,
+unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel, unsigned ofBlock,
                     std::uint64_t pixels, std::uint64_t laneBytes) {
-  const std::uint64_t running = std::uint64_t(device.blocksAtOnce(kernel, threadsPerBlock)) *
-                                unsigned(device.multiprocessors());
-  const std::uint64_t wanted = (pixels + threadsPerBlock - 1) / threadsPerBlock;
+  const std::uint64_t running =
+      std::uint64_t(device.blocksAtOnce(kernel, ofBlock)) * unsigned(device.multiprocessors());
+  const std::uint64_t wanted = (pixels + ofBlock - 1) / ofBlock;
   // The driver takes memory of its own for each thread's local arrays when the kernel starts.
-  const std::uint64_t affordable = device.freeMemory() / 10 * 8 / (threadsPerBlock * laneBytes);
-  const std::uint64_t blocks = std::min({running, wanted, affordable});
-  if (blocks == 0)
-    throw Error(message::noGpuMemoryForRays(double(threadsPerBlock * laneBytes) / (1 << 20),
-                                            threadsPerBlock,
-                                            double(device.freeMemory()) / (1 << 20)));
-  return unsigned(blocks);
+  const std::uint64_t affordable = device.freeMemory() / 10 * 8 / (ofBlock * laneBytes);
+  return unsigned(std::min({running, wanted, affordable}));
 }
 
 } // namespace
@@ -46,8 +59,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
   figures.localBytes = kernel.localBytes;
   figures.spillStores = kernel.spillStores;
   figures.spillLoads = kernel.spillLoads;
-  figures.occupancy =
-      double(device.blocksAtOnce(kernel, threadsPerBlock)) * threadsPerBlock / device.mostThreads();
+  figures.occupancy = double(threadsAtOnce(device, kernel, threadsPerBlock)) / device.mostThreads();
   figures.laneBytes = waves ? waves->stackBytes() : blocks ? blocks->stackBytes() : code.laneBytes;
   figures.threadsPerBlock = threadsPerBlock;
   try {
@@ -107,8 +119,17 @@ std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
     figures.laneBytes = blocks->slotBytes() + blocks->stackBytes();
     return blocks->stacksBytes(figures.blocks);
   }
-  figures.blocks = blockCount(device, kernel, pixelCount(), job.laneBytes);
-  return std::uint64_t(figures.blocks) * threadsPerBlock * job.laneBytes;
+  figures.threadsPerBlock = blockSize(device, kernel, pixelCount());
+  figures.blocks = blockCount(device, kernel, figures.threadsPerBlock, pixelCount(), job.laneBytes);
+  if (figures.blocks == 0) { // perhaps there is memory for a small block
+    figures.threadsPerBlock = threadsPerBlock;
+    figures.blocks = blockCount(device, kernel, threadsPerBlock, pixelCount(), job.laneBytes);
+  }
+  if (figures.blocks == 0)
+    throw Error(message::noGpuMemoryForRays(double(threadsPerBlock * job.laneBytes) / (1 << 20),
+                                            threadsPerBlock,
+                                            double(device.freeMemory()) / (1 << 20)));
+  return samplesInFlight() * job.laneBytes;
 }
 
 /// The lanes of a warp take samples of one pixel if it has as many in a pass: then they mostly run
@@ -196,7 +217,7 @@ double GpuRenderer::runLanes(const RtslJob &job) {
   if (waves)
     return waves->run(job, raysAddress());
   const void *arguments[] = {&job};
-  return device.launch(kernel, figures.blocks, threadsPerBlock, arguments);
+  return device.launch(kernel, figures.blocks, figures.threadsPerBlock, arguments);
 }
 
 double GpuRenderer::addSamples(const RtslJob &job) {
