@@ -49,6 +49,11 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
   codegen::defineConstant(*code.module, "rtsl_needs", program.needs | program.sceneNeeds);
   codegen::defineConstant(*code.module, "rtsl_color_components", program.colorComponents);
   codegen::defineConstant(*code.module, "rtsl_counts_steps", options.countsSteps);
+  if (program.engine != runtime::Engine::Either)
+    codegen::defineConstant(*code.module, "rtsl_generates",
+                            program.engine == runtime::Engine::Programs);
+  codegen::defineConstant(*code.module, "rtsl_is_fast",
+                          options.floatingPoint == FloatingPoint::Fast);
 }
 
 const std::vector<std::string_view> &megakernelCode(bool forGpu) {
@@ -111,6 +116,14 @@ static Organisation organisationFor(const CompileOptions &options, const runtime
                                                   : Organisation::Megakernel;
 }
 
+/// How many samples a warp takes at once. To take several for each lane costs less, but then the
+/// warps that run at the same time are further apart in the picture, and need more of the program:
+/// a gain only for short shaders (docs/gpu.md).
+static std::uint32_t samplesAtOnce(const llvm::Module &module) {
+  constexpr unsigned shortShaders = 600; // instructions, before optimisation
+  return module.getInstructionCount() < shortShaders ? 128 : 32;
+}
+
 /// How the lanes of a warp choose their steps.
 static void defineSchedule(llvm::Module &module, const CompileOptions &options,
                            const runtime::Program &program) {
@@ -124,6 +137,7 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
   // With --schedule, or Majority, a warp chooses before each state, so that lanes gather for it.
   const bool runsOn = !options.schedule && schedule != Schedule::Majority;
   codegen::defineConstant(module, "rtsl_states_run_on", std::uint32_t(runsOn));
+  codegen::defineConstant(module, "rtsl_samples_at_once", samplesAtOnce(module));
   codegen::defineForward(module, "rtsl_least_of_warp",
                          architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"
                                                          : "rtsl_least_by_exchange");

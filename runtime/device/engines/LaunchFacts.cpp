@@ -29,11 +29,20 @@ __attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
 __attribute__((weak)) const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *) {
   return nullptr;
 }
+__attribute__((weak)) uint32_t rtsl_generates(const RtslLaunch *launch) {
+  return launch->rayGeneration != 0;
+}
+__attribute__((weak)) uint32_t rtsl_is_fast(void) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
   return RTSL_SCHEDULE_MAJORITY;
 }
 __attribute__((weak)) uint32_t rtsl_states_run_on(const RtslLaunch *) {
   return 0;
+}
+__attribute__((weak)) uint32_t rtsl_samples_at_once(const RtslLaunch *) {
+  return 32;
 }
 __attribute__((weak)) uint32_t rtsl_counts_steps(const RtslLaunch *) {
   return 0;

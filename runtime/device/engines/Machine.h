@@ -243,7 +243,7 @@ inline void startRays(Rays &rays, const RtslLaunch &launch, uint32_t x, uint32_t
   CurrentRay &ray = rays.ray;
   ray.level = rays.bottom;
   rays.waiting = 0;
-  if (launch.rayGeneration) {
+  if (rtsl_generates(&launch)) {
     const bool hasRay = startGenerate(ray.state, launch, x, y, index, rays.events);
     rays.next = hasRay ? rtsl_rt_RayGeneration_generate_first(&ray.state) : Rays::none;
     beginOn(rays, launch.rayGeneration);
@@ -300,7 +300,7 @@ inline void runState(Rays &rays, int32_t number) {
 /// The end of a sample, after its last state.
 inline void endSample(Rays &rays) {
   RtslState &state = rays.ray.state;
-  state.Depth = state.launch->rayGeneration ? -1 : 0; // in case a tail trace has replaced it
+  state.Depth = rtsl_generates(state.launch) ? -1 : 0; // in case a tail trace has replaced it
   endEvents(state);
 }
 

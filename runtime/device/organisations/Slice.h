@@ -80,10 +80,19 @@ struct TakenSamples {
 
 #ifdef __NVPTX__
 
+/// How many samples a warp takes next, after those up to `last`: one for each lane if few are left,
+/// so that all warps end at about the same time.
+inline uint32_t samplesAtOnce(const RtslJob &job, uint32_t last) {
+  const uint32_t most = rtsl_samples_at_once(job.launch);
+  if (most == lanesOfWarp)
+    return most;
+  const uint32_t lanes = __nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x();
+  return last + 16 * lanes < samplesOfSlice(job) ? most : lanesOfWarp;
+}
+
 /// The next sample for each lane of the warp that needs one; all lanes call together. The number is
 /// not below samplesOfSlice(job) if none is left.
 inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOne) {
-  constexpr uint32_t atOnce = 32;
   const uint32_t waiting = warp::lanesWhere(needsOne);
   const auto count = uint32_t(__builtin_popcount(waiting));
   const auto before = uint32_t(__builtin_popcount(waiting & __nvvm_read_ptx_sreg_lanemask_lt()));
@@ -92,6 +101,7 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOn
   taken.next += count;
   if (count <= left)
     return sample;
+  const uint32_t atOnce = samplesAtOnce(job, taken.end);
   uint32_t first = TakenSamples::none, stops = 0;
   if (needsOne && before == 0 && !taken.areLast) { // a GPU does both at the same time
     first =

@@ -538,6 +538,10 @@ typedef struct RtslListedBox {
   float half[3], unused1;   // of the size
 } RtslListedBox;
 const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
+/// Whether samples begin with `generate`: RtslLaunch::rayGeneration is not null.
+uint32_t rtsl_generates(const RtslLaunch *launch);
+/// Whether the program was compiled with --fp=fast.
+uint32_t rtsl_is_fast(void);
 /// RTSL_SCHEDULE_*: how the lanes of a warp choose the next step.
 #define RTSL_SCHEDULE_MAJORITY 0u
 #define RTSL_SCHEDULE_PRIORITIZED 1u
@@ -548,6 +552,8 @@ uint32_t rtsl_schedule(const RtslLaunch *launch);
 /// Whether a lane runs its states one after the other, until it traces a ray or its sample is over:
 /// then warps only choose between traversal and new samples.
 uint32_t rtsl_states_run_on(const RtslLaunch *launch);
+/// How many samples a warp takes at once while many are left.
+uint32_t rtsl_samples_at_once(const RtslLaunch *launch);
 /// What the steps of the megakernel cost, as powers of two: 4 bits for each of traversal, the
 /// beginning of samples, and the states in the order of their numbers; the last for all that
 /// follow. Of RTSL_SCHEDULE_LEAST_WASTE only.

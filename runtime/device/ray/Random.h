@@ -93,6 +93,15 @@ smallRandomNumber(uint32_t keyX, uint32_t keyY, uint32_t dimension, uint32_t fir
   return floatOfFraction(words);
 }
 
+/// The largest float that is not above x, which is at least 2^23.
+inline float roundedDown(uint32_t x) {
+#ifdef __NVPTX__
+  return __nvvm_ui2f_rz(x);
+#else
+  return float(x & ~(0xffu >> __builtin_clz(x)));
+#endif
+}
+
 /// The number in [0, 1) whose first 32 binary digits are `first` and whose others are hashed, with
 /// 24 significant bits even near 0. (With the leading bits of one word only, as in unitFloat(),
 /// there is nothing between 0 and 2^-24; see Downey, "Generating Pseudo-random Floating-Point
@@ -100,8 +109,7 @@ smallRandomNumber(uint32_t keyX, uint32_t keyY, uint32_t dimension, uint32_t fir
 inline float numberOfWord(const uint32_t key[2], uint32_t dimension, uint32_t first) {
   if (first < 1u << 23)
     return smallRandomNumber(key[0], key[1], dimension, first);
-  return float(first & ~(0xffu >> __builtin_clz(first))) *
-         0x1p-32f; // exact, so that it is not rounded to 1
+  return roundedDown(first) * 0x1p-32f; // exact, so that it is not rounded to 1
 }
 
 /// Draw number `dimension` of the ray with this key: uniform in [0, 1).

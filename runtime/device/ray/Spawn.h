@@ -9,6 +9,7 @@
 
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Box.h"
+#include "runtime/device/ray/Rough.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
@@ -42,10 +43,10 @@ inline float primitivePointError(Vec3 origin, Vec3 direction, float t) {
 inline float primitivePointError(Vec3 point, Vec3 direction, float error, Vec3 normal) {
   const float rounding = trianglePointUnits * roundingUnit * largest(point);
   const float squares = dot(direction, direction), across = dot(normal, normal);
-  const float length = squareRoot(squares);
+  const float length = roughRoot(squares);
   if (!(squares > 0x1p-60f && squares < 0x1p60f && across > 0x1p-60f && across < 0x1p60f))
     return 4 * error * largest(direction) + rounding; // a vector is at most sqrt(3) of its largest
-  const float along = absolute(dot(direction, normal)) / squareRoot(across);
+  const float along = roughQuotient(absolute(dot(direction, normal)), roughRoot(across));
   return 2 * error * maximum(along, smallestHitCosine * length) + rounding;
 }
 
@@ -79,8 +80,9 @@ inline float epsilonAtSurface(float error, Vec3 normal, Vec3 direction) {
   // The sum is at least the length, at most 1.74 times as much, and needs no square root: the bound
   // may be larger than necessary.
   if (along * along > smallestCosine * smallestCosine * squares)
-    return error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)) / along;
-  return error / (smallestCosine * squareRoot(square));
+    return roughQuotient(error * (absolute(normal.x) + absolute(normal.y) + absolute(normal.z)),
+                         along);
+  return roughQuotient(error, smallestCosine * roughRoot(square));
 }
 
 /// The start of a ray that a shader sends.

@@ -115,7 +115,11 @@ inline bool isFiniteFromZero(float x) {
 
 /// False for infinities and NaN.
 inline bool isFinite(Vec3 a) {
+#ifdef __NVPTX__
+  return fused(a.x, 0.0f, fused(a.y, 0.0f, a.z * 0.0f)) == 0.0f; // one instruction each
+#else
   return (a.x * 0.0f + a.y * 0.0f) + a.z * 0.0f == 0.0f;
+#endif
 }
 
 /// 2^exponent for -126 <= exponent <= 127.

@@ -4,6 +4,7 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/ray/ListedBox.h"
+#include "runtime/device/ray/Rough.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Candidate.h"
@@ -179,25 +180,38 @@ inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
   return 0x80000000u | mixed >> 4;
 }
 
+/// May an RTSL primitive be hit? Its hits count in the part of the ray in its box; with --fp=fast
+/// on all of the ray in a scene without a tree, where the result does not depend on the boxes.
+template <typename Ray>
+bool hasHitsIn(Range &range, const RtslLaunch &launch, const Ray &ray, const RtslInstance &instance,
+               uint32_t primitive) {
+  range = {-infinity, infinity};
+  if (rtsl_is_fast() && rtsl_listed_instances(&launch))
+    return true;
+  const RtslBox box = boxOf(launch, instance, primitive);
+  const Range exact = rangeInBox(box.lower, box.upper, ray.origin, ray.inverse, 0, infinity);
+  if (exact.isEmpty())
+    return false;
+  const Range inBox = exact.widened();
+  range = {moveIntoInstance(ray, inBox.near), moveIntoInstance(ray, inBox.far)};
+  return true;
+}
+
 /// Runs `intersect` of an RTSL primitive, intersect(state, object), as if nothing else had been
 /// hit. True if it commits a hit that wins. It must not be the hit so far. `Ray` is a TriangleRay
 /// in world space or an InstanceRay.
 template <typename Ray, typename Intersect>
 bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instance,
                    const RtslLeafItem &item, Intersect intersect) {
-  const RtslBox box = boxOf(*state.launch, instance, item.primitive);
-  const Range range = rangeInBox(box.lower, box.upper, ray.origin, ray.inverse, 0, infinity);
-  if (range.isEmpty())
-    return false;
-  const Range inBox = range.widened();
-  const Range widened = {moveIntoInstance(ray, inBox.near), moveIntoInstance(ray, inBox.far)};
-  if (widened.near > state.nearest || widened.far < state.Epsilon)
+  Range range;
+  if (!hasHitsIn(range, *state.launch, ray, instance, item.primitive) ||
+      range.near > state.nearest || range.far < state.Epsilon)
     return false;
   const float end = state.HitDistance;
   const uint32_t dimension = state.dimension;
   beginCandidate(state, item.instance, item.primitive);
-  state.candidateNear = widened.near;
-  state.candidateFar = widened.far;
+  state.candidateNear = range.near;
+  state.candidateFar = range.far;
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance, ray);
@@ -283,18 +297,25 @@ bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Sl
 template <typename Limit, typename Visit>
 void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
                    Limit limit, Visit visit) {
+  if (count == 1 && !rtsl_is_fast()) { // its exact test will do
+    visit(RtslLeafItem{0, 0}, ray);
+    return;
+  }
   tMin *= 1.0f - 2 * rangeShare;
   const float tMax = limit() * cullSlack;
-  const ListedBoxRay boxRay(ray.origin, ray.inverse);
+  const Vec3 inverse =
+      rtsl_is_fast() ? Vec3{roughReciprocal(ray.direction.x), roughReciprocal(ray.direction.y),
+                            roughReciprocal(ray.direction.z)}
+                     : ray.inverse; // as in the exact test
+  const ListedBoxRay boxRay(ray.origin, inverse);
   const auto *boxes =
       static_cast<const RtslListedBox *>(__builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
   uint32_t entered = 0; // bit i: instance i
 #ifdef __clang__
-#pragma clang loop unroll_count(2) vectorize(disable)
+#pragma clang loop unroll_count(4) vectorize(disable)
 #endif
-  for (uint32_t i = 0; i < count; ++i) {
-    entered |= uint32_t(boxRay.mayEnter(boxes[i], tMin, tMax)) << i;
-  }
+  for (uint32_t i = count; i-- > 0;)
+    entered = 2 * entered + uint32_t(boxRay.mayEnter(boxes[i], tMin, tMax));
   while (entered) {
     const RtslLeafItem item = {uint32_t(__builtin_ctz(entered)), 0};
     entered &= entered - 1;

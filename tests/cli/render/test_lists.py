@@ -2,8 +2,10 @@
 
 import json
 import random
+import struct
 import unittest
 
+from exr_files import channels
 from harness import Case
 
 WAYS = (
@@ -67,7 +69,7 @@ class Lists(Case):
         for count in (1, 8, 13, 32, 33):
             self.scene(count)
             self.render("a.exr")
-            for way in WAYS if count == 13 else WAYS[:1]:
+            for way in WAYS if count in (1, 13) else WAYS[:1]:
                 self.render("b.exr", *way)
                 self.assert_same_bits("a.exr", "b.exr", (count, way))
 
@@ -77,6 +79,42 @@ class Lists(Case):
             self.render("a.exr", *arguments)
             self.render("b.exr", "--keep=tree", *arguments)
             self.assert_same_bits("a.exr", "b.exr", arguments)
+
+    def test_hits_outside_of_their_boxes(self):
+        """A plane whose box lies before another plane, which it is behind. With --fp=fast its hits
+        count where they are."""
+        self.write(
+            "planes.rtsl",
+            "class Plane : rt_Primitive {\n"
+            "  public float z = 0.0;\n"
+            "  public float low = 0.0;\n"
+            "  public float high = 0.0;\n"
+            "  void intersect() { hit((z - rt_RayOrigin.z) / rt_RayDirection.z); }\n"
+            "  void computeNormal() { rt_GeometricNormal = vec3(0.0, 0.0, 1.0); }\n"
+            "  void computeBounds() {\n"
+            "    rt_BoundMin = vec3(-9.0, -9.0, low);\n"
+            "    rt_BoundMax = vec3(9.0, 9.0, high);\n"
+            "  }\n"
+            "};\n",
+        )
+        self.scene(3)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("planes.rtsl")
+        scene["objects"] = [
+            {"primitive": {"class": "Plane"}, "material": "clay"},
+            {"primitive": {"class": "Plane", "z": -1, "low": 1, "high": 2}, "material": "lamp"},
+        ]
+        self.write("scene.json", json.dumps(scene))
+        lamp = struct.unpack("<I", struct.pack("<f", 9))[0]
+        for way in ((), ("--target=host-megakernel",)):
+            self.render("strict.exr", *way)
+            self.render("fast.exr", "--fp=fast", *way)
+            strict, fast = (
+                channels((self.folder / name).read_bytes())["G"]
+                for name in ("strict.exr", "fast.exr")
+            )
+            self.assertEqual(set(strict), {lamp}, way)
+            self.assertNotIn(lamp, fast, way)
 
     def test_no_ray_is_fitted_to_embree(self):
         """Rays whose directions are so short that Embree would get scaled ones."""
