@@ -171,7 +171,7 @@ void GpuRenderer::fetchPixels() {
 }
 
 std::uint64_t GpuRenderer::sliceBytes() {
-  constexpr std::uint64_t enough = std::uint64_t(1) << 30;
+  constexpr std::uint64_t enough = std::uint64_t(4) << 30; // 64 samples of five million pixels
   return std::min<std::uint64_t>(device.freeMemory() / 4, enough);
 }
 

@@ -28,7 +28,7 @@ std::unique_ptr<Backend> Gpus::prepare(const GpuCode &code, FlatScene scene,
   kept.resize(devices.size());
   renderers.assign(devices.size(), nullptr);
   several = nullptr;
-  if (devices.size() == 1 && (!scene.outputs.empty() || !options.wantsPicture)) {
+  if (devices.size() == 1) {
     devices.front()->use();
     auto renderer =
         std::make_unique<GpuRenderer>(*devices.front(), code, std::move(scene), options, kept[0]);

@@ -19,11 +19,10 @@ constexpr std::uint32_t rowsOfBand = 4;
 /// with the same pixel.
 constexpr std::uint32_t enoughSamples = 64;
 
-/// Rows to take at once while so many are left: of several devices, half of each one's share. A
-/// device that is slower than the others, or gets what is harder to render, then takes fewer of the
-/// following.
+/// Rows to take at once while so many are left: half of each device's share. A device that is
+/// slower than the others, or gets what is harder to render, then takes fewer of the following.
 std::uint32_t rowsAtOnce(std::uint32_t left, std::size_t devices, std::uint64_t most) {
-  const std::uint64_t share = devices == 1 ? left : left / (2 * devices);
+  const std::uint64_t share = left / (2 * devices);
   const std::uint64_t wanted = (share + rowsOfBand - 1) / rowsOfBand * rowsOfBand;
   const std::uint64_t rows = std::min(wanted, std::uint64_t(left));
   const std::uint64_t fitting = rows <= most ? rows : most / rowsOfBand * rowsOfBand;

@@ -5,9 +5,6 @@
 // and less and less. A pixel is rendered by one device, which adds its samples in their order, so
 // the picture has the bits of one device.
 //
-// One device takes rows too, if the samples of the picture do not all fit in its memory: then it
-// has more samples of each pixel at once, and the lanes of a warp stay together.
-//
 //===----------------------------------------------------------------------===//
 #pragma once
 
