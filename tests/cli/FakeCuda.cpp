@@ -13,6 +13,7 @@
 #include "runtime/device/trees/Widen.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -59,6 +60,16 @@ struct Device {
 };
 Device devices[mostDevices];
 thread_local Device *current = nullptr; // of this thread
+
+/// With "copies" the bytes that were copied to and from the devices are printed at the end.
+struct Copies {
+  std::atomic<std::size_t> bytes{0};
+  ~Copies() {
+    if (is("copies"))
+      std::fprintf(stderr, "%zu bytes were copied\n", bytes.load());
+  }
+};
+Copies copies;
 
 int deviceCount() {
   const char *count = std::getenv("FAKE_CUDA_DEVICES");
@@ -346,12 +357,14 @@ int cuMemcpyHtoD_v2(std::uint64_t to, const void *from, std::size_t bytes) {
   if (!isAllocated(reinterpret_cast<void *>(to), bytes))
     return InvalidValue;
   std::memcpy(reinterpret_cast<void *>(to), from, bytes);
+  copies.bytes += bytes;
   return Success;
 }
 int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
   if (!isAllocated(reinterpret_cast<void *>(from), bytes))
     return InvalidValue;
   std::memcpy(to, reinterpret_cast<void *>(from), bytes);
+  copies.bytes += bytes;
   return Success;
 }
 int cuMemcpyDtoD_v2(std::uint64_t to, std::uint64_t from, std::size_t bytes) {

@@ -94,6 +94,17 @@ class Gpu(Case):
         )
         self.assertEqual(document["samples"], 28 * document["spp"])
 
+    def test_sums_stay_on_the_device(self):
+        """Passes of 1, 16 and more samples copy as much as two of 1, but for the state of each."""
+
+        def copied(samples):
+            size = ("--size", "64x64", "--time=1000s", "-Wno-depth-limit", "-q")
+            _, error = self.render(*size, f"--spp={samples}", fake="copies")
+            return int(re.search(r"(\d+) bytes were copied", error)[1])
+
+        sums = 64 * 64 * (3 * 8 + 4 + 4)
+        self.assertLess(copied(300) - copied(2), sums)
+
     def test_it_says_what_ran(self):
         _, error = self.render(*SMALL)
         self.assertRegex(
