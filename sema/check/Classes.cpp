@@ -86,25 +86,32 @@ void Program::findDefaults() {
   }
 }
 
+static bool defines(const ast::ClassDecl &owner, const ast::FunctionDecl &required) {
+  return std::any_of(owner.functions.begin(), owner.functions.end(),
+                     [&](const ast::FunctionDecl &one) {
+                       return one.body && one.name.text == required.name.text &&
+                              one.parameters.size() == required.parameters.size();
+                     });
+}
+
 /// The default class from which a class derives that names an rt_ class as its base: the first
-/// whose required methods, those without a body, it defines. Null if there is none.
+/// whose required methods, those without a body, it or a default class between them defines. Null
+/// if there is none.
 ClassScope *Program::defaultOf(const ClassScope &scope) const {
   const auto candidates = defaults.find(scope.root);
   if (candidates == defaults.end() || scope.declaration->defaultRange.isValid())
     return nullptr;
-  const std::vector<ast::FunctionDecl> &own = scope.declaration->functions;
-  const auto isDefined = [&](const ast::FunctionDecl &required) {
-    return required.body || std::any_of(own.begin(), own.end(), [&](const ast::FunctionDecl &one) {
-             return one.name.text == required.name.text &&
-                    one.parameters.size() == required.parameters.size();
-           });
-  };
   const auto fits = [&](const ClassScope *candidate) {
-    const std::vector<const ClassScope *> chain = defaultChain(*candidate);
-    return std::all_of(chain.begin(), chain.end(), [&](const ClassScope *one) {
-      const std::vector<ast::FunctionDecl> &methods = one->declaration->functions;
-      return std::all_of(methods.begin(), methods.end(), isDefined);
-    });
+    std::vector<const ast::ClassDecl *> derived = {scope.declaration};
+    for (const ClassScope *one : defaultChain(*candidate)) {
+      for (const ast::FunctionDecl &method : one->declaration->functions)
+        if (!method.body && std::none_of(derived.begin(), derived.end(), [&](const auto *owner) {
+              return defines(*owner, method);
+            }))
+          return false;
+      derived.push_back(one->declaration);
+    }
+    return true;
   };
   const auto found = std::find_if(candidates->second.begin(), candidates->second.end(), fits);
   return found == candidates->second.end() ? nullptr : *found;

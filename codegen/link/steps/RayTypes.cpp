@@ -176,20 +176,38 @@ bool isOrderVisible(const LinkContext &context, const std::vector<FuncOp> &anyHi
 // Rays that no class handles
 //===----------------------------------------------------------------------===//
 
-/// The methods that a default class and its bases require of a class.
+/// The methods that a default class requires of a class: its own and those of its bases, without
+/// those that it defines.
 std::set<std::string> requiredBy(const typed::Class *definition) {
-  std::set<std::string> names;
+  std::set<std::string> names, defined;
   for (; definition; definition = definition->base)
     for (const auto &method : definition->functions)
-      if (method->isRequired)
+      if (!method->isRequired)
+        defined.insert(method->name);
+      else if (!defined.count(method->name))
         names.insert(method->name);
   return names;
 }
 
-bool handles(const typed::Class &definition, const RayType &type) {
-  return llvm::any_of(definition.functions, [&](const auto &method) {
+bool handles(const typed::Class *definition, const RayType &type) {
+  const auto isHandler = [&](const auto &method) {
     return typed::takesPayload(*method) &&
            method->parameters.front()->type->structure->name == type.name();
+  };
+  for (; definition; definition = definition->base)
+    if (llvm::any_of(definition->functions, isHandler))
+      return true;
+  return false;
+}
+
+/// Whether a default class that derives from this one defines what this one requires: then this is
+/// a base of default classes only.
+bool isOnlyBase(const LinkContext &context, const typed::Class &definition) {
+  const std::set<std::string> names = requiredBy(&definition);
+  return llvm::any_of(context.module.classes, [&](const auto &other) {
+    const std::set<std::string> left = requiredBy(other.get()); // none of an author's class
+    return !left.empty() && other->derivesFrom(&definition) &&
+           !std::includes(left.begin(), left.end(), names.begin(), names.end());
   });
 }
 
@@ -200,8 +218,8 @@ std::vector<std::set<std::string>> requirementsFor(const LinkContext &context,
   std::vector<std::set<std::string>> all, smallest;
   for (const auto &definition : context.module.classes)
     if (const std::set<std::string> names = requiredBy(definition.get());
-        !names.empty() && definition->root == "rt_Material" && handles(*definition, type) &&
-        !llvm::is_contained(all, names))
+        !names.empty() && definition->root == "rt_Material" && handles(definition.get(), type) &&
+        !isOnlyBase(context, *definition) && !llvm::is_contained(all, names))
       all.push_back(names);
   llvm::copy_if(all, std::back_inserter(smallest), [&](const std::set<std::string> &one) {
     return llvm::none_of(all, [&](const std::set<std::string> &other) {

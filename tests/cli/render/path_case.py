@@ -41,6 +41,19 @@ class Whole : Half {
   void emission() { rt_EmissionColor = glow; }
   void evaluatePDF() { rt_PDF = max(dot(rt_LightDirection, normal()), 0.0) * 0.31830989; }
 };
+// One that says nothing of directions, and one that lets no light through.
+class Alone : rt_Material {
+  public float albedo = 0.5;
+  public color glow = color(0.0);
+  void BSDF() {
+    vec3 n = faceforward(rt_GeometricNormal, rt_RayDirection, rt_GeometricNormal);
+    rt_BSDFValue = color(dot(rt_LightDirection, n) > 0.0 ? albedo * 0.31830989 : 0.0);
+  }
+  void emission() { rt_EmissionColor = glow; }
+};
+class AloneOpaque : Alone {
+  bool isTransmissive() { return false; }
+};
 // A mirror that has no more than it needs.
 class Mirror : rt_Material {
   void sampleBSDF() {

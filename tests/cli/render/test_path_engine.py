@@ -63,25 +63,100 @@ class ClassicEngine(PathCase):
                     self.assertLess(figures["rmse"], 1e-6)
 
     def test_the_message_says_what_is_missing(self):
-        only_bsdf = "class OnlyBSDF : rt_Material;\nvoid BSDF() { rt_BSDFValue = color(0.1); }\n"
-        self.write("OnlyBSDF.rtsl", only_bsdf)
-        for name, what, note in (
-            ("Own", "what the `BSDF` of `Own` scatters of the lights", "path` shows all"),
-            ("Shines", "what `Shines` emits", "path` shows all"),
-            ("OnlyBSDF", "what the `BSDF` of `OnlyBSDF` scatters", "needs `sampleBSDF`, too"),
+        for name, what in (
+            ("Own", "what the `BSDF` of `Own` scatters of the lights"),
+            ("Shines", "what `Shines` emits"),
+            ("Alone", "what the `BSDF` of `Alone` scatters of the lights"),
         ):
             self.scene([(BALL, {"class": name})], spp=1)
             scene = json.loads((self.folder / "scene.json").read_text())
-            scene["import"].append("OnlyBSDF.rtsl")
             scene["render"]["engine"] = "classic"
             self.write("scene.json", json.dumps(scene))
             _, error = self.run_rtslc("check", "scene.json")
             self.assertEqual(error.count("W2702"), 1, error)
             self.assertIn(f"`{name}` has no `shade`: the engine `classic` shows {what}", error)
-            self.assertIn(note, error)
+            self.assertIn("the engine `path` shows all of its light", error)
         self.scene([(BALL, {"class": "Shaded"})], spp=1)
         _, error = self.run_rtslc("check", "scene.json", "--set=render.engine=classic")
         self.assertNotIn("W2702", error)
+
+
+class DirectionsOfTheEngine(PathCase):
+    """Materials with `BSDF` and without `sampleBSDF`, for which the engine draws directions."""
+
+    def assert_estimates(self, expected, *arguments):
+        """Pixels are estimates of one number: their mean is within 4 of its standard errors, which
+        are below 1 %."""
+        self.run_rtslc(
+            "render", "scene.json", "-o", "a.exr", "-q", "-Wno-sampling-method", *arguments
+        )
+        bits = channels((self.folder / "a.exr").read_bytes())["G"]
+        values = struct.unpack(f"<{len(bits)}f", struct.pack(f"<{len(bits)}I", *bits))
+        mean = statistics.fmean(values)
+        error = statistics.stdev(values) / math.sqrt(len(values))
+        self.assertLess(error, 0.01 * expected)
+        self.assertLess(abs(mean - expected), 4 * error + 1e-6 * expected)
+
+    def test_they_show_the_light_of_closed_forms(self):
+        """Of a sky, of a square whose form factor is known, of one that only chance finds, and of a
+        closed room; the mesh has normals that lean, of which by symmetry the light of a sky does
+        not depend."""
+        normals = "".join(f"vn {x} 1 {z}\n" for x in (-1, 1) for z in (-1, 1))
+        corners = "v -9 0 -9\nv -9 0 9\nv 9 0 -9\nv 9 0 9\n"
+        self.write("lean.obj", corners + normals + "f 1//1 2//2 3//3\nf 3//3 2//2 4//4\n")
+        a = 1 / math.sqrt(2)
+        factor = 4 / (2 * math.pi) * 2 * a * math.atan(a)
+        square = {"class": "Parallelogram", "constructor": [[-1, 1, -1], [2, 0, 0], [0, 0, 2]]}
+        lamp = (square, {"class": "Emitter", "radiance": 2, "isTwoSided": True})
+        for name in ("Alone", "AloneOpaque"):
+            floor = {"class": name}
+            with self.subTest(material=name):
+                self.scene([(FLOOR, floor)], camera="Down", background=1.0, spp=64)
+                self.assert_estimates(0.5)
+                self.scene([], camera="Down", background=1.0, spp=256)
+                scene = json.loads((self.folder / "scene.json").read_text())
+                scene["objects"] = [{"mesh": "lean.obj", "material": floor}]
+                self.write("scene.json", json.dumps(scene))
+                self.assert_estimates(0.5)
+                self.scene([(FLOOR, floor), lamp], camera="Under", spp=256)
+                self.assert_estimates(0.5 * 2 * factor)
+                self.scene([(BALL, {"class": name, "glow": 0.5})], camera="Inside", spp=64)
+                self.assert_estimates(1.0)
+
+    def test_every_path_and_engine_gives_the_same_bits(self):
+        lamp = {"class": "Sphere", "center": [0, 3, 0], "radius": 0.5}
+        objects = [(FLOOR, {"class": "Alone"}), (lamp, {"class": "AloneOpaque", "glow": 1})]
+        self.scene(objects, camera="Under", spp=4, depth=4)
+        self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", "-Wno-sampling-method")
+        for way in (*WAYS, ["--engine=volume"]):
+            with self.subTest(way=way):
+                self.run_rtslc(
+                    "render", "scene.json", "-o", "b.exr", "-q", "-Wno-sampling-method", *way
+                )
+                self.assert_same_bits("a.exr", "b.exr")
+
+    def test_the_message_says_what_is_missing(self):
+        names = (
+            "Alone",
+            "AloneOpaque",
+            "Half",
+            "Own",
+            "Whole",
+            "Mirror",
+            "Blind",
+            "Shines",
+            "Shaded",
+        )
+        self.scene([(BALL, {"class": name}) for name in (*names, *names)], spp=1)
+        for engine in ("path", "volume"):
+            _, error = self.run_rtslc("check", "scene.json", f"--set=render.engine={engine}")
+            drawn = f"the engine `{engine}` draws directions without knowledge of its `BSDF`"
+            self.assertIn(f"`Alone` has no `sampleBSDF`: {drawn}", error)
+            self.assertIn(f"`AloneOpaque` has no `sampleBSDF`: {drawn}", error)
+            self.assertIn(f"`Half` has no `evaluatePDF`: the engine `{engine}` finds", error)
+            self.assertEqual(error.count("warning["), 3, error)
+            self.assertEqual(error.count("warning[W2703]"), 3, error)
+            self.assertEqual(error.count("behind the surface"), 1, error)  # of Alone
 
 
 class ClosedForms(PathCase):

@@ -110,6 +110,10 @@ class Views(PathCase):
             with self.subTest(engine=engine):
                 for one, wanted in zip(self.mean("--set", f"render.engine={engine}"), expected):
                     self.assertAlmostEqual(one, wanted, delta=1e-3)
+        self.scene(
+            [(FLOOR, {"class": "Alone", "albedo": 0.25})], camera="Down", spp=4096, size=(4, 4)
+        )
+        self.assert_gray(0.25, 0.02, "--set", "render.engine=albedo")
         # Half of the directions of a floor below a half-infinite ceiling are open; with a short
         # reach all are.
         ceiling = {
@@ -142,7 +146,7 @@ class Lamp : rt_Material { void emission() { rt_EmissionColor = color(1.0); } };
             with self.subTest(options=options):
                 _, error = self.run_rtslc("render", "scene.json", "-o", "a.exr", "-q", *options)
                 self.assertIn("flat.rtsl:2:7: warning[W2701]", error)
-                self.assertIn("`Flat`, which does not define `sampleBSDF`", error)
+                self.assertIn("`Flat`, which does not define `sampleBSDF`, nor `BSDF`", error)
                 self.assertEqual(error.count("warning["), 1, error)
 
     def test_ids_differ(self):
@@ -174,6 +178,7 @@ class Lamp : rt_Material { void emission() { rt_EmissionColor = color(1.0); } };
             [
                 (FLOOR, {"class": "Lambert"}),
                 ({"class": "Sphere", "center": [0, 1, 2], "radius": 1}, {"class": "Gold"}),
+                ({"class": "Sphere", "center": [0, 1, 8], "radius": 4}, {"class": "Alone"}),
             ],
             camera="Inside",
             spp=4,

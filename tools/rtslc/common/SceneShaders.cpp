@@ -174,9 +174,38 @@ static void warnWithoutShade(const std::vector<scene::LocatedName> &mentions,
                                mention.text)
                  : fmt::format("what `{}` emits", mention.text);
     messages.diagnostics.report(Code::noShade, messages.rangeOf(mention.place), mention.text, what)
-        .note(scatters && !one->findMethod("sampleBSDF")
-                  ? "the engine `path` needs `sampleBSDF`, too, and then shows all of its light"
-                  : "the engine `path` shows all of its light");
+        .note("the engine `path` shows all of its light");
+  }
+}
+
+/// Names the classes that scatter light, of which the engines `path` and `volume` know less than
+/// they could use.
+static void warnWithoutSampling(const std::vector<scene::LocatedName> &mentions,
+                                const typed::Module &module, Messages &messages) {
+  std::set<std::string> said;
+  for (const scene::LocatedName &mention : mentions) {
+    const typed::Class *const one = module.findClass(mention.text);
+    const typed::Function *const sample = one ? one->findMethod("pathSample") : nullptr;
+    if (!sample)
+      continue;
+    const auto isDefined = [&](const char *method) { // beside what all surfaces have
+      return one->findMethod(method)->owner->name != "PathSurface";
+    };
+    const std::string &way = sample->owner->name;
+    const bool isSampled = way != "PathUnsampled" && way != "VolumeUnsampled";
+    if ((isSampled && (isDefined("evaluatePDF") || !isDefined("BSDF"))) ||
+        !said.insert(mention.text).second)
+      continue;
+    Diagnostic &warning = messages.diagnostics.report(
+        Code::noSampling, messages.rangeOf(mention.place), mention.text,
+        isSampled ? "evaluatePDF" : "sampleBSDF", way.rfind("Path", 0) == 0 ? "path" : "volume",
+        isSampled ? "finds surfaces that shine by chance alone"
+                  : "draws directions without knowledge of its `BSDF`");
+    warning.note(isSampled ? "with it the picture has less noise"
+                           : "with it and `evaluatePDF` the picture has less noise");
+    if (!isSampled && !isDefined("isTransmissive"))
+      warning.note("half of the directions are behind the surface; with `bool isTransmissive() { "
+                   "return false; }` none is");
   }
 }
 
@@ -221,6 +250,7 @@ loadShaders(scene::SceneDescription &description, const CommonOptions &options, 
   else
     unknown.throwIfAny();
   warnWithoutShade(mentions, *module, messages);
+  warnWithoutSampling(mentions, *module, messages);
   scene::setLaunchSizes(description, [&](const std::string &className, const std::string &member) {
     return elementBytes(module->findClass(className), member, options.compile.colorComponents);
   });

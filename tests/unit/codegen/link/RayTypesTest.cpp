@@ -132,7 +132,8 @@ TEST(RayTypes, AMaterialThatNoDefaultClassFitsIsAWarning) {
       R"(
 struct Seen { float x; };
 default class Reflects : rt_Material { void BSDF(); void evaluatePDF(); void closestHit(inout Seen s) {} };
-default class Scatters : rt_Material { void sampleBSDF(); void closestHit(inout Seen s) {} };
+default class Surface : rt_Material { void answer(); void closestHit(inout Seen s) { answer(); } };
+default class Scatters : Surface { void sampleBSDF(); void answer() {} };
 default class Both : rt_Material { void sampleBSDF(); void shade(); void closestHit(inout Seen s) {} };
 default class Leaves : rt_Miss { void miss(); void miss(inout Seen s) {} };
 class Lost : rt_Material { void shade() { rt_SampleColor = color(1.0); } };
