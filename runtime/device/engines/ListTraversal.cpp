@@ -2,12 +2,12 @@
 //
 // Linked into programs for the host that are bound to a scene of a few primitives: there a ray
 // tests the boxes of all of them, eight at a time, and then the primitives whose boxes it enters.
+// The boxes are those of any other traversal, so that each primitive has the same range in its own.
 // That takes less time than a search of Embree's tree, which calls back for each primitive, because
 // `intersect` is part of the same code. Rays that may not see all instances, or whose hits may be
 // rejected, and bad rays, are passed on.
 //
 //===----------------------------------------------------------------------===//
-#include "runtime/device/ray/ListedBox.h"
 #include "runtime/device/traverse/Surface.h"
 #include "runtime/device/traverse/Traverse.h"
 
@@ -21,10 +21,6 @@ constexpr uint32_t lanes = 8, mostBoxes = 32;
 typedef float Lanes __attribute__((ext_vector_type(lanes)));
 typedef bool Bits __attribute__((ext_vector_type(lanes)));
 
-Lanes fused(Lanes a, Lanes b, Lanes c) {
-  return __builtin_elementwise_fma(a, b, c);
-}
-
 /// device::raised and lowered.
 Lanes raised(Lanes limit, Lanes x) {
   return x > limit ? x : limit;
@@ -33,12 +29,13 @@ Lanes lowered(Lanes limit, Lanes x) {
   return x < limit ? x : limit;
 }
 
-/// The boxes of the program: a constant, and so is all that is loaded from it here.
-struct Boxes {
-  const RtslListedBox *all;
+/// The instances of the program: a constant, and so is all that is loaded from it here.
+struct Instances {
+  const RtslInstance *all;
   uint32_t count;
 
-  /// One number of the boxes from `first` on, number(box); beyond the end that of the first box.
+  /// One number of the instances from `first` on, number(instance); beyond the end that of the
+  /// first instance.
   template <typename Number>
   Lanes from(uint32_t first, Number number) const {
     Lanes numbers;
@@ -48,26 +45,40 @@ struct Boxes {
   }
 };
 
-/// ListedBoxRay::mayEnter for the boxes from `first` on, as bits.
-uint32_t mayEnter(const device::ListedBoxRay &ray, const Boxes &boxes, uint32_t first, float tMin,
-                  float tMax) {
-  Lanes near = tMin, far = tMax;
-  const auto narrow = [&](const device::ListedBoxAxis &along, int axis) {
-    const Lanes middle = boxes.from(first, [&](const RtslListedBox &b) { return b.middle[axis]; }),
-                half = boxes.from(first, [&](const RtslListedBox &b) { return b.half[axis]; }),
-                size = device::absolute(along.inverse),
-                atMiddle = fused(middle, Lanes(along.inverse), Lanes(along.toOrigin));
-    near = raised(near, fused(-half, size, atMiddle));
-    far = lowered(far, fused(half, size, atMiddle));
+/// Where hits in the boxes of the instances may be, by number.
+struct Ranges {
+  float near[mostBoxes], far[mostBoxes];
+
+  /// With --fp=fast hits count where they are, as in hasHitsIn of Traverse.h.
+  device::Range of(uint32_t number) const {
+    return rtsl_is_fast() ? device::Range{-device::infinity, device::infinity}
+                          : device::Range{near[number], far[number]};
+  }
+};
+
+/// Stores the ranges of the instances from `first` on, with the bits of rangeInBox. Returns, as
+/// bits, which of them are not empty and have a part between tMin and tMax.
+uint32_t enter(const device::TriangleRay &ray, const Instances &instances, uint32_t first,
+               float tMin, float tMax, Ranges &ranges) {
+  Lanes near = 0, far = device::infinity;
+  const auto narrow = [&](float origin, float inverse, int axis) {
+    const Lanes low = instances.from(first, [&](const RtslInstance &i) { return i.lower[axis]; }),
+                high = instances.from(first, [&](const RtslInstance &i) { return i.upper[axis]; });
+    const auto isTurned = Lanes(inverse) < 0; // of lanes, because the sign cannot be predicted
+    near = raised(near, ((isTurned ? high : low) - origin) * inverse);
+    far = lowered(far, ((isTurned ? low : high) - origin) * inverse);
   };
-  narrow(ray.x, 0);
-  narrow(ray.y, 1);
-  narrow(ray.z, 2);
-  const Bits isMissed = __builtin_convertvector(
-      near > fused(far, Lanes(1 + 32 * device::roundingUnit), Lanes(ray.slack)), Bits);
-  uint8_t missed;
-  __builtin_memcpy(&missed, &isMissed, sizeof missed);
-  return uint8_t(~missed);
+  narrow(ray.origin.x, ray.inverse.x, 0);
+  narrow(ray.origin.y, ray.inverse.y, 1);
+  narrow(ray.origin.z, ray.inverse.z, 2);
+  const Lanes begin = near * (1.0f - device::rangeShare), end = far * (1.0f + device::rangeShare);
+  __builtin_memcpy(ranges.near + first, &begin, sizeof begin);
+  __builtin_memcpy(ranges.far + first, &end, sizeof end);
+  const Bits isEntered = __builtin_convertvector(
+      (near <= far * device::bvhSlack) & (begin <= tMax) & (end >= tMin), Bits);
+  uint8_t entered;
+  __builtin_memcpy(&entered, &isEntered, sizeof entered);
+  return entered;
 }
 
 } // namespace
@@ -77,18 +88,18 @@ extern "C" {
 /// The host's rtsl_traverse (runtime/embree/HostTraversal.cpp), under another name.
 uint32_t rtsl_traverse_tree(RtslState *state, uint32_t how);
 
-/// The boxes that the ray may enter between tMin and tMax, as bits. Separate, because vectors in
-/// other functions are split (codegen/emit/LlvmModule.cpp).
+/// The instances whose boxes the ray enters between tMin and tMax, as bits. Separate, because
+/// vectors in other functions are split (codegen/emit/LlvmModule.cpp).
 __attribute__((noinline)) uint32_t rtsl_entered_boxes(const RtslLaunch *launch,
-                                                      const device::ListedBoxRay *ray, float tMin,
-                                                      float tMax) {
-  const Boxes boxes = {rtsl_listed_boxes(launch), rtsl_listed_instances(launch)};
+                                                      const device::TriangleRay *ray, float tMin,
+                                                      float tMax, Ranges *ranges) {
+  const Instances instances = {rtsl_instances(launch), rtsl_listed_instances(launch)};
   uint32_t entered = 0;
 #pragma clang loop unroll(full)
   for (uint32_t first = 0; first < mostBoxes; first += lanes)
-    if (first < boxes.count)
-      entered |= mayEnter(*ray, boxes, first, tMin, tMax) << first;
-  return boxes.count < mostBoxes ? entered & ((1u << boxes.count) - 1) : entered;
+    if (first < instances.count)
+      entered |= enter(*ray, instances, first, tMin, tMax, *ranges) << first;
+  return instances.count < mostBoxes ? entered & ((1u << instances.count) - 1) : entered;
 }
 
 } // extern "C"
@@ -100,11 +111,11 @@ struct List {
   template <typename Limit, typename Enter, typename Visit>
   void forEach(const RtslState &state, const device::TriangleRay &ray, Limit limit, Enter,
                Visit visit) const {
-    const device::ListedBoxRay boxRay(ray.origin, ray.inverse);
-    const float tMin = device::maximum(state.Epsilon, 0.0f) * (1.0f - 2 * device::rangeShare);
-    uint32_t entered = rtsl_entered_boxes(state.launch, &boxRay, tMin, limit() * device::cullSlack);
+    Ranges ranges;
+    uint32_t entered = rtsl_entered_boxes(state.launch, &ray, state.Epsilon, limit(), &ranges);
     while (entered) {
-      const RtslLeafItem item = {uint32_t(__builtin_ctz(entered)), 0};
+      const auto number = uint32_t(__builtin_ctz(entered));
+      const device::EnteredItem item = {{number, 0}, ranges.of(number)};
       entered &= entered - 1;
       if (visit(item, ray))
         return;

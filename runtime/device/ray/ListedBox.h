@@ -4,7 +4,8 @@
 // then the primitives whose boxes it may enter. This first test must find every box in which
 // rangeInBox finds a range; it may find others, because the primitive's own test decides. So a box
 // is stored as its middle and half of its size, enlarged by a bound of all roundings: three fused
-// operations an axis, and no choice between lower and upper sides. docs/gpu.md has the proof.
+// operations an axis, and no choice between lower and upper sides. docs/gpu.md has the proof. The
+// host's own code tests the exact boxes instead (ListTraversal.cpp).
 //
 //===----------------------------------------------------------------------===//
 #pragma once

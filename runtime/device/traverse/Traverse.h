@@ -180,6 +180,11 @@ inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
   return 0x80000000u | mixed >> 4;
 }
 
+/// An RTSL primitive whose box the ray enters, and the range in which its hits count.
+struct EnteredItem : RtslLeafItem {
+  Range range;
+};
+
 /// May an RTSL primitive be hit? Its hits count in the part of the ray in its box; with --fp=fast
 /// on all of the ray in a scene without a tree, where the result does not depend on the boxes.
 template <typename Ray>
@@ -198,14 +203,13 @@ bool hasHitsIn(Range &range, const RtslLaunch &launch, const Ray &ray, const Rts
 }
 
 /// Runs `intersect` of an RTSL primitive, intersect(state, object), as if nothing else had been
-/// hit. True if it commits a hit that wins. It must not be the hit so far. `Ray` is a TriangleRay
-/// in world space or an InstanceRay.
+/// hit, unless all of the range is beyond the nearest hit or before the ray's start. True if it
+/// commits a hit that wins. It must not be the hit so far. `Ray` is a TriangleRay in world space or
+/// an InstanceRay.
 template <typename Ray, typename Intersect>
-bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instance,
-                   const RtslLeafItem &item, Intersect intersect) {
-  Range range;
-  if (!hasHitsIn(range, *state.launch, ray, instance, item.primitive) ||
-      range.near > state.nearest || range.far < state.Epsilon)
+bool testInRange(RtslState &state, const Ray &ray, const RtslInstance &instance,
+                 const RtslLeafItem &item, Range range, Intersect intersect) {
+  if (range.near > state.nearest || range.far < state.Epsilon)
     return false;
   const float end = state.HitDistance;
   const uint32_t dimension = state.dimension;
@@ -225,6 +229,15 @@ bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instanc
   if (hasHit && !hasWon && rtsl_needs(state.launch) & RTSL_NEEDS_ATTRIBUTES)
     state.areAttributesLost = 1;
   return hasWon;
+}
+
+/// The same with the range of the ray in the primitive's box, if it enters that.
+template <typename Ray, typename Intersect>
+bool testPrimitive(RtslState &state, const Ray &ray, const RtslInstance &instance,
+                   const RtslLeafItem &item, Intersect intersect) {
+  Range range;
+  return hasHitsIn(range, *state.launch, ray, instance, item.primitive) &&
+         testInRange(state, ray, instance, item, range, intersect);
 }
 
 /// Calls visit(item, ray) for an item with the ray in its space. False if the ray does not enter
@@ -287,6 +300,14 @@ bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Sl
     return testIfSeen(state, ray, static_cast<const RtslLeafItem &>(item), slots, intersect);
   return testTriangle(state, ray, item.vertices(), item.instance, item.primitive,
                       [&] { return isSeen(state, item, ray, slots); });
+}
+
+/// The same for a primitive that every ray sees.
+template <typename Slots, typename Intersect>
+bool testIfSeen(RtslState &state, const TriangleRay &ray, const EnteredItem &item, const Slots &,
+                Intersect intersect) {
+  return testInRange(state, ray, instanceAt(*state.launch, item.instance), item, item.range,
+                     intersect);
 }
 
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters

@@ -116,6 +116,41 @@ class Lists(Case):
             self.assertEqual(set(strict), {lamp}, way)
             self.assertNotIn(lamp, fast, way)
 
+    def test_rays_in_the_planes_of_sides(self):
+        """Distances to these sides are 0 times an infinite inverse, of either sign."""
+        self.write(
+            "planes.rtsl",
+            "class InPlanes : rt_Camera {\n"
+            "  void generateRay() {\n"
+            "    float sign = rt_ScreenCoord.x < 0.5 ? -1.0 : 1.0;\n"
+            "    rt_RayOrigin = vec3(floor(12.0 * rt_ScreenCoord) * 0.5 - vec2(3.0), 9.0 * sign);\n"
+            "    rt_RayDirection = vec3(sign * 0.0, rand() < 0.5 ? 0.0 : -0.0, -sign);\n"
+            "  }\n"
+            "};\n",
+        )
+        self.scene(3)
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("planes.rtsl")
+        scene["camera"] = {"class": "InPlanes"}
+        dice = random.Random(1)
+        lows = [[dice.randrange(-5, 5) / 2 for _ in range(3)] for _ in range(20)]
+        scene["objects"] = [
+            {
+                "primitive": {"class": "Box", "low": low, "high": [x + 0.5 for x in low]}
+                if number % 2
+                else {"class": "Parallelogram", "constructor": [low, [1, 0, 0], [0, 0.5, 0]]},
+                "material": {"class": "Emitter", "radiance": 1 + number, "isTwoSided": True},
+            }
+            for number, low in enumerate(lows)
+        ]
+        self.write("scene.json", json.dumps(scene))
+        self.render("a.exr")
+        for way in WAYS[:2]:
+            self.render("b.exr", *way)
+            self.assert_same_bits("a.exr", "b.exr", way)
+        values = set(channels((self.folder / "a.exr").read_bytes())["G"])
+        self.assertGreater(len(values), 10)
+
     def test_no_ray_is_fitted_to_embree(self):
         """Rays whose directions are so short that Embree would get scaled ones."""
         self.write(
