@@ -13,7 +13,7 @@
 
 namespace rtsl::device {
 
-/// 1 / a; infinite if a is 0 or denormal.
+/// 1 / a. With an approximation infinite if a is 0 or denormal, and 0 if |a| is above 2^126.
 inline float roughReciprocal(float a) {
 #ifdef __NVPTX__
   if (rtsl_is_fast())

@@ -310,6 +310,18 @@ bool testIfSeen(RtslState &state, const TriangleRay &ray, const EnteredItem &ite
                      intersect);
 }
 
+/// The inverse of the direction for ListedBoxRay. The exact tests of boxes have the same; with
+/// --fp=fast there are none. If it would be rounded to 0, the axis excludes no box.
+inline Vec3 inverseForList(const TriangleRay &ray) {
+  if (!rtsl_is_fast())
+    return ray.inverse;
+  const auto inverse = [](float component) {
+    const float rough = roughReciprocal(component);
+    return rough == 0 ? infinity : rough;
+  };
+  return {inverse(ray.direction.x), inverse(ray.direction.y), inverse(ray.direction.z)};
+}
+
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
 /// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU
 /// that have primitives left then test them together, each its own. Unrolling both loops completely
@@ -324,11 +336,7 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
   }
   tMin *= 1.0f - 2 * rangeShare;
   const float tMax = limit() * cullSlack;
-  const Vec3 inverse =
-      rtsl_is_fast() ? Vec3{roughReciprocal(ray.direction.x), roughReciprocal(ray.direction.y),
-                            roughReciprocal(ray.direction.z)}
-                     : ray.inverse; // as in the exact test
-  const ListedBoxRay boxRay(ray.origin, inverse);
+  const ListedBoxRay boxRay(ray.origin, inverseForList(ray));
   const auto *boxes =
       static_cast<const RtslListedBox *>(__builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
   uint32_t entered = 0; // bit i: instance i
