@@ -151,7 +151,7 @@ class Preview(Case):
         for text, words in (
             (
                 "class A : rt_Material { };",
-                "is a material without `shade`, `sampleBSDF`, `emission`",
+                "is a material without `shade`, `sampleBSDF`, `BSDF`, `emission`",
             ),
             (
                 payload + "class A : rt_Material { void closestHit(inout P p) { } };",
@@ -197,6 +197,12 @@ class Preview(Case):
         )
         self.render("b.rtsl", output="b.exr")
         self.differ("a.exr", "b.exr", "0.01")
+        self.write(
+            "c.rtsl",
+            "class Chalk : rt_Material { void BSDF() { rt_BSDFValue = color(0.2); } };\n",
+        )
+        self.render("c.rtsl", output="c.exr")
+        self.differ("a.exr", "c.exr", "0.01")
 
     def test_a_ray_generation_has_its_own_engine(self):
         self.write(

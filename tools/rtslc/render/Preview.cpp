@@ -35,7 +35,7 @@ const Kind kinds[] = {
      "a material",
      "material",
      "materials.SHOWN",
-     {"shade", "sampleBSDF", "emission"}},
+     {"shade", "sampleBSDF", "BSDF", "emission"}},
     {"rt_Texture", "a texture", "texture", "textures.SHOWN", {"lookup"}},
     {"rt_Primitive",
      "a primitive",
