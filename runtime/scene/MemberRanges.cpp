@@ -1,5 +1,6 @@
 #include "runtime/scene/MemberRanges.h"
 
+#include "runtime/scene/Elements.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
 
@@ -30,22 +31,11 @@ double numberAt(ValueType::Kind kind, const std::uint8_t *word) {
 /// an array, or of those of a buffer.
 std::optional<Component> firstOutside(const ValueType &type, const Range &range,
                                       const std::uint8_t *bytes, std::uint32_t colorComponents) {
-  std::size_t count = 1, size = type.size;
-  if (type.bufferRank != 0) {
-    RtslBuffer buffer;
-    std::memcpy(&buffer, bytes, sizeof buffer);
-    for (std::uint8_t i = 0; i < type.bufferRank; ++i)
-      count *= buffer.size[i];
-    const std::uint64_t address = std::uint64_t(buffer.addressHigh) << 32 | buffer.addressLow;
-    bytes = reinterpret_cast<const std::uint8_t *>(address);
-    size = count * type.elementSize;
-  }
-  for (const std::uint32_t length : type.arraySizes)
-    count *= length;
+  const Elements elements = elementsOf(type, bytes);
   const std::size_t components = type.kind == ValueType::Kind::Color ? colorComponents : type.rows;
-  for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t i = 0; i < elements.count; ++i)
     for (std::size_t k = 0; k < components; ++k) {
-      const double number = numberAt(type.kind, bytes + i * (size / count) + 4 * k);
+      const double number = numberAt(type.kind, elements[i] + 4 * k);
       if (!range.contains(number))
         return Component{i * components + k, number};
     }

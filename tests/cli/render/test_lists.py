@@ -59,6 +59,12 @@ class Lists(Case):
             ),
         )
 
+    def change_scene(self, imported, **parts):
+        """Gives the scene classes of a file, and other parts."""
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append(imported)
+        self.write("scene.json", json.dumps({**scene, **parts}))
+
     def render(self, picture, *arguments):
         out, _ = self.run_rtslc(
             *("render", "scene.json", "-o", picture, "-q", "-O0", "--json", *arguments)
@@ -98,13 +104,11 @@ class Lists(Case):
             "};\n",
         )
         self.scene(3)
-        scene = json.loads((self.folder / "scene.json").read_text())
-        scene["import"].append("planes.rtsl")
-        scene["objects"] = [
+        objects = [
             {"primitive": {"class": "Plane"}, "material": "clay"},
             {"primitive": {"class": "Plane", "z": -1, "low": 1, "high": 2}, "material": "lamp"},
         ]
-        self.write("scene.json", json.dumps(scene))
+        self.change_scene("planes.rtsl", objects=objects)
         lamp = struct.unpack("<I", struct.pack("<f", 9))[0]
         for way in ((), ("--target=host-megakernel",)):
             self.render("strict.exr", *way)
@@ -129,12 +133,9 @@ class Lists(Case):
             "};\n",
         )
         self.scene(3)
-        scene = json.loads((self.folder / "scene.json").read_text())
-        scene["import"].append("planes.rtsl")
-        scene["camera"] = {"class": "InPlanes"}
         dice = random.Random(1)
         lows = [[dice.randrange(-5, 5) / 2 for _ in range(3)] for _ in range(20)]
-        scene["objects"] = [
+        objects = [
             {
                 "primitive": {"class": "Box", "low": low, "high": [x + 0.5 for x in low]}
                 if number % 2
@@ -143,7 +144,7 @@ class Lists(Case):
             }
             for number, low in enumerate(lows)
         ]
-        self.write("scene.json", json.dumps(scene))
+        self.change_scene("planes.rtsl", camera={"class": "InPlanes"}, objects=objects)
         self.render("a.exr")
         for way in WAYS[:2]:
             self.render("b.exr", *way)
@@ -163,10 +164,7 @@ class Lists(Case):
             "};\n",
         )
         self.scene(13)
-        scene = json.loads((self.folder / "scene.json").read_text())
-        scene["import"].append("short.rtsl")
-        scene["camera"] = {"class": "Short"}
-        self.write("scene.json", json.dumps(scene))
+        self.change_scene("short.rtsl", camera={"class": "Short"})
         self.assertEqual(self.render("a.exr")["rescaledRays"], 0)
         self.assertEqual(self.render("b.exr", "--keep=tree")["rescaledRays"], 24 * 24 * 4)
         self.assert_same_bits("a.exr", "b.exr")
