@@ -233,6 +233,110 @@ class ClosedForms(MediaCase):
             self.assertLess(math.hypot(*both), 0.12 * other)
 
 
+# Rough glass that sends out what its mirrors lose by masking each other: as the engine draws
+# directions, light that would meet a second mirror is lost (microfacet.rtsl). Without that loss it
+# cannot be told from a sky of 1, whatever is inside.
+WHOLE = """
+import std.materials.Dielectric;
+class Whole : Dielectric {
+  color emitted(vec3 toEye) { return color(1.0) - weight(scatter(toEye, vec2(rand(), rand()))); }
+};
+"""
+
+
+def wrappers(material):
+    """Materials of the library that are others, here this one."""
+    return [
+        {"class": "Cutout", "material": material},
+        {"class": "NormalMap", "material": material},
+        {"class": "BumpMap", "material": material, "height": {"class": "Solid"}},
+        {"class": "TwoSided", "front": material, "back": material},
+        {"class": "MixMaterial", "first": material, "second": CLAY, "amount": 0},
+        {"class": "MixMaterial", "first": CLAY, "second": material, "amount": 1},
+    ]
+
+
+class Boundaries(MediaCase):
+    """Every material that lets light through, around a medium."""
+
+    def row(self, medium, materials, **rest):
+        """Balls side by side."""
+        places = [3 * (i + 1) for i in range(len(materials))]
+        self.write("whole.rtsl", WHOLE)
+        self.scene(
+            medium,
+            objects=[
+                {"primitive": {"class": "Sphere", "center": [x, 0, 0], "radius": 1}, "material": m}
+                for x, m in zip(places, materials)
+            ],
+            background=SKY,
+            camera={
+                "class": "OrthographicCamera",
+                "constructor": [[places[-1] / 2, 0, 50], [places[-1] / 2, 0, 0], [0, 1, 0]],
+                "height": 3,
+            },
+            **{"import": [*PARTS, "std.media", "std.textures", "whole.rtsl"]},
+            **rest,
+        )
+
+    def test_nothing_is_lost_but_by_masking(self):
+        fog = {"class": "HomogeneousMedium", "scattering": 2, "anisotropy": 0.3}
+        white = {"class": "Lambert", "reflectance": 1}
+        smooth, *rough = (
+            {"class": name, "interior": "medium", **more}
+            for name, more in (
+                ("Dielectric", {}),
+                ("Whole", {"alpha": 0.05}),
+                ("Whole", {"alpha": 0.3}),
+                ("Whole", {"alpha": 1}),
+                ("Whole", {"alpha": 0.3, "index": 1.1}),
+            )
+        )
+        materials = [
+            smooth,
+            *rough,
+            {"class": "MixMaterial", "first": rough[1], "second": white},
+            {"class": "MixMaterial", "first": white, "second": smooth},
+            {"class": "Cutout", "material": rough[1], "opacity": 0.5},
+            {"class": "ThinGlass"},
+        ]
+        self.row(fog, materials, depth=200, spp=256)
+        self.assert_color([1, 1, 1], 0.007)
+
+    def test_the_loss_is_that_without_a_medium(self):
+        """In the engine `path`, around nothing and around a medium that does nothing."""
+        glass = {"class": "Dielectric", "alpha": 0.3}
+        means = []
+        for more, engine in (({"interior": "medium"}, "volume"), ({}, "volume"), ({}, "path")):
+            self.row({"class": "HomogeneousMedium", "scattering": 0}, [{**glass, **more}], spp=4)
+            scene = json.loads((self.folder / "scene.json").read_text())
+            del scene["objects"][0]  # the box
+            self.write("scene.json", json.dumps(scene))
+            means.append(self.mean("--engine", engine))
+        self.assertLess(means[0][0], 0.97)
+        self.assertEqual(means, [means[0]] * 3)
+
+    def test_all_of_them_bound_it(self):
+        """Beer's law through boxes one behind the other that do not bend light: a material that
+        forgets what its part has inside shows more."""
+        glass = {"class": "Dielectric", "index": 1, "alpha": 0.3, "interior": "medium"}
+        boxes = [
+            {
+                "primitive": {"class": "Box", "low": [-1, -1, z], "high": [1, 1, z + 0.5]},
+                "material": material,
+            }
+            for z, material in enumerate([glass, *wrappers(glass)], start=2)
+        ]
+        self.scene(
+            {"class": "HomogeneousMedium", "scattering": 0, "absorption": 0.2},
+            depth=40,
+            objects=boxes,
+            background=SKY,
+            **{"import": [*PARTS, "std.media", "std.textures"]},
+        )
+        self.assert_color([math.exp(-0.2 * (2 + 0.5 * len(boxes)))] * 3, 0.05)
+
+
 # A medium of an author whose members have no ranges.
 FREE = """
 import std.media.Medium;
