@@ -9,6 +9,10 @@ namespace rtsl::tool {
 /// at; the second ends the process at once.
 const std::atomic<bool> *catchInterruptions();
 
+/// The same for a rendering that finishes its samples first, which the first SIGINT says at once:
+/// they may take any time.
+const std::atomic<bool> *catchInterruptionsOfSamples();
+
 /// "SIGINT" or "SIGTERM"; null if neither has come.
 const char *interruption();
 

@@ -2,6 +2,7 @@
 #include "PictureOptions.h"
 
 #include "OptionValues.h"
+#include "runtime/image/Layers.h"
 #include "support/Error.h"
 
 #include <cstdio>
@@ -101,10 +102,31 @@ void addToneOptions(CLI::App &command, runtime::ToneMapping &tones) {
             "the curve by which a PNG picture shows bright light; linear: what is above 1 is 1");
 }
 
-void writePictureSoFar(const std::string &output, const runtime::Image &image,
-                       runtime::PictureFormat format) {
-  try {
+void checkToneOptions(const CLI::App &command, const std::string &output,
+                      runtime::PictureFormat format) {
+  for (const char *name : {"--exposure", "--tone"}) {
+    if (!command.count(name))
+      continue;
+    if (output.empty())
+      throw CLI::ValidationError(name, "there is no picture to show; give a file to `-o`");
+    if (runtime::isExr(output, format))
+      throw CLI::ValidationError(name, "an EXR file has the light itself; give a name that ends in "
+                                       ".png, or `--format=png`");
+  }
+}
+
+void writePicture(const std::string &output, const runtime::Image &image,
+                  runtime::PictureFormat format, const runtime::ToneMapping &tones) {
+  if (tones.changesNothing())
     runtime::writeImage(output, image, format);
+  else
+    runtime::writeImage(output, runtime::toneMapped(image, tones), format);
+}
+
+void writePictureSoFar(const std::string &output, const runtime::Image &image,
+                       runtime::PictureFormat format, const runtime::ToneMapping &tones) {
+  try {
+    writePicture(output, image, format, tones);
   } catch (const Error &) {
   }
 }

@@ -39,11 +39,17 @@ void checkPictureName(const std::string &output, runtime::PictureFormat format);
 
 /// Adds --exposure and --tone.
 void addToneOptions(CLI::App &command, runtime::ToneMapping &tones);
+/// Throws where one of them is given and there is no PNG picture. When all options are read.
+void checkToneOptions(const CLI::App &command, const std::string &output,
+                      runtime::PictureFormat format);
 
+/// Writes a picture as its file is to show it. Throws what runtime::writeImage does.
+void writePicture(const std::string &output, const runtime::Image &image,
+                  runtime::PictureFormat format, const runtime::ToneMapping &tones);
 /// Replaces the file of a picture that is still rendered. What fails is not reported, because it
 /// fails again with the last picture, or no longer matters.
 void writePictureSoFar(const std::string &output, const runtime::Image &image,
-                       runtime::PictureFormat format);
+                       runtime::PictureFormat format, const runtime::ToneMapping &tones);
 
 /// Adds --tree.
 void addTreeOption(CLI::App &command, std::optional<runtime::TreeKind> &tree);

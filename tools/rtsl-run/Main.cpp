@@ -49,6 +49,7 @@ struct Options {
   tool::GpuOptions gpu;
   bool quiet = false, json = false;
   runtime::PictureFormat format = runtime::PictureFormat::ByName;
+  runtime::ToneMapping tones;
 };
 
 runtime::RenderOptions renderOptions(const Options &options, const runtime::Package &package) {
@@ -63,7 +64,7 @@ runtime::RenderOptions renderOptions(const Options &options, const runtime::Pack
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
   render.tree = options.tree.value_or(runtime::TreeKind::Fast); // if the package has none
-  render.cancel = tool::catchInterruptions();
+  render.cancel = tool::catchInterruptionsOfSamples();
   render.keepsUnfinished = true;
   render.wantsPicture = !options.output.empty();
   return render;
@@ -247,7 +248,7 @@ Result renderWith(runtime::Backend &backend, const Options &options,
   runtime::PassOptions passes;
   if (options.output != "-")
     passes.picture = [&](const runtime::Image &image) {
-      tool::writePictureSoFar(options.output, image, options.format);
+      tool::writePictureSoFar(options.output, image, options.format, options.tones);
     };
   runtime::PartialRendering rendering;
   result.image = backend.renderInPasses(passes, nullptr, rendering, &result.statistics);
@@ -290,7 +291,7 @@ int render(const Options &options) {
   if (statistics.samples == 0)
     throw Error(message::stoppedBeforeFirstSample());
   if (!options.output.empty())
-    runtime::writeImage(options.output, image, options.format);
+    tool::writePicture(options.output, image, options.format, options.tones);
   if (!statistics.isUnfinished)
     for (const tool::BufferFile &output : options.outputs)
       runtime::writeBuffer(output.file, buffers.output(buffers.find(output.name, "--out")));
@@ -304,6 +305,7 @@ void addOptions(CLI::App &app, Options &options) {
                  "a package written by `rtslc pack`; - is standard input")
       ->required();
   tool::addPictureOption(app, options.output, options.format)->required(false);
+  tool::addToneOptions(app, options.tones);
   tool::addBufferOption(
       app, "--out", options.outputs,
       "write an output buffer: .npy, .csv, or the elements as they lie in memory");
@@ -343,6 +345,7 @@ void addOptions(CLI::App &app, Options &options) {
       throw CLI::ValidationError("--compare", "there is no picture to compare without `-o`");
     if (!options.output.empty())
       tool::checkPictureName(options.output, options.format);
+    tool::checkToneOptions(app, options.output, options.format);
     tool::checkOutputFiles(options.outputs, options.output);
     if (options.json && options.output == "-")
       throw CLI::ValidationError("--json", "standard output is the picture; give a file to `-o`");

@@ -105,6 +105,34 @@ class Interruptions(Case):
         )
         self.assertIn("after 0 of 2 samples per pixel; some pixels have more, the others", error)
 
+    def test_the_first_one_says_at_once_what_is_awaited(self):
+        """Samples that never end."""
+        self.write(
+            "Endless.rtsl",
+            """class Endless : rt_RayGeneration;
+            void generate() {
+              float sum = 0.0;
+              for (int i = 0; i < 2147483647; ++i)
+                sum = sin(sum + float(rt_LaunchIndex.x));
+              rt_SampleColor = color(sum);
+            }""",
+        )
+        scene = {
+            "rtsl": 1,
+            "import": ["Endless.rtsl"],
+            "rayGeneration": {"class": "Endless"},
+            "render": {"engine": "programs", "spp": 2},
+        }
+        self.write("endless.json", json.dumps(scene))
+        self.run_rtslc("pack", "endless.json", "-o", "endless.rtslpkg", "-q")
+        for command in (
+            (RTSLC, "render", "endless.json"),
+            (RTSL_RUN, "endless.rtslpkg", "--target=host"),
+        ):
+            with self.subTest(command=command[0]):
+                _, error = self.interrupt(*command, "-o", "a.exr", *SIZE, again=True)
+                self.assertEqual(error, "finishing the sample; press Ctrl-C again to leave\n")
+
     def test_few_samples_are_in_all_pixels(self):
         """They begin as one pass, pixel by pixel."""
         large = ("--size", "1500x1500", "--spp", "64", "-Wno-depth-limit")

@@ -45,6 +45,17 @@ class Tones(Case):
                         "compare", "a.png", "plain.png", "--threshold=0.01", status=DIAGNOSED
                     )
 
+    def test_packages_have_them_too(self):
+        options = ["--tone=filmic", "--exposure=-1.5"]
+        self.ramp("a.png", *options)
+        self.run_rtslc("pack", "scene.json", "-o", "ramp.rtslpkg", "-q")
+        run = ["ramp.rtslpkg", "--target=host", "-q"]
+        self.run_package(*run, "-o", "b.png", *options)
+        self.assert_same_bits("a.png", "b.png")
+        for bad in (["-o", "a.exr", "--tone=filmic"], ["--out", "a=a.npy", "--exposure=1"]):
+            _, error = self.run_package(*run, *bad, status=USAGE)
+            self.assertIn(bad[-1].split("=")[0], error)
+
     def test_bad_values(self):
         for options in (
             ["--tone=aces"],

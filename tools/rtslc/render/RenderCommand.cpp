@@ -208,10 +208,7 @@ void completeRenderOptions(const CLI::App &command, RenderCommandOptions &option
   if (!options.aovs.empty() && !runtime::isExr(options.output, options.format))
     throw CLI::ValidationError("--aov", "only EXR files have layers; give a name that ends in "
                                         ".exr, or `--format=exr`");
-  for (const char *name : {"--exposure", "--tone"})
-    if (command.count(name) && runtime::isExr(options.output, options.format))
-      throw CLI::ValidationError(name, "an EXR file has the light itself; give a name that ends in "
-                                       ".png, or `--format=png`");
+  checkToneOptions(command, options.output, options.format);
   if (options.target == TargetName::Gpu)
     rejectWithoutGpuSupport(options);
   else

@@ -255,7 +255,9 @@ private:
     runtime::RenderOptions &render = summary.render =
         renderOptions(options, input->description.render);
     render.samplesPerPixel = samples.value_or(render.samplesPerPixel);
-    render.cancel = stop ? stop : catchInterruptions();
+    render.cancel = stop                             ? stop
+                    : options.common.jsonDiagnostics ? catchInterruptions()
+                                                     : catchInterruptionsOfSamples();
     render.prints = request.features & RTSL_FEATURE_PRINT;
     if (options.countsSteps) {
       summary.stateNames = target->stateNames(*scene);
@@ -297,7 +299,7 @@ private:
           viewer->show(image);
         if (options.output == "-" || secondsSince(written) < secondsBetweenFiles)
           return;
-        writeShown(image, writePictureSoFar);
+        writePictureSoFar(options.output, image, options.format, options.tones);
         written = Clock::now();
       };
     runtime::PartialRendering rendering;
@@ -343,21 +345,12 @@ private:
     return rendering;
   }
 
-  /// Writes the picture as its file is to show it.
-  template <typename Write>
-  void writeShown(const runtime::Image &image, Write write) const {
-    if (options.tones.changesNothing())
-      write(options.output, image, options.format);
-    else
-      write(options.output, runtime::toneMapped(image, options.tones), options.format);
-  }
-
   void write(const runtime::Image &image, const std::vector<runtime::Layer> &layers) {
     if (viewer)
       viewer->show(image);
     const Clock::time_point begin = Clock::now();
     if (layers.empty())
-      writeShown(image, runtime::writeImage);
+      writePicture(options.output, image, options.format, options.tones);
     else
       runtime::writeLayers(options.output, image, layers);
     writeDependencies(options.common.dependencies, options.output, {options.scene}, files);
