@@ -54,6 +54,11 @@ class Alone : rt_Material {
 class AloneOpaque : Alone {
   bool isTransmissive() { return false; }
 };
+// Ones whose methods do not count, because the first class decides.
+class AloneSampled : Alone {
+  void sampleBSDF() { rt_BSDFValue = color(0.0); }
+};
+class AloneTwice : AloneSampled {};
 // A mirror that has no more than it needs.
 class Mirror : rt_Material {
   void sampleBSDF() {
@@ -78,6 +83,12 @@ class Shines : rt_Material {
 };
 class Shaded : rt_Material {
   void shade() { rt_SampleColor = color(0.25) + 0.5 * trace(rt_HitPoint, reflect(rt_RayDirection, rt_GeometricNormal)); }
+};
+class ShinesMore : Shines {
+  void BSDF() { rt_BSDFValue = color(0.3); }
+};
+class ShadedMore : Shaded {
+  void BSDF() { rt_BSDFValue = color(0.3); }
 };
 class Inside : rt_Camera {
   void generateRay() {

@@ -178,6 +178,40 @@ static void warnWithoutShade(const std::vector<scene::LocatedName> &mentions,
   }
 }
 
+/// What the engines `path` and `volume` do not know of a class that scatters light.
+struct UnknownMethod {
+  const typed::Class *engine; // the default class that runs the author's
+  const char *method;         // that is missing
+  const char *consequence;
+  const typed::Function *unused = nullptr; // a method of a derived class, which does not count
+  bool isDrawn = false;                    // the engine draws directions itself
+};
+
+static std::optional<UnknownMethod> methodUnknown(const typed::Class &one) {
+  const auto authors = [&](const char *name) -> const typed::Function * {
+    const typed::Function *const method = one.findMethod(name);
+    return method && method->owner->name != "PathSurface" ? method : nullptr;
+  };
+  if (const typed::Function *const sample = one.findMethod("pathSample")) {
+    const typed::Class *const engine = sample->owner;
+    if (engine->name == "PathUnsampled" || engine->name == "VolumeUnsampled")
+      return UnknownMethod{engine, "sampleBSDF", "draws directions without knowledge of its `BSDF`",
+                           authors("sampleBSDF"), true};
+    if (authors("BSDF") && !authors("evaluatePDF"))
+      return UnknownMethod{engine, "evaluatePDF", "finds surfaces that shine by chance alone"};
+    return std::nullopt;
+  }
+  const typed::Function *const before = one.findMethod("pathEndsBefore");
+  const typed::Function *const unused = authors("BSDF") ? authors("BSDF") : authors("sampleBSDF");
+  if (!before || !unused)
+    return std::nullopt;
+  const typed::Class *const engine = before->owner;
+  const bool isShaded = engine->name == "PathShaded" || engine->name == "VolumeShaded";
+  return UnknownMethod{
+      engine, unused->name == "BSDF" ? "BSDF" : "sampleBSDF",
+      isShaded ? "shows only the color that `shade` gives it" : "shows only what it emits", unused};
+}
+
 /// Names the classes that scatter light, of which the engines `path` and `volume` know less than
 /// they could use.
 static void warnWithoutSampling(const std::vector<scene::LocatedName> &mentions,
@@ -185,25 +219,24 @@ static void warnWithoutSampling(const std::vector<scene::LocatedName> &mentions,
   std::set<std::string> said;
   for (const scene::LocatedName &mention : mentions) {
     const typed::Class *const one = module.findClass(mention.text);
-    const typed::Function *const sample = one ? one->findMethod("pathSample") : nullptr;
-    if (!sample)
+    const std::optional<UnknownMethod> unknown = one ? methodUnknown(*one) : std::nullopt;
+    if (!unknown || !said.insert(mention.text).second)
       continue;
-    const auto isDefined = [&](const char *method) { // beside what all surfaces have
-      return one->findMethod(method)->owner->name != "PathSurface";
-    };
-    const std::string &way = sample->owner->name;
-    const bool isSampled = way != "PathUnsampled" && way != "VolumeUnsampled";
-    if ((isSampled && (isDefined("evaluatePDF") || !isDefined("BSDF"))) ||
-        !said.insert(mention.text).second)
-      continue;
+    const auto &[engine, method, consequence, unused, isDrawn] = *unknown;
+    const typed::Class *deciding = one; // which methods the engine runs
+    while (unused && deciding->base != engine)
+      deciding = deciding->base;
     Diagnostic &warning = messages.diagnostics.report(
-        Code::noSampling, messages.rangeOf(mention.place), mention.text,
-        isSampled ? "evaluatePDF" : "sampleBSDF", way.rfind("Path", 0) == 0 ? "path" : "volume",
-        isSampled ? "finds surfaces that shine by chance alone"
-                  : "draws directions without knowledge of its `BSDF`");
-    warning.note(isSampled ? "with it the picture has less noise"
-                           : "with it and `evaluatePDF` the picture has less noise");
-    if (!isSampled && !isDefined("isTransmissive"))
+        Code::noSampling, messages.rangeOf(mention.place), deciding->name, method,
+        engine->name.rfind("Path", 0) == 0 ? "path" : "volume", consequence);
+    if (unused)
+      warning.note(fmt::format("that of `{}` does not count: which methods the engine uses is "
+                               "decided by the class that derives from rt_Material itself",
+                               unused->owner->name));
+    else
+      warning.note(isDrawn ? "with it and `evaluatePDF` the picture has less noise"
+                           : "with it the picture has less noise");
+    if (isDrawn && one->findMethod("isTransmissive")->owner->name == "PathSurface")
       warning.note("half of the directions are behind the surface; with `bool isTransmissive() { "
                    "return false; }` none is");
   }
