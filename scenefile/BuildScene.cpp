@@ -1,5 +1,6 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/scene/MeshValues.h"
+#include "scenefile/LightAreas.h"
 #include "scenefile/PrimitiveCount.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/files/MeshFiles.h"
@@ -110,7 +111,11 @@ private:
     for (std::size_t i = 0; i < description.lights.size(); ++i)
       attempt([&] {
         const ObjectDescription &light = description.lights[i];
-        scene.addLight(add(light, fmt::format("{} (lights.{})", light.className.text, i)));
+        const std::string name = fmt::format("{} (lights.{})", light.className.text, i);
+        const RtslRef reference = add(light, name);
+        scene.addLight(reference);
+        if (const std::optional<std::string> why = whyWithoutArea(scene, reference))
+          scene.addWarning({message::lightWithoutArea(name, *why), light.className.place});
       });
   }
 

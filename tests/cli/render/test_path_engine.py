@@ -321,21 +321,57 @@ class ClosedForms(PathCase):
                     self.assert_gray(0.5 * 2 * factor, 0.01)
 
     def test_lights_without_an_area_send_out_nothing(self):
+        """And each is named, with what is wrong; those that have an area are not."""
         lines = [[0, 1, 0], [1, 1, 0], [3, 1, 0]]
-        for light in (
-            {"class": "MeshLight"},
-            {"class": "MeshLight", "vertices": lines},
-            {"class": "RectangleLight", "corner": lines[0], "side1": lines[1], "side2": lines[1]},
-            {"class": "RectangleLight", "corner": lines[0], "side1": [0, 0, 0]},
-        ):
-            self.scene(
-                [(FLOOR, {"class": "Own", "albedo": 0.5})],
-                camera="Down",
-                spp=1,
-                lights=[light],
-                background=0.25,
+        dark = [
+            ("it has no triangles", {"class": "MeshLight"}),
+            ("all of its triangles are lines or points", {"class": "MeshLight", "vertices": lines}),
+            (
+                "all of its triangles are lines or points",
+                {"class": "MeshLight", "vertices": lines, "triangles": [[0, 1, 2], [1, 1, 2]]},
+            ),
+            (
+                "its sides are parallel",
+                {"class": "RectangleLight", "side1": [0.1, 0.3, 0.7], "side2": [0.3, 0.9, 2.1]},
+            ),
+            ("one of its sides is 0", {"class": "RectangleLight", "side1": [0, 0, 0]}),
+            ("its radius is 0", {"class": "DiskLight", "radius": 0}),
+            ("its radius is 0", {"class": "SphereLight", "radius": 0}),
+        ]
+        lit = [
+            {"class": "RectangleLight"},
+            {"class": "DiskLight"},
+            {"class": "SphereLight"},
+            {"class": "MeshLight", "vertices": [*lines[:2], [0, 0, 1]]},
+            {"class": "PointLight"},
+        ]
+        place = {"center": [0, 3, 0], "corner": [0, 3, 0], "position": [0, 3, 0]}
+        self.scene(
+            [(FLOOR, {"class": "Own", "albedo": 0.5})],
+            camera="Down",
+            spp=1,
+            lights=[light for _, light in dark],
+            background=0.25,
+            variables=place,
+        )
+        self.assert_gray(0.5 * 0.25, 1e-6)
+        lights = [*(light for _, light in dark), *lit]
+        self.scene([], lights=lights, spp=1, variables=place)
+        text = (self.folder / "scene.json").read_text()
+        for command in (["check"], ["render", "-o", "a.exr", "-q"]):
+            _, error = self.run_rtslc(*command, "scene.json", "--diagnostics=json")
+            found = [d for d in json.loads(error)["diagnostics"] if d["code"] == "W2800"]
+            self.assertEqual(
+                [d["message"] for d in found],
+                [
+                    f"the light `{light['class']} (lights.{i})` has no area, and sends out "
+                    f"nothing: {why}"
+                    for i, (why, light) in enumerate(dark)
+                ],
             )
-            self.assert_gray(0.5 * 0.25, 1e-6)
+            for diagnostic, (_, light) in zip(found, dark):
+                begin, end = (diagnostic["range"][at]["offset"] for at in ("begin", "end"))
+                self.assertEqual(text[begin:end], light["class"])
 
     def test_the_sky_however_it_is_found(self):
         """As a light, and as the background that the floor's own directions meet."""
