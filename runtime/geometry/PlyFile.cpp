@@ -412,7 +412,8 @@ std::optional<Mesh> readPlainPly(std::string_view bytes, const MeshRequest &requ
 
 namespace {
 
-/// Reads the values of all elements, and finds the first that is not valid.
+/// Finds a property that a mesh needs and its elements lack; else reads the values of all elements,
+/// and finds the first that is not valid.
 class DamageFinder {
 public:
   DamageFinder(std::string_view bytes, const Header &header, const std::string &path)
@@ -424,6 +425,9 @@ public:
 
   std::optional<Message> find() {
     for (const Element &element : header.elements)
+      if (const char *missing = missingIn(element))
+        return message::meshPropertyMissing(path, element.name, missing);
+    for (const Element &element : header.elements)
       for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i)
         for (const Property &property : element.properties)
           if (std::optional<Message> damage = readNext(element, i, property))
@@ -432,6 +436,19 @@ public:
   }
 
 private:
+  /// Null: the element has what it needs.
+  static const char *missingIn(const Element &element) {
+    const std::vector<Property> &properties = element.properties;
+    if (element.name == "vertex")
+      for (const char *axis : {"x", "y", "z"})
+        if (std::none_of(properties.begin(), properties.end(),
+                         [&](const Property &one) { return one.name == axis; }))
+          return axis;
+    const bool hasCorners = element.name != "face" || element.count == 0 ||
+                            std::any_of(properties.begin(), properties.end(), isCorners);
+    return hasCorners ? nullptr : "vertex_indices";
+  }
+
   std::optional<Message> readNext(const Element &element, std::uint64_t row,
                                   const Property &property) {
     const bool areCorners = element.name == "face" && isCorners(property);

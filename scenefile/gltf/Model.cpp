@@ -93,6 +93,10 @@ private:
     const JsonValue &json = *node.json;
     if (node.transform.determinant() == 0)
       return warn(json, message::flatNodeIgnored(node.what));
+    if (json.find("matrix"))
+      for (const char *part : {"translation", "rotation", "scale"})
+        if (const JsonValue *ignored = json.find(part))
+          warn(*ignored, message::nodeHasMatrix(part, node.what));
     if (const JsonValue *skin = json.find("skin"))
       warn(*skin, message::skinIgnored(node.what));
     if (const JsonValue *punctual = extension(json, "KHR_lights_punctual")) {

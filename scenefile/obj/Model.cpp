@@ -218,8 +218,12 @@ std::unique_ptr<File> readModel(const std::string &path) {
     try {
       for (Material &material : readMaterials(file)) {
         material.folder = relative.parent_path().string();
-        std::string key = material.name;
-        materials.emplace(std::move(key), std::move(material));
+        const auto [first, isNew] = materials.try_emplace(material.name, material);
+        const JsonValue &source = first->second.source;
+        if (!isNew)
+          prepared.warnings.push_back(
+              {message::materialNamedTwice(material.name, *source.file, source.line),
+               material.source.place()});
       }
     } catch (const Error &error) {
       if (error.code != ErrorCode::FileNotFound)

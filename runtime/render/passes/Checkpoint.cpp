@@ -152,7 +152,15 @@ private:
   refuse(path, message::checkpointDamaged(path));
 }
 
-/// The header. Throws unless this is a checkpoint of this version, complete and undamaged.
+/// Is it this program, in this or another version? Other bytes are damage.
+bool isVersionOf(std::string_view producer, std::string_view ours) {
+  const std::size_t name = ours.rfind(' ') + 1;
+  return producer.size() > name && producer.substr(0, name) == ours.substr(0, name) &&
+         producer.find_first_not_of("0123456789.", name) == std::string_view::npos;
+}
+
+/// The header. Throws unless this is a checkpoint of this version, complete and undamaged. The
+/// version is compared first, because another one may store and check a rendering in another way.
 Header checkFile(std::string_view file, const std::string &path, const std::string &producer) {
   Header header;
   if (file.size() < sizeof magic || std::memcmp(file.data(), magic, sizeof magic) != 0)
@@ -162,6 +170,9 @@ Header checkFile(std::string_view file, const std::string &path, const std::stri
   std::memcpy(&header, file.data(), sizeof header);
   if (header.version != formatVersion)
     refuse(path, message::checkpointFormat(path, header.version, formatVersion));
+  const std::string theirs(header.producer, strnlen(header.producer, sizeof header.producer));
+  if (theirs != producer && isVersionOf(theirs, producer))
+    refuse(path, message::checkpointOfOtherVersion(path, theirs, producer));
   if (file.size() < header.fileBytes)
     refuse(path, message::checkpointTruncated(path, file.size(), header.fileBytes));
   if (file.size() > header.fileBytes)
@@ -171,8 +182,7 @@ Header checkFile(std::string_view file, const std::string &path, const std::stri
   if (header.checksum != crc64(file.substr(sizeof header), crc64(bytesOf(withoutChecksum))) ||
       header.factBytes > file.size() - sizeof header)
     refuseDamaged(path);
-  const std::string theirs(header.producer, strnlen(header.producer, sizeof header.producer));
-  if (theirs != producer)
+  if (theirs != producer) // of another program
     refuse(path, message::checkpointOfOtherVersion(path, theirs, producer));
   return header;
 }

@@ -269,6 +269,21 @@ class Materials(ObjCase):
         self.assert_color(left + right, [0.1, 0.2, 0.3, 0.4, 0.4, 0.4])
         self.assertEqual(warnings, "")
 
+    def test_a_name_that_is_given_again(self):
+        """In the same file and in another one: the first one counts."""
+        self.write("a.mtl", "newmtl left\nKd 0.1\nnewmtl right\nKd 0.2\nnewmtl left\nKd 0.3\n")
+        self.write("b.mtl", "newmtl right\nKd 0.4\n")
+        self.write("squares.obj", OBJ.replace("squares.mtl", "a.mtl b.mtl"))
+        self.scene()
+        left, right, warnings = self.halves()
+        self.assert_color(left + right, [0.1] * 3 + [0.2] * 3)
+        again = "the material `{}` is described again, which is ignored"
+        for name, place, line in (("left", "a.mtl:5:8", 1), ("right", "b.mtl:1:8", 3)):
+            self.assertRegex(
+                warnings, f"{place}: warning.W2800.: {again.format(name)}: .*a.mtl` .* line {line}"
+            )
+        self.assertEqual(warnings.count("warning["), 2, warnings)
+
     def test_polygons(self):
         """Faces of more than four corners, which another reader divides, have their materials."""
         self.materials("Kd 0.8 0.1 0.3")

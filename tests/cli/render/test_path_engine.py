@@ -663,6 +663,10 @@ class NoNumber : Own {
 class Lost : Own {
   void sampleBSDF() { rt_LightDirection = normal(); rt_BSDFValue = color(1.0); rt_PDF = 0.0; }
 };
+class Dark : rt_Material {
+  public float sign = 1.0;
+  void emission() { rt_EmissionColor = color(sign * sqrt(rt_RayDirection.x)); }
+};
 """,
         )
         said = {}
@@ -678,6 +682,13 @@ class Lost : Own {
             "`sampleBSDF` of `NoNumber` wrote values that are infinite or not a number",
         )
         self.assertRegex(said["Lost"], "`sampleBSDF` of `Lost` drew 512 of 512 directions")
+        for sign, what in (
+            (-1, "negative values"),
+            (1, "values that are infinite or not a number"),
+        ):
+            self.scene([(BALL, {"class": "Dark", "sign": sign})], spp=1)
+            _, error = self.run_rtslc("check", "scene.json")
+            self.assertRegex(error, f"W2800.*`emission` of `Dark` wrote {what} for [0-9]+ of 512")
         self.assertEqual(said["Own"], "")
 
     def test_materials_of_the_library_have_no_such_values(self):

@@ -2,9 +2,10 @@
 
 import json
 import math
+import re
 import unittest
 
-from harness import DIAGNOSED, Case
+from harness import DIAGNOSED, EXAMPLES, Case
 from numpy_files import npy
 
 SHADERS = """
@@ -93,6 +94,31 @@ class Ranges(Case):
         self.assertIn("class `Paint` has `float roughness in [0, 1]`", str(found[0]["notes"]))
         (found,) = self.check({}, "--set", "materials.paint.roughness=1.0001")
         self.assertEqual((found["code"], found["range"]["begin"]["column"]), ("E0805", 33))
+
+    def test_no_light_of_the_library_is_negative(self):
+        """Colors of lights and backgrounds, and factors of them."""
+        colors = "radiance|irradiance|intensity|scale|zenith|horizon|nadir|ground"
+        library = EXAMPLES.parent / "library/std"
+
+        def negative(folder):
+            for file in sorted((library / folder).glob("*.rtsl")):
+                name = file.stem.replace("AreaLight", "RectangleLight")  # a base of others
+                for member in re.findall(rf"^public \w+ ({colors})\b", file.read_text(), re.M):
+                    yield {"class": name, member: -0.1}
+
+        def check(**parts):
+            imports = ["std.lights", "std.backgrounds"]
+            self.write("scene.json", json.dumps({"rtsl": 1, "import": imports, **parts}))
+            _, error = self.run_rtslc("check", "scene.json", status=DIAGNOSED)
+            return error
+
+        lights, backgrounds = list(negative("lights")), list(negative("backgrounds"))
+        self.assertGreater(min(len(lights), len(backgrounds)), 5)
+        error = check(lights=lights)
+        for light in lights:
+            self.assertIn(f"member `{list(light)[1]}` of `{light['class']}", error)
+        for background in backgrounds:
+            self.assertIn(f"member `{list(background)[1]}` of", check(background=background))
 
     def test_bounds(self):
         inside = {

@@ -270,6 +270,20 @@ TEST_F(Gltf, SaysWhatIsLeftOut) {
   EXPECT_EQ(folder.without(packed.warnings.back().message), found.back());
 }
 
+TEST_F(Gltf, AMatrixIsInPlaceOfTheOtherTransforms) {
+  const SceneDescription described = scene(squareFile(
+      R"({"mesh": 0, "matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1], "translation": [0, 9, 0],
+"scale": [2, 2, 2]})"));
+  std::vector<std::string> found;
+  for (const Warning &warning : described.warnings) {
+    found.push_back(warning.message);
+    EXPECT_TRUE(warning.place && warning.place->line != 0);
+  }
+  const std::string rest = " of `nodes.0` is ignored: the node has a `matrix`, and glTF allows one "
+                           "or the other";
+  EXPECT_EQ(found, (std::vector<std::string>{"`translation`" + rest, "`scale`" + rest}));
+}
+
 TEST_F(Gltf, MorphTargetsAreAddedByTheirWeights) {
   // The square as a target of itself: with a weight w it is larger by w.
   std::string model = squareFile(R"({"children": [1, 2, 3]}, {"mesh": 0},

@@ -62,11 +62,18 @@ void draw(const runtime::Scene &scene, RtslRef material, FaultsByMethod &found) 
   const runtime::ClassInfo &info = scene.classOf(material);
   const RtslLaunch launch = scene.launch();
   const bool isDrawn = runtime::hasMethod(info, "sampleBSDF"),
-             isEvaluated = runtime::hasMethod(info, "BSDF");
-  Faults &ofDrawn = found[{info.name, "sampleBSDF"}], &ofValue = found[{info.name, "BSDF"}];
+             isEvaluated = runtime::hasMethod(info, "BSDF"),
+             emits = runtime::hasMethod(info, "emission");
+  Faults &ofDrawn = found[{info.name, "sampleBSDF"}], &ofValue = found[{info.name, "BSDF"}],
+         &ofEmission = found[{info.name, "emission"}];
   std::mt19937 random(1);
   for (unsigned i = 0; i < directions; ++i) {
     RtslState state = randomHit(launch, random, i);
+    if (emits) {
+      program.slots.rt_Material_emission(&state, material);
+      ++ofEmission.drawn;
+      ofEmission.add(state.EmissionColor, program.colorComponents);
+    }
     if (isDrawn) {
       program.slots.rt_Material_sampleBSDF(&state, material);
       ++ofDrawn.drawn;
@@ -103,11 +110,12 @@ FaultsByMethod drawAll(const runtime::Scene &scene) {
 
 } // namespace
 
-bool scattersByMethods(const LinkRequest &request, const runtime::Program &program) {
+bool hasSurfaceMethods(const LinkRequest &request, const runtime::Program &program) {
   return request.engine != runtime::Engine::Classic &&
          std::any_of(program.classes.begin(), program.classes.end(), [](const auto &info) {
            return info.root == "rt_Material" &&
-                  (runtime::hasMethod(info, "sampleBSDF") || runtime::hasMethod(info, "BSDF"));
+                  (runtime::hasMethod(info, "sampleBSDF") || runtime::hasMethod(info, "BSDF") ||
+                   runtime::hasMethod(info, "emission"));
          });
 }
 

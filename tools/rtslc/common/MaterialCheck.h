@@ -1,4 +1,4 @@
-//===- MaterialCheck.h - checks the BSDFs of a scene's materials ----------===//
+//===- MaterialCheck.h - checks BSDFs and emission of a scene's materials -===//
 #pragma once
 
 #include "codegen/driver/Compiler.h"
@@ -10,12 +10,13 @@
 
 namespace rtsl::tool {
 
-/// Whether engines of the scene run `sampleBSDF` or `BSDF` of some material.
-bool scattersByMethods(const LinkRequest &request, const runtime::Program &program);
+/// Whether engines of the scene run `sampleBSDF`, `BSDF` or `emission` of some material.
+bool hasSurfaceMethods(const LinkRequest &request, const runtime::Program &program);
 
-/// Draws directions of each material on the scene's surfaces, and evaluates them: values below 0,
-/// values that are no numbers, and directions with a value but a density of 0 are warnings, one for
-/// each method and class, at its first object. The scene gets a program of its own for this.
+/// Draws directions of each material on the scene's surfaces, and evaluates them and the light that
+/// it emits: values below 0, values that are no numbers, and directions with a value but a density
+/// of 0 are warnings, one for each method and class, at its first object. The scene gets a program
+/// of its own for this.
 std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
                                   LinkRequest request, CompileOptions compile);
 

@@ -37,7 +37,7 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
   const bool isWhole = launch.refused.names.empty() && launch.refused.classes.empty();
-  if (isWhole && !messages.diagnostics.hasErrors() && scattersByMethods(request, scene->program()))
+  if (isWhole && !messages.diagnostics.hasErrors() && hasSurfaceMethods(request, scene->program()))
     for (const Warning &warning : tryMaterials(*scene, module, request, options.common.compile))
       messages.report(warning);
 }

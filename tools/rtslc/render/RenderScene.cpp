@@ -373,7 +373,7 @@ private:
           summary.notFinite.push_back({sample, {}, std::nullopt});
       }
     warn(summary, messages);
-    if (summary.statistics.samplesNotFinite && scattersByMethods(request, scene->program()))
+    if (summary.statistics.samplesNotFinite && hasSurfaceMethods(request, scene->program()))
       for (const Warning &warning : tryMaterials(*scene, *module, request, compileOptions))
         messages.report(warning);
     if (checkpoint)

@@ -168,12 +168,19 @@ TEST_F(Meshes, DamageOfPlyIsFoundBeforeAssimpReadsIt) {
   EXPECT_EQ(damage(good, "element vertex 4", "element vertex -4"),
             "mesh `a.ply` is damaged or truncated in line 3 of its header");
   EXPECT_EQ(damage(good, "element face", "obj_info x\ncomment y\nelement face"), "");
+  for (const char *axis : {"x", "y", "z"})
+    EXPECT_EQ(damage(good, std::string(" ") + axis + "\n", " a\n"),
+              std::string("mesh `a.ply` is damaged: its element `vertex` has no property `") +
+                  axis + "`");
+  EXPECT_EQ(damage(good, "vertex_indices", "corners"),
+            "mesh `a.ply` is damaged: its element `face` has no property `vertex_indices`");
 
   // As floats, and in the other order
   const std::string binary = damage("ply\nformat binary_big_endian 1.0\nelement face 1\n"
                                     "property list uchar float vertex_index\nelement vertex 1\n"
-                                    "property uchar x\nend_header\n\1\x3f\x80" +
-                                    std::string(3, '\0'));
+                                    "property uchar x\nproperty uchar y\nproperty uchar z\n"
+                                    "end_header\n\1\x3f\x80" +
+                                    std::string(5, '\0'));
   EXPECT_EQ(binary,
             "mesh `a.ply` is damaged: face 1 of 1 has the corner 1, and there are 1 vertices");
 }

@@ -167,6 +167,12 @@ TEST_F(Checkpoint, SaysHowTheRenderingsDiffer) {
   other.dependences.pop_back();
   EXPECT_EQ(refusal(bytes, other), "cannot resume from `a.ckpt`: its picture depends on "
                                    "`Clay.rtsl`, where this one depends on nothing");
+  std::string producer = bytes; // whose bytes may be checked in another way
+  producer[32 + 10] = '7';
+  EXPECT_EQ(refusal(producer),
+            "cannot resume from `a.ckpt`: it was written by rtslc 1.2.7, and this is rtslc 1.2.3");
+  producer[32 + 10] = 'x';
+  EXPECT_EQ(refusal(producer), "cannot resume from `a.ckpt`: it is damaged");
   std::string version = bytes;
   version[8] = 9;
   EXPECT_EQ(refusal(signedAnew(version)), "cannot resume from `a.ckpt`: it is a checkpoint of "
