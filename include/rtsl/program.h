@@ -15,8 +15,9 @@ struct RtslShaders {
 
 namespace rtsl {
 
-inline const std::shared_ptr<const runtime::Program> &program(const RtslShaders *shaders) {
-  return shaders->program;
+/// Of no shaders, null, there is no program: a Scene refuses it.
+inline std::shared_ptr<const runtime::Program> program(const RtslShaders *shaders) {
+  return shaders ? shaders->program : nullptr;
 }
 
 } // namespace rtsl

@@ -178,7 +178,7 @@ int rtslPlaceTurning(RtslScene *scene, const RtslPlacementKey *keys, uint32_t co
  * below which it is; 0: none. */
 int rtslMark(RtslScene *scene, int32_t id, uint32_t selection);
 /* Rays that enter at root r see the instances that are added next if bit r is set; 1 unless it is
- * set: the rays that name no root. */
+ * set: the rays that name no root. Fails for 0. */
 int rtslSetRoots(RtslScene *scene, uint32_t roots);
 /* Whether rays meet triangles of the meshes that are added next along rt_GeometricNormal; 1 unless
  * it is set. */

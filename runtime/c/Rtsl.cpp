@@ -24,11 +24,7 @@ const char *rtslError(void) {
 }
 
 RtslScene *rtslSceneCreate(const RtslShaders *shaders) {
-  return guarded<RtslScene *>(nullptr, {}, [&] {
-    if (!shaders)
-      throw rtsl::Error(rtsl::message::noShaders());
-    return new RtslScene(rtsl::program(shaders));
-  });
+  return guarded<RtslScene *>(nullptr, {}, [&] { return new RtslScene(rtsl::program(shaders)); });
 }
 
 void rtslSceneDestroy(RtslScene *scene) {
@@ -143,6 +139,8 @@ int rtslMark(RtslScene *scene, int32_t id, uint32_t selection) {
 
 int rtslSetRoots(RtslScene *scene, uint32_t roots) {
   return guarded(0, {{scene, "scene"}}, [&] {
+    if (roots == 0)
+      throw rtsl::Error(rtsl::message::noRoots());
     scene->roots = roots;
     return 1;
   });

@@ -62,6 +62,8 @@ void callOutsideOfRays(const RtslLaunch &launch, RtslRef object,
 
 Objects::Objects(std::shared_ptr<const Program> program)
     : code(std::move(program)), records(firstRecord, 0) {
+  if (!code)
+    throw Error(message::noShaders());
   if (code->colorComponents < 1 || code->colorComponents > RTSL_MAX_COLOR)
     throw Error(message::colorComponents(RTSL_MAX_COLOR, code->colorComponents));
 }

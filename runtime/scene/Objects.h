@@ -23,7 +23,8 @@ namespace rtsl::runtime {
 
 class Objects {
 public:
-  /// Throws OutOfRange if the program's number of color components is invalid.
+  /// Throws IncompleteScene without a program, and OutOfRange if its number of color components is
+  /// invalid.
   explicit Objects(std::shared_ptr<const Program> program);
 
   const Program &program() const { return *code; }

@@ -19,7 +19,7 @@ namespace rtsl::runtime {
 
 class Scene {
 public:
-  /// The program must stay as it is; the scene keeps it alive.
+  /// The program must stay as it is; the scene keeps it alive. Throws IncompleteScene for null.
   explicit Scene(std::shared_ptr<const Program> program);
   ~Scene();
   Scene(Scene &&) noexcept;

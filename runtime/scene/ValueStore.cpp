@@ -155,14 +155,7 @@ private:
       wrongType(type, value);
     std::vector<float> components = colorFromNumbers(numbers, count);
     if (components.empty())
-      fail(value,
-           message::colorComponentCount(
-               what,
-               count == 3 ? "3 numbers or one for all"
-               : count == 1
-                   ? "one number, or 3 for red, green and blue"
-                   : fmt::format("{} numbers, 3 for red, green and blue, or one for all", count),
-               numbers.size()));
+      fail(value, message::colorComponentCount(what, numbersOfColor(count), numbers.size()));
     std::memset(to, 0, size);
     std::memcpy(to, components.data(), 4 * components.size());
   }
@@ -276,6 +269,14 @@ std::vector<float> colorFromNumbers(const std::vector<float> &numbers, std::uint
         float(basis.toColor[i][0] * double(numbers[0]) + basis.toColor[i][1] * double(numbers[1]) +
               basis.toColor[i][2] * double(numbers[2]));
   return color;
+}
+
+std::string numbersOfColor(std::uint32_t components) {
+  if (components == 1)
+    return "one number, or 3 for red, green and blue";
+  if (components == 3)
+    return "3 numbers or one for all";
+  return fmt::format("{} numbers, 3 for red, green and blue, or one for all", components);
 }
 
 void storeValue(const ValueType &type, const Value &value, std::uint8_t *to,

@@ -26,6 +26,8 @@ struct StoreContext {
 /// (language/ColorBasis.h), or from one number for all. Empty if there is another number of
 /// numbers.
 std::vector<float> colorFromNumbers(const std::vector<float> &numbers, std::uint32_t components);
+/// The numbers that it takes, for messages: "3 numbers or one for all".
+std::string numbersOfColor(std::uint32_t components);
 
 /// Writes `value` as a `type` to `to`. `what` names the member or parameter in messages ("member
 /// `radius` of `ball`"). Throws WrongType, OutOfRange, WrongClass; the error's place is the value's

@@ -15,7 +15,7 @@ void setColor(std::uint32_t colorComponents, const std::vector<float> &color, fl
               const char *what) {
   std::vector<float> components = colorFromNumbers(color, colorComponents);
   if (components.empty())
-    throw Error(message::colorTakesNumbers(what, colorComponents, color.size()));
+    throw Error(message::colorComponentCount(what, numbersOfColor(colorComponents), color.size()));
   std::copy(components.begin(), components.end(), to);
 }
 
@@ -49,13 +49,13 @@ void CameraAndLights::setException(const Objects &objects, RtslRef object) {
 }
 
 void CameraAndLights::setBackgroundColor(const Objects &objects, const std::vector<float> &color) {
-  setColor(objects.program().colorComponents, color, backgroundColor, "background");
+  setColor(objects.program().colorComponents, color, backgroundColor, "the background");
   background = 0;
   isBackgroundSampled = false;
 }
 
 void CameraAndLights::setAmbient(const Objects &objects, const std::vector<float> &color) {
-  setColor(objects.program().colorComponents, color, ambient, "ambient light");
+  setColor(objects.program().colorComponents, color, ambient, "the ambient light");
 }
 
 std::vector<RtslRef> CameraAndLights::all() const {

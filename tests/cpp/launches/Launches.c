@@ -376,6 +376,9 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 1, 0, NULL));
   EXPECT_FAILURE(rtslSceneAddImage(scene, &nowhere, 2, 0, NULL));
   EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 3, NULL));
+  EXPECT_FAILURE(rtslSetRoots(scene, 0));
+  EXPECT_FAILURE(rtslSceneCreate(NULL));
+  EXPECT_FAILURE(rtslSceneLoad(NULL, "nowhere.json", NULL, 0));
   EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "nowhere.json", NULL, 0));
   EXPECT_FAILURE(rtslSceneSetPass(scene, 0));
   EXPECT_FAILURE(rtslSceneLoad(launches_shaders(), "scene.json", &setting, 1));

@@ -7,9 +7,21 @@ using namespace rtsl::runtime;
 
 RTSL_DECLARE_SHADERS(shapes);
 
+template <typename Make>
+static bool isIncomplete(Make make) {
+  try {
+    make();
+    return false;
+  } catch (const Error &error) {
+    return error.code == ErrorCode::IncompleteScene;
+  }
+}
+
 int main(int argc, char **argv) try {
   if (argc != 2)
     return std::fprintf(stderr, "usage: %s PICTURE.exr\n", argv[0]), 2;
+  if (!isIncomplete([] { Scene none(rtsl::program(nullptr)); }))
+    return std::fprintf(stderr, "a scene without a program is not refused\n"), 1;
   Scene scene(rtsl::program(shapes_shaders()));
   auto make = [&](const char *name, std::vector<NamedValue> members) {
     return scene.addObject(name, ObjectValues{{}, std::move(members), {}});

@@ -192,9 +192,9 @@ TEST(BuildScene, ClassesInTheWrongPlace) {
   EXPECT_EQ(buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}},\n" +
                        everything("\"other\": \"sky\"")),
             "s.json:4:11+3: wrongClass: member `other` of `e` takes a `rt_Material`, not a `Sky`");
-  EXPECT_EQ(
-      buildError("\"background\": [1, 2]"),
-      "s.json:2:15+1: wrongType: the background is a color: it takes 1, 3 or 3 numbers, not 2");
+  EXPECT_EQ(buildError("\"background\": [1, 2]"),
+            "s.json:2:15+1: wrongType: the background is a color: it takes 3 numbers or one for "
+            "all, not 2 numbers");
 }
 
 TEST(BuildScene, CyclesAreFound) {
