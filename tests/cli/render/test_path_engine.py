@@ -162,24 +162,23 @@ class DirectionsOfTheEngine(PathCase):
         """Methods of classes that derive from it do not count, and are not run."""
         self.scene([(FLOOR, {"class": "AloneSampled"})], camera="Down", background=1.0, spp=64)
         self.assert_estimates(0.5)
+        cases = (
+            ("AloneSampled", "Alone", "sampleBSDF", "draws directions"),
+            ("AloneTwice", "Alone", "sampleBSDF", "draws directions"),
+            ("ShinesMore", "Shines", "BSDF", "shows only what it emits"),
+            ("ShadedMore", "Shaded", "BSDF", "shows only the color that `shade` gives it"),
+        )
+        self.scene([(BALL, {"class": name}) for name, *_ in cases], spp=1)
         for engine in ("path", "volume"):
-            for name, base, method, consequence in (
-                ("AloneSampled", "Alone", "sampleBSDF", "draws directions"),
-                ("AloneTwice", "Alone", "sampleBSDF", "draws directions"),
-                ("ShinesMore", "Shines", "BSDF", "shows only what it emits"),
-                ("ShadedMore", "Shaded", "BSDF", "shows only the color that `shade` gives it"),
-            ):
-                with self.subTest(engine=engine, name=name):
-                    self.scene([(BALL, {"class": name})], spp=1)
-                    _, error = self.run_rtslc(
-                        "check", "scene.json", f"--set=render.engine={engine}"
-                    )
-                    self.assertEqual(error.count("warning[W2703]"), 1, error)
-                    missing = f"[W2703]: `{base}` has no `{method}`: the engine `{engine}` "
-                    self.assertIn(missing + consequence, error)
-                    owner = "AloneSampled" if name == "AloneTwice" else name
-                    self.assertIn(f"that of `{owner}` does not count", error)
-                    self.assertNotIn("less noise", error)
+            _, error = self.run_rtslc("check", "scene.json", f"--set=render.engine={engine}")
+            _, *warnings = error.split("warning[W2703]: ")
+            self.assertEqual(len(warnings), len(cases), error)
+            for said, (name, base, method, consequence) in zip(warnings, cases):
+                missing = f"`{base}` has no `{method}`: the engine `{engine}` {consequence}"
+                self.assertIn(missing, said)
+                owner = "AloneSampled" if name == "AloneTwice" else name
+                self.assertIn(f"that of `{owner}` does not count", said)
+                self.assertNotIn("less noise", said)
 
 
 class ClosedForms(PathCase):
