@@ -125,14 +125,18 @@ void Generator::addMembers(ClassPlan &plan, Node &members, unsigned count) {
       std::string text = "public " + toString(element) + " " + name;
       for (unsigned i = 0; i != rank; ++i)
         text += "[]";
-      members.children.push_back(makeNode(Role::Fixed, text + ";"));
+      members.children.push_back(makeNode(Role::Fixed, text + someRange(element).text + ";"));
       plan.members.push_back({name, types.buffer(element, rank), false, false});
     } else if (kind < 4) {
       members.children.push_back(declare(name, type, expression(type, 2), "public "));
       plan.members.push_back({name, type, false, false});
     } else {
-      members.children.push_back(makeNode(Role::Fixed, (kind < 8 ? "public " : "private ") +
-                                                           toString(type) + " " + name + ";"));
+      const bool isPublic = kind < 8;
+      const RangeText range = isPublic ? someRange(type) : RangeText();
+      const bool hasDefault = !range.inside.empty() && chance(50);
+      members.children.push_back(
+          makeNode(Role::Fixed, (isPublic ? "public " : "private ") + toString(type) + " " + name +
+                                    range.text + (hasDefault ? " = " + range.inside : "") + ";"));
       plan.members.push_back({name, type, false, false});
     }
     context.constantOnly = false;

@@ -39,6 +39,8 @@ NodePtr Generator::function(Function &made, const std::string &head,
                   : chance(20)                                   ? "in "
                                                                  : "";
     parameters += toString(parameter.type) + " " + name;
+    if (head == "constructor")
+      parameters += someRange(parameter.type).text;
     if (parameter.direction == ast::Direction::Out)
       add(*body, makeNode(Role::Statement, name + " = $;", literal(parameter.type)));
     scope.push_back({name, parameter.type, !isConst});

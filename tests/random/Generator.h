@@ -128,6 +128,12 @@ private:
   const Type *structure(std::vector<typed::Field> fields,
                         unsigned more); // and `more` random fields
   void makePayload();
+  /// Text after the name of a member or a parameter of a constructor: " in [0, 1)"; empty: no
+  /// range. `inside`: a value of the type in it, if that is no array.
+  struct RangeText {
+    std::string text, inside;
+  };
+  RangeText someRange(const Type *type);
 
   // Expressions (Expressions.cpp)
   NodePtr expression(const Type *type, unsigned depth);

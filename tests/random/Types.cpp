@@ -83,4 +83,34 @@ void Generator::makePayload() {
   payloads.push_back(structure({hash}, below(3)));
 }
 
+/// The runtime checks ranges, and shaders do not: a range changes no result, but the values that
+/// World gives.
+Generator::RangeText Generator::someRange(const Type *type) {
+  const Type *number = type;
+  while (number->is(TypeKind::Array))
+    number = number->element;
+  const Type *scalar = number->isVector() ? number->element : number;
+  const bool isFloat = scalar->is(TypeKind::Float) || scalar->is(TypeKind::Color);
+  if (!isFloat && !scalar->is(TypeKind::Int) && !scalar->is(TypeKind::UInt))
+    return {};
+  if (chance(60))
+    return {};
+  const int low = scalar->is(TypeKind::UInt) ? int(below(4)) : int(below(9)) - 4,
+            width = 2 + int(below(5));
+  const std::string unit = isFloat && chance(50) ? " * 0.25" : "", sum = std::to_string(low);
+  std::string first = "[" + sum + unit,
+              last = "(" + sum + " + " + std::to_string(width) + ")" + unit + "]";
+  if (chance(30))
+    first[0] = '(';
+  if (chance(30))
+    last.back() = ')';
+  if (chance(20))
+    first = "(-inf";
+  if (chance(20))
+    last = "inf)";
+  const std::string inside = "(" + sum + " + 1)" + unit;
+  return {" in " + first + ", " + last,
+          type == number ? toString(type) + "(" + inside + ")" : std::string()};
+}
+
 } // namespace rtsl::random

@@ -125,22 +125,48 @@ static std::uint32_t someInteger(std::uint32_t key) {
   return (key >> 8) % 9 - (key & 1 ? 4u : 0u);
 }
 
-void World::fillElement(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
+/// A number of a range of the generator, often one of its bounds.
+static double someInside(const Range &range, std::uint32_t key) {
+  const double low = std::isfinite(range.low)    ? range.low
+                     : std::isfinite(range.high) ? range.high - 2
+                                                 : 0,
+               high = std::isfinite(range.high) ? range.high : low + 2;
+  for (const double value : {key & 1 ? low : high, key & 2 ? high : low})
+    if (range.contains(value))
+      return value;
+  const double middle = 0.5 * (low + high);
+  return std::floor(middle) > low ? std::floor(middle) : middle; // a whole one for integers
+}
+
+void World::fillElement(const ValueType &type, const std::optional<Range> &range, std::uint8_t *to,
+                        std::uint32_t key) {
   auto put = [&](unsigned word, std::uint32_t value) { std::memcpy(to + 4 * word, &value, 4); };
   const unsigned scalars = type.rows * type.columns;
+  auto putFloat = [&](unsigned i) {
+    const std::uint32_t bits = someFloat(mix(key, i));
+    float value;
+    std::memcpy(&value, &bits, 4);
+    put(i, range && !range->contains(value) ? bitsOf(float(someInside(*range, bits))) : bits);
+  };
   switch (type.kind) {
   case ValueType::Kind::Float:
     for (unsigned i = 0; i != scalars; ++i)
-      put(i, someFloat(mix(key, i)));
+      putFloat(i);
     break;
   case ValueType::Kind::Color:
     for (unsigned i = 0; i != code.colorComponents; ++i)
-      put(i, someFloat(mix(key, i)));
+      putFloat(i);
     break;
   case ValueType::Kind::Int:
   case ValueType::Kind::UInt:
-    for (unsigned i = 0; i != scalars; ++i)
-      put(i, someInteger(mix(key, i)));
+    for (unsigned i = 0; i != scalars; ++i) {
+      const std::uint32_t word = someInteger(mix(key, i));
+      const double value =
+          type.kind == ValueType::Kind::Int ? double(std::int32_t(word)) : double(word);
+      put(i, range && !range->contains(value)
+                 ? std::uint32_t(std::int32_t(someInside(*range, word)))
+                 : word);
+    }
     break;
   case ValueType::Kind::Bool:
     for (unsigned i = 0; i != scalars; ++i)
@@ -151,12 +177,13 @@ void World::fillElement(const ValueType &type, std::uint8_t *to, std::uint32_t k
     break;
   case ValueType::Kind::Struct:
     for (const MemberInfo &field : type.fields)
-      fill(field.type, to + field.offset, mix(key, hashOf(field.name)));
+      fill(field, to + field.offset, mix(key, hashOf(field.name)));
     break;
   }
 }
 
-void World::fill(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
+void World::fill(const MemberInfo &member, std::uint8_t *to, std::uint32_t key) {
+  const ValueType &type = member.type;
   if (type.bufferRank != 0) {
     RtslBuffer buffer{};
     std::size_t count = 1;
@@ -169,7 +196,8 @@ void World::fill(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
       outputs.push_back(&buffers.back());
     auto *elements = reinterpret_cast<std::uint8_t *>(buffers.back().data());
     for (std::size_t i = 0; i != count; ++i)
-      fillElement(type, elements + i * type.elementSize, mix(key, static_cast<std::uint32_t>(i)));
+      fillElement(type, member.values, elements + i * type.elementSize,
+                  mix(key, static_cast<std::uint32_t>(i)));
     const auto address = reinterpret_cast<std::uint64_t>(elements);
     buffer.addressLow = static_cast<std::uint32_t>(address);
     buffer.addressHigh = static_cast<std::uint32_t>(address >> 32);
@@ -180,7 +208,7 @@ void World::fill(const ValueType &type, std::uint8_t *to, std::uint32_t key) {
   for (std::uint32_t size : type.arraySizes)
     count *= size;
   for (std::uint32_t i = 0; i != count; ++i)
-    fillElement(type, to + i * (type.size / count), mix(key, i));
+    fillElement(type, member.values, to + i * (type.size / count), mix(key, i));
 }
 
 bool World::derivesFrom(const ClassInfo &info, const std::string &base) const {
@@ -222,11 +250,11 @@ void World::addObjects(const std::vector<std::string> &classes, std::vector<Rtsl
     for (const MemberInfo &member : info->members)
       if (member.isPublic &&
           (!member.hasDefault || key & 1 || member.type.bufferRank != 0)) // none is empty by chance
-        fill(member.type, record + member.offset, mix(key, hashOf(member.name)));
+        fill(member, record + member.offset, mix(key, hashOf(member.name)));
     if (info->construct) {
       std::vector<std::uint32_t> arguments(info->parameterSize / 4 + 1);
       for (const MemberInfo &parameter : info->parameters)
-        fill(parameter.type, reinterpret_cast<std::uint8_t *>(arguments.data()) + parameter.offset,
+        fill(parameter, reinterpret_cast<std::uint8_t *>(arguments.data()) + parameter.offset,
              mix(key, hashOf(parameter.name)));
       info->construct(&state, reference, arguments.data());
     }
@@ -542,6 +570,18 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
       words.push_back((word & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : word);
 }
 
+/// The ranges that the classes of all objects state.
+void World::noteRanges(std::vector<std::uint32_t> &words) const {
+  for (const Object &object : objects)
+    for (const auto *list : {&object.info->members, &object.info->parameters})
+      for (const MemberInfo &member : *list)
+        if (const auto &range = member.values) {
+          for (const double bound : {range->low, range->high})
+            words.push_back(bitsOf(static_cast<float>(bound)));
+          words.push_back(range->includesLow * 2u + range->includesHigh);
+        }
+}
+
 std::vector<std::uint32_t> World::run() {
   begin();
   std::vector<std::uint32_t> words;
@@ -561,6 +601,7 @@ std::vector<std::uint32_t> World::run() {
   }
   launch.status = nullptr;
   sampleObjects(words);
+  noteRanges(words);
   return words;
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -56,8 +57,9 @@ private:
   /// Objects of sampler2D with small images.
   void addImages();
   void addImage(const runtime::ClassInfo &info, std::uint32_t number);
-  void fill(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
-  void fillElement(const runtime::ValueType &type, std::uint8_t *to, std::uint32_t key);
+  void fill(const runtime::MemberInfo &member, std::uint8_t *to, std::uint32_t key);
+  void fillElement(const runtime::ValueType &type, const std::optional<Range> &range,
+                   std::uint8_t *to, std::uint32_t key);
   void putBuffer(std::uint8_t *to, const runtime::Words &words);
   std::size_t wordsOfRecords() const;
   void addInstances();
@@ -78,6 +80,7 @@ private:
   void begin();
   void noteExceptions(std::vector<std::uint32_t> &words);
   void sampleObjects(std::vector<std::uint32_t> &words);
+  void noteRanges(std::vector<std::uint32_t> &words) const;
   void renderBySample(std::vector<float> &pixels);
   void renderByLane(std::vector<float> &pixels);
 
