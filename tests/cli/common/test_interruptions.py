@@ -135,7 +135,7 @@ class Interruptions(Case):
 
     def test_few_samples_are_in_all_pixels(self):
         """They begin as one pass, pixel by pixel."""
-        large = ("--size", "1500x1500", "--spp", "64", "-Wno-depth-limit")
+        large = ("--size", "800x800", "--threads", "2", "--spp", "64", "-Wno-depth-limit")
         _, error = self.interrupt(RTSLC, "render", "scene.json", "-o", "a.exr", *large)
         self.assertIn("after 1 of 64 samples per pixel; some pixels have more", error)
         self.assertNotIn("black", error)
