@@ -9,7 +9,7 @@
 #include "ByHand.h"
 
 #include "rtsl/program.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 #include "codegen/ir/Layout.h"
 
 #include "codegen/ir/dialect/RtslOps.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 #include "llvm/ADT/TypeSwitch.h"
 

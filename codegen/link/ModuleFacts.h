@@ -1,7 +1,7 @@
 //===- ModuleFacts.h - results of linking a module without a scene --------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "sema/typed/TypedAst.h"
 
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include "codegen/lower/HideConstants.h"
 #include "codegen/lower/Lowering.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 namespace rtsl {
 

@@ -3,7 +3,7 @@
 #include "language/formulas/Common.h"
 #include "sema/typed/Analysis.h"
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Status.h"
 #include "sema/fold/ConstantFold.h"
 #include "sema/typed/Casting.h"
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "runtime/accel/TreeKind.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/device/trees/Items.h"
 #include "runtime/scene/Scene.h"
 

@@ -1,7 +1,7 @@
 //===- TreeContents.h - what the trees of a scene contain -----------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 #include <cstdint>
 #include <vector>

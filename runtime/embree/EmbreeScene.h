@@ -20,7 +20,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 #include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/Triangle.h"
 #include "runtime/scene/Scene.h"

@@ -7,6 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/organisations/Job.h"
 #include "runtime/device/organisations/WaveMemory.h"
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/program/Program.h"

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+struct RtslJob;
+
 namespace rtsl::runtime {
 
 /// The types that a scene can set. A vector has `rows` components, a matrix `columns` x `rows`,

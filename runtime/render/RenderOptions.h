@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/accel/TreeKind.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/organisations/Job.h"
 
 #include <atomic>
 #include <cstdint>

@@ -1,7 +1,7 @@
 //===- InstanceTransform.h - transforms and boxes of instances ------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/geometry/Mesh.h"
 #include "runtime/geometry/Motion.h"
 #include "runtime/scene/SceneData.h"

@@ -1,7 +1,7 @@
 //===- SceneData.h - plain structs in the interface of scenes -------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/geometry/Motion.h"
 #include "runtime/program/Program.h"
 #include "runtime/scene/Value.h"

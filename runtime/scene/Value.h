@@ -1,7 +1,7 @@
 //===- Value.h - what a scene gives to a member or a parameter ------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/scene/Words.h"
 #include "support/Error.h"
 

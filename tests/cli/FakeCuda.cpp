@@ -5,8 +5,8 @@
 // FAKE_CUDA makes them fail in one of the ways in which drivers and devices do, or paint half of
 // the picture and go on until they are stopped, again and again ("endless"), or take longer on one
 // of them ("uneven").
+#include "runtime/device/organisations/Job.h"
 #include "runtime/device/organisations/SampleSums.h"
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/trees/Clusters.h"
 #include "runtime/device/trees/Refit.h"
 #include "runtime/device/trees/Sort.h"

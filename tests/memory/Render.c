@@ -1,7 +1,7 @@
 // Renders the scene of a package with a program that MemorySanitizer watches (tests/memory/run).
 // All that the program reads was read from the file or written by itself: uninitialized memory is
 // poisoned by malloc. Exit status: 0, or that of the sanitizer.
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/organisations/Job.h"
 
 #include <sanitizer/msan_interface.h>
 #include <stdio.h>

@@ -83,7 +83,7 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
 }
 
 /// PTX. For a scene it is one kernel, `rtsl_render`, that takes an RtslJob
-/// (runtime/device/ray/Abi.h).
+/// (runtime/device/organisations/Job.h).
 static bool reachPtx(Compilation &compilation) {
   if (!reachGpuMachine(compilation))
     return false;

@@ -12,7 +12,7 @@
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/ir/dialect/RtslOps.h"
 #include "codegen/passes/ShareExpressions.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include "mlir/Conversion/ArithToLLVM/ArithToLLVM.h"
 #include "mlir/Conversion/ControlFlowToLLVM/ControlFlowToLLVM.h"

@@ -1,7 +1,7 @@
 //===- ConvertToLlvm.h - level 2 to MLIR's LLVM dialect -------------------===//
 //
 // The state of the ray becomes an explicit parameter, the first of every function, and every
-// address an offset: in RtslState and RtslLaunch by offsetof (runtime/device/ray/Abi.h), in records
+// address an offset: in RtslState and RtslLaunch by offsetof (runtime/device/ray), in records
 // and aggregates by codegen/ir/Layout.h.
 //
 //   - a reference is an i32, an address an !llvm.ptr, a bool in memory an i32;

@@ -6,7 +6,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/dialect/RtslOps.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
 #include "mlir/Interfaces/FunctionInterfaces.h"

@@ -2,7 +2,7 @@
 #include "codegen/emit/patterns/Patterns.h"
 
 #include "codegen/ir/Layout.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include "mlir/Interfaces/FunctionInterfaces.h"
 

@@ -2,7 +2,7 @@
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/emit/patterns/Patterns.h"
 #include "codegen/ir/dialect/RtslOps.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include "mlir/Conversion/LLVMCommon/Pattern.h"
 

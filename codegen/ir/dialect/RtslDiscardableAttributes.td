@@ -332,7 +332,7 @@ def records : DiscardableAttribute<"records", DenseI32Array, ["builtin.module"]>
 }
 
 def instances : DiscardableAttribute<"instances", DenseI32Array, ["builtin.module"]> {
-  let meaning = "the instances of a bound scene: RtslInstance in runtime/device/ray/Abi.h";
+  let meaning = "the instances of a bound scene: RtslInstance in runtime/device/ray/Launch.h";
   let setBy = "link/BindTables";
   let readBy = "emit/SceneTables";
 }
@@ -340,7 +340,7 @@ def instances : DiscardableAttribute<"instances", DenseI32Array, ["builtin.modul
 def meshAttributes : DiscardableAttribute<"mesh_attributes", DenseI32Array, ["builtin.module"]> {
   let meaning =
     "the attributes of meshes that the program of a scene reads: RtslMeshAttribute in "
-    "runtime/device/ray/Abi.h";
+    "runtime/device/ray/Launch.h";
   let setBy = "link/Link";
   let readBy = "emit/SceneTables";
 }

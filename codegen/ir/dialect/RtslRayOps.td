@@ -103,7 +103,7 @@ def Rtsl_VisitChildOp : Rtsl_Op<"visit_child"> {
 def Rtsl_RaiseOp : Rtsl_Op<"raise"> {
   let summary = "records that the sample has raised an exception";
   let description = [{
-    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Abi.h). The shader continues; its
+    The number is one of RTSL_EXCEPTION_* (runtime/device/ray/Status.h). The shader continues; its
     results are discarded.
 
     Example: `rtsl.raise 3`

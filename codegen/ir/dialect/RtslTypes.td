@@ -80,8 +80,8 @@ def Rtsl_BufferType : Rtsl_Type<"Buffer", "buffer"> {
   let summary = "unsized array member";
   let description = [{
     Address and sizes of elements that the scene supplies (`RtslBuffer` of
-    runtime/device/ray/Abi.h), with 1 to 3 dimensions. The first index is the slowest. `output`: the
-    launch writes it; the elements of others are constant.
+    runtime/device/ray/Launch.h), with 1 to 3 dimensions. The first index is the slowest. `output`:
+    the launch writes it; the elements of others are constant.
 
     Example: `!rtsl.buffer<vector<3xf32>, 1>`, `!rtsl.buffer<f32, 2, output>`
   }];

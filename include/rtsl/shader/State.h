@@ -2,6 +2,7 @@
 #pragma once
 
 #include "rtsl/shader/Types.h"
+#include "runtime/device/ray/Abi.h"
 
 #include <cstddef>
 #include <cstring>
@@ -33,7 +34,7 @@ inline constexpr int width<StateColor<N>> = N;
 template <int N>
 inline constexpr bool isColor<StateColor<N>> = true;
 
-/// RtslState (runtime/device/ray/Abi.h), with vectors in place of arrays; `rt_RayOrigin` is
+/// RtslState (runtime/device/ray/State.h), with vectors in place of arrays; `rt_RayOrigin` is
 /// `rt.RayOrigin`. The two share memory, which is declared to compilers.
 template <int N>
 struct [[gnu::may_alias]] State {

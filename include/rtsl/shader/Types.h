@@ -1,13 +1,14 @@
 //===- Types.h - types that GLM does not have -----------------------------===//
 //
-// Everything that a scene can set is aligned to 4 bytes and packed, as in runtime/device/ray/Abi.h.
+// Everything that a scene can set is aligned to 4 bytes and packed, as in
+// runtime/device/ray/Launch.h.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "language/ColorBasis.h"
 #include "rtsl/shader/FloatingPoint.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "runtime/accel/trees/BinaryTree.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 #include <cstdint>
 #include <vector>

@@ -8,8 +8,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Events.h"
+#include "runtime/device/ray/State.h"
+#include "runtime/device/ray/Status.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {

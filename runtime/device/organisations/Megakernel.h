@@ -9,6 +9,7 @@
 #pragma once
 
 #include "runtime/device/engines/Machine.h"
+#include "runtime/device/organisations/Job.h"
 #include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/organisations/Slice.h"
 #include "runtime/device/organisations/StepCounts.h"

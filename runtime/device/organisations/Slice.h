@@ -10,6 +10,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/organisations/Job.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Divisor.h"
 #include "runtime/device/ray/Warp.h"

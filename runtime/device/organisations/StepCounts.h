@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/organisations/Job.h"
 #include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Warp.h"

@@ -1,7 +1,7 @@
 //===- Color.h - operations on the components of a color ------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 namespace rtsl::device {
 

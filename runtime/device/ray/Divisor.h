@@ -14,7 +14,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {

@@ -7,9 +7,9 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Rough.h"
+#include "runtime/device/ray/State.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {

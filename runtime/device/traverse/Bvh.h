@@ -7,7 +7,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/BoxRange.h"

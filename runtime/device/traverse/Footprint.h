@@ -12,7 +12,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Needs.h"
+#include "runtime/device/ray/State.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Instance.h"
 

@@ -1,7 +1,7 @@
 //===- Bounds.h - boxes of a tree -----------------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device::build {

@@ -1,8 +1,8 @@
 //===- Items.h - what a tree is built of ----------------------------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Box.h"
+#include "runtime/device/ray/Launch.h"
 #include "runtime/device/traverse/Motion.h"
 #include "runtime/device/traverse/Traverse.h"
 

@@ -1,7 +1,7 @@
 //===- PixelSums.h - the sums of a rendering that goes on -----------------===//
 #pragma once
 
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/organisations/Job.h"
 #include "runtime/image/Image.h"
 
 #include <cstddef>

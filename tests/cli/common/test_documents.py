@@ -92,7 +92,7 @@ class Documents(Case):
             str(constant("frontend/syntax/TokenCheck.h", "maxNesting")),
             row(rows, "expressions and statements"),
         )
-        words = constant("runtime/device/ray/Abi.h", "RTSL_MAX_ATTRIBUTE_WORDS")
+        words = constant("runtime/device/ray/State.h", "RTSL_MAX_ATTRIBUTE_WORDS")
         self.assertEqual(f"{words} words", row(rows, "attributes of a hit"))
 
     def test_limits_of_the_preprocessor(self):

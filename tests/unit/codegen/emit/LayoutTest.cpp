@@ -1,7 +1,7 @@
 // Layout.h: sizes and offsets against the C layouts that the runtime uses.
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Launch.h"
 
 #include "mlir/AsmParser/AsmParser.h"
 #include "mlir/IR/MLIRContext.h"

@@ -3,7 +3,7 @@
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/MLIRContext.h"

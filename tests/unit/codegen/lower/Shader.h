@@ -2,7 +2,7 @@
 #pragma once
 
 #include "frontend/diagnostics/Diagnostics.h"
-#include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/State.h"
 
 #include <array>
 #include <cstdint>
