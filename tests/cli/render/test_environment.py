@@ -7,7 +7,7 @@ import struct
 import unittest
 
 from harness import RTSLC
-from test_path_engine import FLOOR, WAYS, PathCase
+from path_case import FLOOR, WAYS, PathCase
 
 CLAY = {"class": "Own", "albedo": 0.5}
 LAMP = (
