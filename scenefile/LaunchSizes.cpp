@@ -26,17 +26,17 @@ static std::uint64_t sizeOfFile(const std::string &file) {
 }
 
 static void setLaunchSize(RenderSettings &render, const ObjectDescription *rayGeneration,
-                          const ElementBytes &elementBytes) {
+                          const FindBuffer &findBuffer) {
   if (render.sizeFile.empty())
     return;
   try {
-    const std::string member =
-        rayGeneration ? memberThatTakes(render.sizeBuffer, *rayGeneration) : "";
-    const std::uint64_t stride =
-        member.empty() ? 0 : elementBytes(rayGeneration->className.text, member);
-    if (stride == 0)
+    BufferMember buffer;
+    if (rayGeneration)
+      buffer = findBuffer(rayGeneration->className.text,
+                          memberThatTakes(render.sizeBuffer, *rayGeneration));
+    if (buffer.dimensions != 1 || buffer.elementBytes == 0)
       throw Error(message::shapeMissing(render.sizeFile));
-    render.width = launchSize(render.sizeBuffer, sizeOfFile(render.sizeFile) / stride);
+    render.width = launchSize(render.sizeBuffer, sizeOfFile(render.sizeFile) / buffer.elementBytes);
     render.sizeFile.clear();
   } catch (Error &error) {
     error.place = render.sizePlace;
@@ -44,12 +44,12 @@ static void setLaunchSize(RenderSettings &render, const ObjectDescription *rayGe
   }
 }
 
-void setLaunchSizes(SceneDescription &description, const ElementBytes &elementBytes) {
+void setLaunchSizes(SceneDescription &description, const FindBuffer &findBuffer) {
   for (PassDescription &pass : description.passes)
-    setLaunchSize(pass.render, &pass.rayGeneration, elementBytes);
+    setLaunchSize(pass.render, &pass.rayGeneration, findBuffer);
   if (description.passes.empty())
     setLaunchSize(description.render,
-                  description.rayGeneration ? &*description.rayGeneration : nullptr, elementBytes);
+                  description.rayGeneration ? &*description.rayGeneration : nullptr, findBuffer);
   else
     description.render = description.passes.back().render;
 }

@@ -62,13 +62,12 @@ RtslRenderSettings settingsOf(const scene::RenderSettings &render) {
           render.slices};
 }
 
-/// The bytes of an element of a buffer of one dimension; 0: the class has none of this name.
-std::uint64_t elementBytes(const runtime::ClassInfo *one, const std::string &name) {
+scene::BufferMember findBuffer(const runtime::ClassInfo *one, const std::string &name) {
   if (one)
     for (const runtime::MemberInfo &member : one->members)
       if (member.name == name)
-        return member.type.bufferRank == 1 ? member.type.elementSize : 0;
-  return 0;
+        return {member.type.bufferRank, member.type.elementSize};
+  return {};
 }
 
 /// The scene of a file with these settings.
@@ -79,7 +78,7 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
     rtsl::c::requireLibraryClasses(description, *program);
     scene::setLaunchSizes(description, [&](const std::string &name, const std::string &member) {
-      return elementBytes(program->find(name), member);
+      return findBuffer(program->find(name), member);
     });
     RtslScene made(scene::buildScene(description, program));
     made.file = file;

@@ -33,8 +33,7 @@ unsigned blockSize(const CudaDevice &device, const CudaDevice::Kernel &kernel,
   return isWorkForAll && runsAsMany ? large : threadsPerBlock;
 }
 
-/// As many blocks as run at once and as there is work and memory for. Throws OutOfMemory if that is
-/// none.
+/// As many blocks as run at once and as there is work and memory for.
 unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel, unsigned ofBlock,
                     std::uint64_t pixels, std::uint64_t laneBytes) {
   const std::uint64_t running =
@@ -43,6 +42,22 @@ unsigned blockCount(const CudaDevice &device, const CudaDevice::Kernel &kernel, 
   // The driver takes memory of its own for each thread's local arrays when the kernel starts.
   const std::uint64_t affordable = device.freeMemory() / 10 * 8 / (ofBlock * laneBytes);
   return unsigned(std::min({running, wanted, affordable}));
+}
+
+struct Blocks {
+  unsigned count = 0, threads = 0; // threads of a block
+};
+
+/// None if there is not even memory for a small block.
+Blocks chooseBlocks(const CudaDevice &device, const CudaDevice::Kernel &kernel,
+                    std::uint64_t pixels, std::uint64_t laneBytes) {
+  Blocks blocks;
+  for (const unsigned threads : {blockSize(device, kernel, pixels), threadsPerBlock}) {
+    blocks = {blockCount(device, kernel, threads, pixels, laneBytes), threads};
+    if (blocks.count > 0)
+      break;
+  }
+  return blocks;
 }
 
 } // namespace
@@ -119,13 +134,10 @@ std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
     figures.laneBytes = blocks->slotBytes() + blocks->stackBytes();
     return blocks->stacksBytes(figures.blocks);
   }
-  figures.threadsPerBlock = blockSize(device, kernel, pixelCount());
-  figures.blocks = blockCount(device, kernel, figures.threadsPerBlock, pixelCount(), job.laneBytes);
-  if (figures.blocks == 0) { // perhaps there is memory for a small block
-    figures.threadsPerBlock = threadsPerBlock;
-    figures.blocks = blockCount(device, kernel, threadsPerBlock, pixelCount(), job.laneBytes);
-  }
-  if (figures.blocks == 0)
+  const Blocks chosen = chooseBlocks(device, kernel, pixelCount(), job.laneBytes);
+  figures.threadsPerBlock = chosen.threads;
+  figures.blocks = chosen.count;
+  if (chosen.count == 0)
     throw Error(message::noGpuMemoryForRays(double(threadsPerBlock * job.laneBytes) / (1 << 20),
                                             threadsPerBlock,
                                             double(device.freeMemory()) / (1 << 20)));
@@ -138,8 +150,13 @@ std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
 PassSizes GpuRenderer::passSizes() const {
   constexpr std::uint64_t samplesOfFirst = 1 << 26, // some tenths of a second
       mostOfPixel = 64;
-  return {std::uint32_t(std::clamp<std::uint64_t>(samplesOfFirst / pixelCount(), 1, mostOfPixel)),
-          32, true};
+  PassSizes sizes;
+  sizes.first =
+      std::uint32_t(std::clamp<std::uint64_t>(samplesOfFirst / pixelCount(), 1, mostOfPixel));
+  sizes.multiple = 32;
+  sizes.prefersWhole = false; // the first pass has enough samples
+  sizes.prefersNoSums = true; // they would be copied
+  return sizes;
 }
 
 Megakernel::Address GpuRenderer::allocate(std::uint64_t bytes, const char *what) {

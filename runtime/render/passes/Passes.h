@@ -62,8 +62,10 @@ struct PassSizes {
   std::uint32_t first = 1;
   /// Later passes end at a multiple of it, if they reach one.
   std::uint32_t multiple = 1;
-  /// The sums are copied to the machine and back.
-  bool copiesSums = false;
+  /// A pass with all samples, if it does not last, takes less time than several.
+  bool prefersWhole = true;
+  /// A single pass of several samples takes less time without sums of the host's.
+  bool prefersNoSums = false;
 };
 
 /// How many samples per pixel the next pass takes; `most` is the limit of all passes. Passes are

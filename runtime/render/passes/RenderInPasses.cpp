@@ -80,7 +80,7 @@ bool isGoodEnough(const PassState &state, const PassOptions &passes, bool isAdap
 bool Backend::isOnePass(const PassOptions &passes, const PartialRendering &rendering) const {
   const PassSizes sizes = passSizes();
   const std::uint32_t all = options.samplesPerPixel;
-  return rendering.sums.isEmpty() && !passes.isMeasured() && (all == 1 || sizes.copiesSums) &&
+  return rendering.sums.isEmpty() && !passes.isMeasured() && (all == 1 || sizes.prefersNoSums) &&
          samplesOfPass({}, passes, sizes, all) == all;
 }
 
@@ -150,13 +150,13 @@ bool Backend::runPass(const PassState &state, Clock::time_point pause, double se
   return isDone;
 }
 
-/// May the first pass take all samples, as long as that does not last? Passes of 1, 16 and more
-/// samples find less in the caches: 16 samples of each pixel took 6 % longer in a scene of many
-/// instances.
+/// May the first pass take all samples, as long as that does not last? On a CPU, passes of 1, 16
+/// and more samples find less in the caches: 16 samples of each pixel took 6 % longer in a scene of
+/// many instances.
 bool Backend::triesWhole(const PassOptions &passes, const PartialRendering &rendering) const {
   constexpr std::uint32_t mostSamples = 64; // with more, the other passes cost little
   return rendering.state.samplesPerPixel == 0 && options.samplesPerPixel <= mostSamples &&
-         !passSizes().copiesSums && !passes.isMeasured() && !std::isfinite(passes.seconds);
+         passSizes().prefersWhole && !passes.isMeasured() && !std::isfinite(passes.seconds);
 }
 
 /// A pass with all samples, which is given up if it would last, or is cancelled. Gives whether it

@@ -129,16 +129,13 @@ void refuseUnknownEditable(const scene::SceneDescription &description, const typ
   }
 }
 
-/// The bytes of an element of a buffer of one dimension; 0: the class has none of this name.
-std::uint64_t elementBytes(const typed::Class *one, const std::string &name,
-                           std::uint32_t colorComponents) {
+scene::BufferMember findBuffer(const typed::Class *one, const std::string &name,
+                               std::uint32_t colorComponents) {
   for (; one; one = one->base)
     for (const auto &member : one->members)
-      if (member->name == name)
-        return member->type->is(TypeKind::Buffer) && member->type->count == 1
-                   ? sizeInBytes(member->type->element, colorComponents)
-                   : 0;
-  return 0;
+      if (member->name == name && member->type->is(TypeKind::Buffer))
+        return {member->type->count, sizeInBytes(member->type->element, colorComponents)};
+  return {};
 }
 
 } // namespace
@@ -285,7 +282,7 @@ loadShaders(scene::SceneDescription &description, const CommonOptions &options, 
   warnWithoutShade(mentions, *module, messages);
   warnWithoutSampling(mentions, *module, messages);
   scene::setLaunchSizes(description, [&](const std::string &className, const std::string &member) {
-    return elementBytes(module->findClass(className), member, options.compile.colorComponents);
+    return findBuffer(module->findClass(className), member, options.compile.colorComponents);
   });
   if (filesRead) {
     *filesRead = {description.file};
