@@ -7,7 +7,7 @@ import unittest
 
 from harness import EXAMPLES, Case
 from numpy_files import read_npy
-from test_output_buffers import PATHS
+from output_case import PATHS
 
 
 class QueryExamples(Case):

@@ -10,7 +10,7 @@ import unittest
 
 from harness import Case
 from numpy_files import npy, read_npy
-from test_output_buffers import PATHS
+from output_case import PATHS
 
 RAYS = """
 struct Seen { float t; vec3 normal; vec2 uv; vec3 across; vec3 up; bool leaves; };
