@@ -29,6 +29,12 @@ Lanes lowered(Lanes limit, Lanes x) {
   return x < limit ? x : limit;
 }
 
+/// What the test of a box needs of a ray: its numbers for triangles, which a list does not have,
+/// are not computed.
+struct BoxRay {
+  device::Vec3 origin, inverse;
+};
+
 /// The instances of the program: a constant, and so is all that is loaded from it here.
 struct Instances {
   const RtslInstance *all;
@@ -58,8 +64,8 @@ struct Ranges {
 
 /// Stores the ranges of the instances from `first` on, with the bits of rangeInBox. Returns, as
 /// bits, which of them are not empty and have a part between tMin and tMax.
-uint32_t enter(const device::TriangleRay &ray, const Instances &instances, uint32_t first,
-               float tMin, float tMax, Ranges &ranges) {
+uint32_t enter(const BoxRay &ray, const Instances &instances, uint32_t first, float tMin,
+               float tMax, Ranges &ranges) {
   Lanes near = 0, far = device::infinity;
   const auto narrow = [&](float origin, float inverse, int axis) {
     const Lanes low = instances.from(first, [&](const RtslInstance &i) { return i.lower[axis]; }),
@@ -90,9 +96,8 @@ uint32_t rtsl_traverse_tree(RtslState *state, uint32_t how);
 
 /// The instances whose boxes the ray enters between tMin and tMax, as bits. Separate, because
 /// vectors in other functions are split (codegen/emit/LlvmModule.cpp).
-__attribute__((noinline)) uint32_t rtsl_entered_boxes(const RtslLaunch *launch,
-                                                      const device::TriangleRay *ray, float tMin,
-                                                      float tMax, Ranges *ranges) {
+__attribute__((noinline)) uint32_t rtsl_entered_boxes(const RtslLaunch *launch, const BoxRay *ray,
+                                                      float tMin, float tMax, Ranges *ranges) {
   const Instances instances = {rtsl_instances(launch), rtsl_listed_instances(launch)};
   uint32_t entered = 0;
 #pragma clang loop unroll(full)
@@ -111,8 +116,9 @@ struct List {
   template <typename Limit, typename Enter, typename Visit>
   void forEach(const RtslState &state, const device::TriangleRay &ray, Limit limit, Enter,
                Visit visit) const {
+    const BoxRay boxRay = {ray.origin, ray.inverse};
     Ranges ranges;
-    uint32_t entered = rtsl_entered_boxes(state.launch, &ray, state.Epsilon, limit(), &ranges);
+    uint32_t entered = rtsl_entered_boxes(state.launch, &boxRay, state.Epsilon, limit(), &ranges);
     while (entered) {
       const auto number = uint32_t(__builtin_ctz(entered));
       const device::EnteredItem item = {{number, 0}, ranges.of(number)};
