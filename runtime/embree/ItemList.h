@@ -3,12 +3,13 @@
 // Embree calls back for each primitive and each instance that a ray reaches. If the world has few
 // of them, they are not in Embree's tree: a ray tests all of their boxes, eight at a time, and
 // then the items whose boxes it enters. What these hit makes the search of the tree, which has only
-// triangles then, shorter. The operations are those of runtime/device/traverse/BoxRange.h.
+// triangles then, shorter.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/accel/TriangleBlock.h"
+#include "runtime/device/traverse/EightRanges.h"
 
 #include <array>
 #include <cstdint>
@@ -69,28 +70,21 @@ private:
     float sides[2][3][lanes]; // lower, upper
   };
 
-  /// rangeInBox, isEmpty and widened for eight boxes. Returns the lanes that are entered.
+  /// Returns the lanes that are entered.
   [[gnu::always_inline]] static unsigned enterEight(const device::TriangleRay &ray,
                                                     const EightBoxes &boxes, float epsilon,
                                                     float limit, float *nears) {
-    Lanes near = _mm256_setzero_ps(), far = all(device::infinity);
+    device::EightRanges ranges;
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
       const float inverse = ray.inverse[axis];
       const unsigned first = inverse < 0; // an index, because a branch would often be mispredicted
-      const Lanes enters = _mm256_load_ps(boxes.sides[first][axis]),
-                  leaves = _mm256_load_ps(boxes.sides[1 - first][axis]);
-      const Lanes origin = all(ray.origin[axis]);
-      near = maximum((enters - origin) * all(inverse), near);
-      far = minimum((leaves - origin) * all(inverse), far);
+      ranges.narrow(_mm256_load_ps(boxes.sides[first][axis]),
+                    _mm256_load_ps(boxes.sides[1 - first][axis]), ray.origin[axis], inverse);
     }
-    const Lanes isMet = _mm256_cmp_ps(near, far * all(device::bvhSlack), _CMP_LE_OQ);
-    near = near * all(1.0f - device::rangeShare);
-    far = far * all(1.0f + device::rangeShare);
-    _mm256_store_ps(nears, near);
-    const Lanes isInRange = _mm256_and_ps(_mm256_cmp_ps(near, all(limit), _CMP_LE_OQ),
-                                          _mm256_cmp_ps(far, all(epsilon), _CMP_GE_OQ));
-    return unsigned(_mm256_movemask_ps(_mm256_and_ps(isMet, isInRange)));
+    const unsigned entered = ranges.widen(epsilon, limit);
+    _mm256_store_ps(nears, ranges.near);
+    return entered;
   }
 
   std::size_t eights = 0;

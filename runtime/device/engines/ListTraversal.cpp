@@ -8,6 +8,7 @@
 // rejected, and bad rays, are passed on.
 //
 //===----------------------------------------------------------------------===//
+#include "runtime/device/traverse/EightRanges.h"
 #include "runtime/device/traverse/Surface.h"
 #include "runtime/device/traverse/Traverse.h"
 
@@ -16,18 +17,6 @@ using namespace rtsl;
 namespace {
 
 constexpr uint32_t lanes = 8, mostBoxes = 32;
-
-/// A number of each of eight boxes.
-typedef float Lanes __attribute__((ext_vector_type(lanes)));
-typedef bool Bits __attribute__((ext_vector_type(lanes)));
-
-/// device::raised and lowered.
-Lanes raised(Lanes limit, Lanes x) {
-  return x > limit ? x : limit;
-}
-Lanes lowered(Lanes limit, Lanes x) {
-  return x < limit ? x : limit;
-}
 
 /// What the test of a box needs of a ray: its numbers for triangles, which a list does not have,
 /// are not computed.
@@ -43,8 +32,8 @@ struct Instances {
   /// One number of the instances from `first` on, number(instance); beyond the end that of the
   /// first instance.
   template <typename Number>
-  Lanes from(uint32_t first, Number number) const {
-    Lanes numbers;
+  __m256 from(uint32_t first, Number number) const {
+    __m256 numbers;
     for (uint32_t i = 0; i < lanes; ++i)
       numbers[i] = number(all[first + i < count ? first + i : 0]);
     return numbers;
@@ -62,28 +51,25 @@ struct Ranges {
   }
 };
 
-/// Stores the ranges of the instances from `first` on, with the bits of rangeInBox. Returns, as
-/// bits, which of them are not empty and have a part between tMin and tMax.
+/// Stores the ranges of the instances from `first` on. Returns, as bits, which of them are not
+/// empty and have a part between tMin and tMax.
 uint32_t enter(const BoxRay &ray, const Instances &instances, uint32_t first, float tMin,
                float tMax, Ranges &ranges) {
-  Lanes near = 0, far = device::infinity;
+  device::EightRanges eight;
   const auto narrow = [&](float origin, float inverse, int axis) {
-    const Lanes low = instances.from(first, [&](const RtslInstance &i) { return i.lower[axis]; }),
-                high = instances.from(first, [&](const RtslInstance &i) { return i.upper[axis]; });
-    const auto isTurned = Lanes(inverse) < 0; // of lanes, because the sign cannot be predicted
-    near = raised(near, ((isTurned ? high : low) - origin) * inverse);
-    far = lowered(far, ((isTurned ? low : high) - origin) * inverse);
+    const __m256 low = instances.from(first, [&](const RtslInstance &i) { return i.lower[axis]; }),
+                 high = instances.from(first, [&](const RtslInstance &i) { return i.upper[axis]; });
+    // Of lanes, because the sign cannot be predicted.
+    const __m256 isTurned = _mm256_cmp_ps(_mm256_set1_ps(inverse), _mm256_setzero_ps(), _CMP_LT_OQ);
+    eight.narrow(_mm256_blendv_ps(low, high, isTurned), _mm256_blendv_ps(high, low, isTurned),
+                 origin, inverse);
   };
   narrow(ray.origin.x, ray.inverse.x, 0);
   narrow(ray.origin.y, ray.inverse.y, 1);
   narrow(ray.origin.z, ray.inverse.z, 2);
-  const Lanes begin = near * (1.0f - device::rangeShare), end = far * (1.0f + device::rangeShare);
-  __builtin_memcpy(ranges.near + first, &begin, sizeof begin);
-  __builtin_memcpy(ranges.far + first, &end, sizeof end);
-  const Bits isEntered = __builtin_convertvector(
-      (near <= far * device::bvhSlack) & (begin <= tMax) & (end >= tMin), Bits);
-  uint8_t entered;
-  __builtin_memcpy(&entered, &isEntered, sizeof entered);
+  const uint32_t entered = eight.widen(tMin, tMax);
+  _mm256_storeu_ps(ranges.near + first, eight.near);
+  _mm256_storeu_ps(ranges.far + first, eight.far);
   return entered;
 }
 
