@@ -1,5 +1,6 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/scene/MeshValues.h"
+#include "scenefile/ImageObjects.h"
 #include "scenefile/LightAreas.h"
 #include "scenefile/PrimitiveCount.h"
 #include "scenefile/SceneFile.h"
@@ -37,15 +38,7 @@ public:
                ValueCompletion complete = nullptr)
       : description(description), program(scene.program()), variables(description, program),
         variablePlaces(description), buffers(buffers), scene(scene), complete(std::move(complete)),
-        files(description, runtime::requestOf(this->program)),
-        images(
-            description,
-            [this](const std::string &className) {
-              return readsOfImages(className, "levelStarts");
-            },
-            [this](const std::string &className, const std::string &member) {
-              return channelsOfImages(className, member);
-            }) {}
+        files(description, runtime::requestOf(this->program)), images(description, scene) {}
 
   /// Builds all of a scene.
   void build() {
@@ -162,7 +155,7 @@ private:
   RtslRef add(const ObjectDescription &object, const std::string &name,
               const RenderSettings *launch = nullptr) {
     if (object.image)
-      return addImage(*object.image, object.className.text, name);
+      return images.of(*object.image, object.className.text, name);
     if (description.refused.classes.count(object.className.text))
       throw Refused();
     const ClassInfo *classInfo = program.find(object.className.text);
@@ -313,43 +306,6 @@ private:
     return value.at(json.place());
   }
 
-  /// Whether the program reads a member of images of a class: `levelStarts` if it reads more than
-  /// level 0.
-  bool readsOfImages(const std::string &className, const std::string &name) const {
-    const ClassInfo *sampler = program.find(className);
-    const MemberInfo *member = sampler ? find(sampler->members, name) : nullptr;
-    return member && member->isRead;
-  }
-
-  /// Which channels the program reads of the images of a member.
-  std::uint32_t channelsOfImages(const std::string &className, const std::string &name) const {
-    const ClassInfo *info = program.find(className);
-    const MemberInfo *member = info ? find(info->members, name) : nullptr;
-    return member ? member->imageChannels : MemberInfo::allChannels;
-  }
-
-  /// Equal images are one object.
-  RtslRef addImage(const JsonValue &image, const std::string &className, const std::string &name) {
-    const std::size_t number = images.numberOf(image);
-    if (const auto found = samplers.find(number); found != samplers.end())
-      return found->second;
-    try {
-      std::size_t notFinite = 0;
-      runtime::Texels texels = images.take(number, notFinite);
-      if (notFinite != 0)
-        scene.addWarning({message::imageNotFinite(name, notFinite), image.place()});
-      return samplers[number] = scene.addObject(
-                 className,
-                 runtime::samplerValues(
-                     std::move(texels), description.imageValues.at(&image).sampling,
-                     className == "sampler3D", readsOfImages(className, "directionChances")),
-                 name);
-    } catch (Error &error) {
-      error.place = image.place();
-      throw;
-    }
-  }
-
   static const MemberInfo *find(const std::vector<MemberInfo> &members, const std::string &name) {
     for (const MemberInfo &member : members)
       if (member.name == name)
@@ -401,7 +357,7 @@ private:
         return bufferOf(buffer->second, *type, what, json.place());
       refuseUnlessReference(json, type, what);
       if (isImage(json))
-        return Value::reference(addImage(json, imageClass(json), what)).at(json.place());
+        return Value::reference(images.of(json, imageClass(json), what)).at(json.place());
       if (type && isImageClass(type->className) && !json.find("class"))
         throw Error(message::imageSourceMissing(what, type->className), json.place());
       ObjectDescription object = objectInPlace(json, what);
@@ -674,8 +630,7 @@ private:
   std::set<std::string> refused = description.refused.names;
   ErrorCollector errors;
   MeshFiles files;
-  ImageFiles images;
-  std::map<std::size_t, RtslRef> samplers;     // by their number in `images`
+  ImageObjects images;
   std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
   std::set<std::size_t> refusedMeshes;         // that were tried, and are not there
 };
