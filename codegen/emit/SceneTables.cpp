@@ -15,7 +15,8 @@ constexpr unsigned tableAlignment = 16;
 
 constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances",
                               meshAttributesName = "rtsl.mesh_attributes",
-                              listedBoxesName = "rtsl.listed_boxes";
+                              listedBoxesName = "rtsl.listed_boxes",
+                              listedPairsName = "rtsl.listed_pairs";
 
 void defineTable(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef name,
                  llvm::ArrayRef<std::int32_t> words) {
@@ -81,6 +82,12 @@ void defineSceneTables(mlir::ModuleOp module) {
     defineFunction(builder, location, "rtsl_listed_boxes",
                    LLVM::LLVMPointerType::get(builder.getContext()),
                    [&] { return addressOf(builder, location, listedBoxesName); });
+  }
+  if (const auto pairs = ir::attr::listedPairs.of(module)) {
+    defineTable(builder, location, listedPairsName, pairs);
+    defineFunction(builder, location, "rtsl_listed_pairs",
+                   LLVM::LLVMPointerType::get(builder.getContext()),
+                   [&] { return addressOf(builder, location, listedPairsName); });
   }
 }
 

@@ -11,6 +11,7 @@
 #include "codegen/ir/ClassTable.h"
 #include "codegen/ir/Layout.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/link/ListedPairs.h"
 #include "runtime/device/ray/ListedBox.h"
 
 #include "llvm/ADT/STLExtras.h"
@@ -131,8 +132,11 @@ void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkR
     return;
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
   ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));
-  if (isListed(scene.instances) && !request.keep.has(Item::Tree))
+  if (isListed(scene.instances) && !request.keep.has(Item::Tree)) {
     ir::attr::listedBoxes.set(ir, builder.getDenseI32ArrayAttr(listedBoxes(scene.instances)));
+    if (const std::vector<std::int32_t> pairs = listedPairs(scene.instances); !pairs.empty())
+      ir::attr::listedPairs.set(ir, builder.getDenseI32ArrayAttr(pairs));
+  }
 }
 
 } // namespace rtsl

@@ -353,6 +353,13 @@ def listedBoxes : DiscardableAttribute<"listed_boxes", DenseI32Array, ["builtin.
   let readBy = "emit/SceneTables";
 }
 
+def listedPairs : DiscardableAttribute<"listed_pairs", DenseI32Array, ["builtin.module"]> {
+  let meaning =
+    "the same boxes in half precision: RtslListedPairs and its pairs in runtime/device/ray/Abi.h";
+  let setBy = "link/BindTables";
+  let readBy = "emit/SceneTables";
+}
+
 def noted : DiscardableAttribute<"noted", Unit, ["builtin.module"]> {
   let meaning = "`writes_members`, `offset`, `holds_payloads` are set";
   let setBy = "emit/ConvertToLlvm";

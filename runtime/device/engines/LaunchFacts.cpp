@@ -29,6 +29,12 @@ __attribute__((weak)) uint32_t rtsl_listed_instances(const RtslLaunch *) {
 __attribute__((weak)) const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *) {
   return nullptr;
 }
+__attribute__((weak)) const RtslListedPairs *rtsl_listed_pairs(const RtslLaunch *) {
+  return nullptr;
+}
+__attribute__((weak)) uint32_t rtsl_has_half_pairs(void) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_generates(const RtslLaunch *launch) {
   return launch->rayGeneration != 0;
 }

@@ -80,6 +80,19 @@ typedef struct RtslListedBox {
   float half[3], unused1;   // of the size
 } RtslListedBox;
 const RtslListedBox *rtsl_listed_boxes(const RtslLaunch *launch);
+/// Two of the boxes in half precision, the first in the lower halves of the words
+/// (runtime/device/ray/ListedPairs.h).
+typedef struct RtslListedPair {
+  uint32_t middle[3], half[3], unused[2]; // half: of the size
+} RtslListedPair;
+/// The boxes of these instances in pairs, which follow it. Their coordinates are scale x + offset.
+typedef struct RtslListedPairs {
+  float scale, offset[3];
+} RtslListedPairs;
+/// Null: the boxes of the scene would be enlarged too much.
+const RtslListedPairs *rtsl_listed_pairs(const RtslLaunch *launch);
+/// Whether the GPU has instructions for two numbers of half precision at once.
+uint32_t rtsl_has_half_pairs(void);
 /// Whether samples begin with `generate`: RtslLaunch::rayGeneration is not null.
 uint32_t rtsl_generates(const RtslLaunch *launch);
 /// Whether the program was compiled with --fp=fast.

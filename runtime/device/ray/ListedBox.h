@@ -72,4 +72,15 @@ struct ListedBoxRay {
   }
 };
 
+/// Is the ray in the box only before tMin, if at all? True only if rangeInBox finds no range there;
+/// and never for rays along an axis, nearly.
+inline bool endsBefore(const RtslListedBox &box, Vec3 origin, Vec3 inverse, float tMin) {
+  const auto end = [&](int axis) { // where the ray leaves, along an axis
+    const float half = fused(absolute(origin[axis]), 8 * roundingUnit, box.half[axis]);
+    return fused(half, absolute(inverse[axis]), (box.middle[axis] - origin[axis]) * inverse[axis]);
+  };
+  const float far = lowered(lowered(lowered(infinity, end(0)), end(1)), end(2));
+  return far < tMin * (1 - 32 * roundingUnit) && largest(inverse) < 0x1p60f;
+}
+
 } // namespace rtsl::device

@@ -4,6 +4,7 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Hit.h"
 #include "runtime/device/ray/ListedBox.h"
+#include "runtime/device/ray/ListedPairs.h"
 #include "runtime/device/ray/Rough.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
@@ -322,35 +323,63 @@ inline Vec3 inverseForList(const TriangleRay &ray) {
   return {inverse(ray.direction.x), inverse(ray.direction.y), inverse(ray.direction.z)};
 }
 
+/// The instances of a list whose boxes the ray may enter between tMin and tMax, as a set of bits:
+/// of instance i bit i, or that of ListedPairs.h.
+struct EnteredList {
+  uint32_t bits, count;
+  bool isOfPairs;
+
+  /// `leaves`: the instance that the ray leaves, or RTSL_NO_HIT.
+  EnteredList(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
+              float tMax, [[maybe_unused]] uint32_t leaves)
+      : bits(0), count(count), isOfPairs(false) {
+    const Vec3 inverse = inverseForList(ray);
+#ifdef __NVPTX__
+    if (rtsl_has_half_pairs() && rtsl_listed_pairs(&launch)) {
+      const RtslListedPairs &list = *rtsl_listed_pairs(&launch);
+      bits = enteredInPairs(list, count, {list, ray.origin, ray.direction, inverse, tMin, tMax});
+      isOfPairs = true;
+      // A ray begins in the box of what it leaves, or so near that halves do not tell.
+      if (leaves < count &&
+          endsBefore(rtsl_listed_boxes(&launch)[leaves], ray.origin, inverse, tMin))
+        bits &= ~(1u << bitOfInstance(leaves, count));
+      return;
+    }
+#endif
+    const ListedBoxRay boxRay(ray.origin, inverse);
+    const auto *boxes = static_cast<const RtslListedBox *>(
+        __builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
+#ifdef __clang__
+#pragma clang loop unroll_count(4) vectorize(disable)
+#endif
+    for (uint32_t i = count; i-- > 0;)
+      bits = 2 * bits + uint32_t(boxRay.mayEnter(boxes[i], tMin, tMax));
+  }
+
+  uint32_t takeInstance() {
+    const auto bit = uint32_t(__builtin_ctz(bits));
+    bits &= bits - 1;
+    return isOfPairs ? instanceOfBit(bit, count) : bit;
+  }
+};
+
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
-/// between tMin and limit(), until it returns true. All boxes are tested first: the lanes of a GPU
-/// that have primitives left then test them together, each its own. Unrolling both loops completely
-/// would make all that they read of the scene constant, and is slower: the program exceeds the
-/// instruction cache.
+/// between tMin and limit(), until it returns true; `leaves` as for EnteredList. All boxes are
+/// tested first: the lanes of a GPU that have primitives left then test them together, each its
+/// own. Unrolling both loops completely would make all that they read of the scene constant, and is
+/// slower: the program exceeds the instruction cache.
 template <typename Limit, typename Visit>
 void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
-                   Limit limit, Visit visit) {
+                   uint32_t leaves, Limit limit, Visit visit) {
   if (count == 1 && !rtsl_is_fast()) { // its exact test will do
     visit(RtslLeafItem{0, 0}, ray);
     return;
   }
-  tMin *= 1.0f - 2 * rangeShare;
-  const float tMax = limit() * cullSlack;
-  const ListedBoxRay boxRay(ray.origin, inverseForList(ray));
-  const auto *boxes =
-      static_cast<const RtslListedBox *>(__builtin_assume_aligned(rtsl_listed_boxes(&launch), 16));
-  uint32_t entered = 0; // bit i: instance i
-#ifdef __clang__
-#pragma clang loop unroll_count(4) vectorize(disable)
-#endif
-  for (uint32_t i = count; i-- > 0;)
-    entered = 2 * entered + uint32_t(boxRay.mayEnter(boxes[i], tMin, tMax));
-  while (entered) {
-    const RtslLeafItem item = {uint32_t(__builtin_ctz(entered)), 0};
-    entered &= entered - 1;
-    if (visit(item, ray))
+  EnteredList entered(launch, count, ray, tMin * (1.0f - 2 * rangeShare), limit() * cullSlack,
+                      leaves);
+  while (entered.bits != 0)
+    if (visit(RtslLeafItem{entered.takeInstance(), 0}, ray))
       return;
-  }
 }
 
 /// The tree of the launch, or the list of its instances. A tree calls visit(item, ray) for each
@@ -366,7 +395,8 @@ struct LaunchTree {
     const RtslLaunch &launch = *state.launch;
     const float tMin = maximum(state.Epsilon, 0.0f);
     if (const uint32_t count = rtsl_listed_instances(&launch)) {
-      forEachListed(launch, count, ray, tMin, limit, visit);
+      const bool isKnown = (rtsl_needs(&launch) & RTSL_NEEDS_HIT_ERRORS) != 0;
+      forEachListed(launch, count, ray, tMin, isKnown ? state.leaves : RTSL_NO_HIT, limit, visit);
       return;
     }
     traverseBvh(launch, 0, ray, tMin, limit, putsOff, [&](const RtslTreeItem &inMemory) {

@@ -165,6 +165,27 @@ TEST(Bvh, ListedBoxesAreEnteredWhereverRaysHaveARangeInThem) {
   EXPECT_LT(entered, 3 * met); // half of the rays have axes that leave out nothing
 }
 
+TEST(Bvh, RaysHaveNoRangeInListedBoxesThatEndBeforeTheyStart) {
+  std::mt19937 random(6);
+  int ends = 0;
+  for (int i = 0; i < 300000; ++i) {
+    const RandomNode made(random);
+    const Ray ray = rayAtNode(random, made);
+    if (!isTraceable(ray))
+      continue;
+    const Vec3 inverse = device::makeTriangleRay(ray.o, ray.d).inverse;
+    const float tMin = std::ldexp(1.0f, int(random() % 80) - 40);
+    for (const Bounds &box : made.boxes)
+      if (device::endsBefore(device::listedBox(box.lower, box.upper), ray.o, inverse, tMin)) {
+        ++ends;
+        ASSERT_FALSE(device::enterBox(box.lower, box.upper, ray.o, inverse, tMin, INFINITY) <
+                     device::infinity)
+            << i;
+      }
+  }
+  EXPECT_GT(ends, 150000);
+}
+
 TEST(Bvh, ListedBoxesOfRoomsLeaveOutAsManyAsTheExactTest) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1, 1);
