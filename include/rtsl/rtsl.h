@@ -160,7 +160,9 @@ RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t w
                               const RtslSampling *sampling);
 
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
- * and the mask of the next instance that is added. Fails if a number is not finite. */
+ * and the mask of the next instance that is added. Rays whose mask has no bit in common with it do
+ * not hit the instance; so all rays can hit one whose mask is ~0u, and none one whose mask is 0.
+ * Fails if a number is not finite. */
 int rtslPlace(RtslScene *scene, const double *transform, uint32_t mask);
 /* The same for an instance that moves: its transform at `count` >= 2 times, which ascend in [0, 1].
  * Between them the numbers are interpolated linearly. */

@@ -298,6 +298,8 @@ static void parts(void) {
   meshes[1] = rtslSceneLoadMeshPart(scene, "morph.gltf", part, still, 2);
   need(rtslPlace(scene, right, ~0u), "a place");
   need(meshes[1] >= 0 && rtslSceneAddMeshInstance(scene, meshes[1], material), "one that is still");
+  need(rtslPlace(scene, NULL, 0), "a mask without bits");
+  need(rtslSceneAddMeshInstance(scene, meshes[1], material), "one that no ray hits");
   need(rtslSceneSetCamera(scene, rtslSceneAddObject(scene, "Eye")), "a camera");
   settings.width = 48, settings.height = 32, settings.samplesPerPixel = 4;
   need(rtslRenderToFile(scene, &settings, "parts.exr"), "parts.exr");
