@@ -152,37 +152,11 @@ Function Signatures::of(const typed::Function &function, bool isMethod) {
     made.parameters.push_back(parameter(function, number, mentions));
   if (isMethod) {
     made.isConst = !function.isConstructor && !effects.function(function).writesMembers;
-    made.isOverride = overrides(function);
-    if (!made.isOverride && isOverridden(function))
+    made.isOverride = split.overridesVirtual(function);
+    if (!made.isOverride && split.isVirtual(function))
       made.specifiers = "virtual";
   }
   return made;
-}
-
-bool Signatures::overrides(const typed::Function &function) const {
-  if (function.isConstructor || !function.owner)
-    return false;
-  for (const typed::Class *base = function.owner->base; base; base = base->base)
-    for (const auto &method : base->functions)
-      if (method->name == function.name && typed::sameParameters(*method, function) &&
-          !split.isPartOfStates(*method))
-        return isOverridden(*method);
-  return false;
-}
-
-// Only calls in the author's code on the object itself need virtual methods of C++: the runtime and
-// references call methods of a known class.
-bool Signatures::isOverridden(const typed::Function &function) const {
-  if (function.isConstructor || !function.owner || isCalledByEngineAlone(function) ||
-      split.isPartOfStates(function))
-    return false;
-  for (const auto &definition : module.classes)
-    if (definition.get() != function.owner && definition->derivesFrom(function.owner))
-      for (const auto &method : definition->functions)
-        if (method->name == function.name && typed::sameParameters(*method, function) &&
-            !split.isPartOfStates(*method))
-          return true;
-  return false;
 }
 
 // A function is printed once for all classes that inherit it.

@@ -38,8 +38,6 @@ private:
   Mentions mentionsOf(const typed::Function &function);
   Parameter parameter(const typed::Function &function, std::size_t number,
                       const Mentions &mentions);
-  bool isOverridden(const typed::Function &function) const;
-  bool overrides(const typed::Function &function) const;
 
   const typed::Module &module;
   const Names &names;

@@ -231,8 +231,8 @@ void FunctionLowering::gather(const typed::Expr &expr, Evaluation &evaluation, b
 
 /// An expression that traces, or with subexpressions that run conditionally, is lowered piece by
 /// piece.
-static bool isOneStep(const typed::Expr &expr) {
-  if (typed::mayTrace(expr))
+static bool isOneStep(const typed::Expr &expr, const typed::Class *concrete) {
+  if (typed::mayTrace(expr, concrete))
     return false;
   if (auto *builtin = dynCast<typed::BuiltinExpr>(&expr))
     return typed::isPure(builtin->builtin) || has(builtin->builtin, typed::effect::Prints) ||
@@ -281,7 +281,8 @@ std::optional<Parts> FunctionLowering::lowerEvaluation(const typed::Expr &expr, 
   const bool isWrite = expr.kind == ExprKind::Assign || expr.kind == ExprKind::IncDec;
   if (into && isWrite)
     return lowerNested(expr, /*hasResult=*/true, into);
-  if (!isOneStep(expr) && !mayRaise(expr)) // the parts of an index are never conditional
+  // The parts of an index are never conditional.
+  if (!isOneStep(expr, key.concrete) && !mayRaise(expr))
     return std::nullopt;
   const bool isChoice = expr.kind == ExprKind::Conditional || expr.kind == ExprKind::Binary;
   if (isChoice && !isKept(expr))
@@ -348,7 +349,7 @@ Parts FunctionLowering::makeEvaluation(const typed::Expr &expr, const Evaluation
 //===----------------------------------------------------------------------===//
 
 /// Does the expression run without a trace in it?
-static bool isBetweenRays(const typed::Expr &expr) {
+static bool isBetweenRays(const typed::Expr &expr, const typed::Class *concrete) {
   bool found = true;
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (auto *builtin = dynCast<typed::BuiltinExpr>(&inner))
@@ -357,7 +358,7 @@ static bool isBetweenRays(const typed::Expr &expr) {
                has(builtin->builtin, typed::effect::Prints) ||
                has(builtin->builtin, typed::effect::Random) || typed::isAtomic(builtin->builtin));
     else
-      found = found && !typed::mayTrace(inner);
+      found = found && !typed::mayTrace(inner, concrete);
   });
   return found;
 }
@@ -367,7 +368,7 @@ static bool isBetweenRays(const typed::Expr &expr) {
 /// variables during the operation.
 std::optional<Parts> FunctionLowering::lowerNested(const typed::Expr &expr, bool hasResult,
                                                    Value into) {
-  if (!module.options.source || !isBetweenRays(expr))
+  if (!module.options.source || !isBetweenRays(expr, key.concrete))
     return std::nullopt;
   if (hasResult && !into && livesInMemory(expr.type)) {
     const Value address = temporary("value", expr.type);

@@ -34,11 +34,11 @@ unsigned operationCount(mlir::func::FuncOp function, unsigned limit) {
 }
 
 /// Whether the function itself contains a trace. By then, callees that trace have been inlined, or
-/// need a frame anyway.
+/// need a frame anyway. In C++, what traces in another class is not printed as a function either.
 bool traces(mlir::func::FuncOp function) {
-  return ir::anyOperation(function, [](mlir::Operation *op) {
-    return ir::isTrace(op) || llvm::isa<ir::IlluminateOp>(op);
-  });
+  return ir::attr::states.isOn(function) || ir::anyOperation(function, [](mlir::Operation *op) {
+           return ir::isTrace(op) || llvm::isa<ir::IlluminateOp>(op);
+         });
 }
 
 struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<mlir::ModuleOp>> {

@@ -178,17 +178,20 @@ const Function &resolve(const CallExpr &call, const Class *concrete) {
   return call.isOfBase ? *call.function : resolve(*call.function, concrete);
 }
 
-SentRays raysOf(const Expr &expr) {
+SentRays raysOf(const Expr &expr, const Class *concrete) {
   if (auto *builtin = dynCast<BuiltinExpr>(&expr))
     return {has(builtin->builtin, effect::Traces), has(builtin->builtin, effect::Lights)};
-  if (auto *call = dynCast<CallExpr>(&expr))
+  if (auto *call = dynCast<CallExpr>(&expr)) {
+    if (call->onSelf && concrete)
+      return resolve(*call, concrete).sends;
     return call->isOfBase ? call->function->sends : call->function->callSends;
+  }
   auto *method = dynCast<MethodCallExpr>(&expr);
   return method && method->function ? method->function->callSends : SentRays();
 }
 
-bool mayTrace(const Expr &expr) {
-  return raysOf(expr).traced;
+bool mayTrace(const Expr &expr, const Class *concrete) {
+  return raysOf(expr, concrete).traced;
 }
 
 const Expr *payloadOf(const BuiltinExpr &call) {

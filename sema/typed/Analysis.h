@@ -45,11 +45,12 @@ BufferAccess bufferAccess(const IndexExpr &expr);
 bool mayBeOutOfRange(const IndexExpr &expr);
 
 /// The rays that evaluating this expression may send, not counting its operands: it is a built-in
-/// function that sends rays, or a call. For a call that is dispatched: by any class of the module.
-SentRays raysOf(const Expr &expr);
+/// function that sends rays, or a call. For a call that is dispatched: by any class of the module,
+/// or by the function of the `concrete` class if the call is on an object of it.
+SentRays raysOf(const Expr &expr, const Class *concrete = nullptr);
 
 /// May it send rays with `trace`?
-bool mayTrace(const Expr &expr);
+bool mayTrace(const Expr &expr, const Class *concrete = nullptr);
 
 /// The payload of a call of `trace`; null without one.
 const Expr *payloadOf(const BuiltinExpr &call);

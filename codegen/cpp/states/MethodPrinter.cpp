@@ -17,10 +17,12 @@ void MethodPrinter::unsupported(mlir::Operation &op) {
   std::string what = op.getName().stripDialect().str();
   if (llvm::isa<ir::VarOp, ir::TableOp>(op))
     what = "an array or a struct";
+  else if (llvm::isa<mlir::func::CallOp, ir::EnterOp, ir::ReturnOp>(op))
+    what = "a call of a large function that traces,";
   const unsigned line = lineOf(op.getLoc(), machine.file);
   context.unsupported(
       machine.method->range,
-      fmt::format("{} in states in C++{}", what, line ? fmt::format(", of line {}", line) : ""));
+      fmt::format("{} in states in C++{}", what, line ? fmt::format(" (line {})", line) : ""));
 }
 
 } // namespace rtsl::cpp

@@ -4,6 +4,7 @@
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/TracedFunctions.h"
 #include "sema/typed/Analysis.h"
+#include "sema/typed/Effects.h"
 
 #include <algorithm>
 #include <cctype>
@@ -48,6 +49,37 @@ bool SplitMethods::isSplit(const typed::Class &definition, const typed::Function
 
 bool SplitMethods::isPartOfStates(const typed::Function &function) const {
   return program && !function.isStateMethod && function.sends.traced;
+}
+
+bool SplitMethods::isWhole(const typed::Function &function) const {
+  return !isPartOfStates(function) && !(function.owner && isSplit(*function.owner, function));
+}
+
+// Only calls in the author's code on the object itself need virtual methods of C++: the runtime and
+// references call methods of a known class. States that call a method which is not whole are
+// printed for each class.
+bool SplitMethods::isVirtual(const typed::Function &function) const {
+  if (!function.owner || function.isConstructor || typed::isCalledByEngineAlone(function) ||
+      !isWhole(function))
+    return false;
+  for (const auto &definition : module.classes)
+    if (definition.get() != function.owner && definition->derivesFrom(function.owner))
+      for (const auto &method : definition->functions)
+        if (method->name == function.name && typed::sameParameters(*method, function) &&
+            isWhole(*method))
+          return true;
+  return false;
+}
+
+bool SplitMethods::overridesVirtual(const typed::Function &function) const {
+  if (!function.owner || function.isConstructor)
+    return false;
+  for (const typed::Class *base = function.owner->base; base; base = base->base)
+    for (const auto &method : base->functions)
+      if (method->name == function.name && typed::sameParameters(*method, function) &&
+          isVirtual(*method))
+        return true;
+  return false;
 }
 
 std::string SplitMethods::nameOfMachine(const typed::Class &definition,

@@ -36,6 +36,12 @@ public:
   bool isSplit(const typed::Class &definition, const typed::Function &method) const;
   /// Has the function become part of the states of others?
   bool isPartOfStates(const typed::Function &function) const;
+  /// Is it printed as one function?
+  bool isWhole(const typed::Function &function) const;
+  /// Is a function that is printed as one virtual in C++?
+  bool isVirtual(const typed::Function &function) const;
+  /// Does the method, printed as one function or not, override such a function?
+  bool overridesVirtual(const typed::Function &function) const;
   /// The states of a method of a class, by its name in the IR. `isCalled`: on a frame of its own.
   const std::vector<mlir::func::FuncOp> &statesOf(const typed::Class &definition,
                                                   const std::string &slot, bool isCalled) const;

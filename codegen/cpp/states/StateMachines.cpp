@@ -84,7 +84,10 @@ Machine StateMachines::machineOf(const typed::Class &definition, const typed::Fu
           context.split.calledMethod(call.getCallee().str());
     });
   machine.joins = joinsOf(machine.states);
-  machine.functions = {machine.name};
+  // Functions and states of one name in C++ would have different results.
+  machine.functions = {context.split.overridesVirtual(method)
+                           ? unique(machine.name + "Begin", taken, context.namesInFile())
+                           : machine.name};
   for (std::size_t i = 1; i < machine.states.size(); ++i) {
     const std::string symbol = machine.states[i].getSymName().str();
     const char *begin = machine.joins.count(symbol)        ? "FromJoin"
@@ -262,8 +265,8 @@ Declarations StateMachines::of(const typed::Class &definition, const typed::Func
   return all;
 }
 
-/// Does the derived class override a method that this method calls on its own object and that was
-/// inlined into its states?
+/// Does the derived class override a method that this method calls on its own object and that is
+/// part of its states, in the derived class or in its base?
 bool StateMachines::differsIn(const typed::Class &derived, const typed::Function &method) const {
   std::set<const typed::Function *> seen = {&method};
   std::vector<const typed::Function *> open = {&method};
@@ -276,9 +279,8 @@ bool StateMachines::differsIn(const typed::Class &derived, const typed::Function
       if (!call || !call->onSelf)
         return;
       const typed::Function &here = typed::resolve(*call, &derived);
-      const typed::Function &above = typed::resolve(*call, method.owner);
-      differs |= &here != &above &&
-                 (context.split.isPartOfStates(here) || context.split.isPartOfStates(above));
+      const typed::Function &above = typed::resolve(*call, derived.base);
+      differs |= &here != &above && !(context.split.isWhole(here) && context.split.isWhole(above));
       if (here.body && seen.insert(&here).second)
         open.push_back(&here);
     });

@@ -113,7 +113,7 @@ def separate : DiscardableAttribute<"separate", Unit, ["func.func"]> {
 def states : DiscardableAttribute<"states", Unit, ["func.func"]> {
   let meaning = "becomes states even if it does not trace";
   let setBy = "lower";
-  let readBy = "Split, calls/OpenCalls";
+  let readBy = "Split, calls/OpenCalls, passes/InlineFunctions";
 }
 
 def kept : DiscardableAttribute<"kept", Unit, ["func.func"]> {

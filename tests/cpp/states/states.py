@@ -36,6 +36,12 @@ names = [
     "Replaced",
     "Arms",
     "Late",
+    "Polished",
+    "Matte",
+    "Lacquered",
+    "Chalk",
+    "Varnished",
+    "Worn",
 ]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
@@ -75,7 +81,7 @@ scene = {
     "render": {"engine": "classic", "size": [96, 54], "spp": 2, "depth": 4, "seed": 1},
 }
 for i, name in enumerate(names):
-    center = [-4.1 + 1.2 * (i % 8), 0.7 + 1.3 * (i // 8), 0]
+    center = [-4.5 + i % 10, 0.7 + 1.3 * (i // 10), 0]
     scene["objects"].append(
         {"primitive": {"class": "Sphere", "center": center, "radius": 0.7}, "material": name}
     )
