@@ -14,6 +14,7 @@ namespace {
 constexpr unsigned tableAlignment = 16;
 
 constexpr llvm::StringLiteral recordsName = "rtsl.records", instancesName = "rtsl.instances",
+                              emittersName = "rtsl.emitters",
                               meshAttributesName = "rtsl.mesh_attributes",
                               listedBoxesName = "rtsl.listed_boxes",
                               listedPairsName = "rtsl.listed_pairs";
@@ -46,6 +47,23 @@ mlir::Value addressOf(mlir::OpBuilder &builder, mlir::Location location, llvm::S
                                    LLVM::LLVMPointerType::get(builder.getContext()), name);
 }
 
+/// A table of structs of a size, `TABLE(launch)`, and their number, `COUNT(launch)`. An empty one
+/// is not defined, since nothing reads it.
+void defineCounted(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef global,
+                   llvm::ArrayRef<std::int32_t> words, std::size_t size, llvm::StringRef table,
+                   llvm::StringRef count) {
+  defineFunction(builder, location, count, builder.getI32Type(), [&] {
+    return LLVM::ConstantOp::create(
+        builder, location, builder.getI32Type(),
+        builder.getI32IntegerAttr(static_cast<int32_t>(words.size() * 4 / size)));
+  });
+  if (words.empty())
+    return;
+  defineTable(builder, location, global, words);
+  defineFunction(builder, location, table, LLVM::LLVMPointerType::get(builder.getContext()),
+                 [&] { return addressOf(builder, location, global); });
+}
+
 } // namespace
 
 void defineSceneTables(mlir::ModuleOp module) {
@@ -59,30 +77,15 @@ void defineSceneTables(mlir::ModuleOp module) {
                    LLVM::LLVMPointerType::get(builder.getContext()),
                    [&] { return addressOf(builder, location, instancesName); });
   }
-  if (const auto attributes = ir::attr::meshAttributes.of(module)) {
-    const auto count = static_cast<int32_t>(attributes.size() * 4 / sizeof(RtslMeshAttribute));
-    defineFunction(builder, location, "rtsl_mesh_attribute_count", builder.getI32Type(), [&] {
-      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
-                                      builder.getI32IntegerAttr(count));
-    });
-    if (count != 0) {
-      defineTable(builder, location, meshAttributesName, attributes);
-      defineFunction(builder, location, "rtsl_mesh_attributes",
-                     LLVM::LLVMPointerType::get(builder.getContext()),
-                     [&] { return addressOf(builder, location, meshAttributesName); });
-    }
-  }
-  if (const auto boxes = ir::attr::listedBoxes.of(module)) {
-    const auto count = static_cast<int32_t>(boxes.size() * 4 / sizeof(RtslListedBox));
-    defineFunction(builder, location, "rtsl_listed_instances", builder.getI32Type(), [&] {
-      return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
-                                      builder.getI32IntegerAttr(count));
-    });
-    defineTable(builder, location, listedBoxesName, boxes);
-    defineFunction(builder, location, "rtsl_listed_boxes",
-                   LLVM::LLVMPointerType::get(builder.getContext()),
-                   [&] { return addressOf(builder, location, listedBoxesName); });
-  }
+  if (const auto emitters = ir::attr::emitters.of(module))
+    defineCounted(builder, location, emittersName, emitters, sizeof(RtslEmitter), "rtsl_emitters",
+                  "rtsl_emitter_count");
+  if (const auto attributes = ir::attr::meshAttributes.of(module))
+    defineCounted(builder, location, meshAttributesName, attributes, sizeof(RtslMeshAttribute),
+                  "rtsl_mesh_attributes", "rtsl_mesh_attribute_count");
+  if (const auto boxes = ir::attr::listedBoxes.of(module))
+    defineCounted(builder, location, listedBoxesName, boxes, sizeof(RtslListedBox),
+                  "rtsl_listed_boxes", "rtsl_listed_instances");
   if (const auto pairs = ir::attr::listedPairs.of(module)) {
     defineTable(builder, location, listedPairsName, pairs);
     defineFunction(builder, location, "rtsl_listed_pairs",

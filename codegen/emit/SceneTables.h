@@ -1,9 +1,9 @@
 //===- SceneTables.h - constants of a bound program -----------------------===//
 //
-// A program that was bound to a small scene has its records and instances as constants:
+// A program that was bound to a small scene has its records, instances and emitters as constants:
 //
 //   module attributes {rtsl.records = array<i32: ...>, rtsl.instances = array<i32: ...>,
-//                      rtsl.listed_boxes = array<i32: ...>}
+//                      rtsl.emitters = array<i32: ...>, rtsl.listed_boxes = array<i32: ...>}
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,9 +13,9 @@
 
 namespace rtsl::codegen {
 
-/// Adds a global variable for each table, and defines rtsl_instances, rtsl_listed_instances,
-/// rtsl_listed_boxes and rtsl_mesh_attributes (runtime/device/ray/Abi.h), which otherwise read the
-/// launch.
+/// Adds a global variable for each table, and defines rtsl_instances, rtsl_emitters,
+/// rtsl_listed_instances, rtsl_listed_boxes and rtsl_mesh_attributes (runtime/device/ray/Abi.h),
+/// which otherwise read the launch.
 void defineSceneTables(mlir::ModuleOp module);
 
 /// In a function of such a program, the address of the records; null if they are not constants.

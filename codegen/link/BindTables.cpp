@@ -1,8 +1,9 @@
 //===- BindTables.cpp - the tables of a small scene, in its program -------===//
 //
-// The records and the instances of a small scene are constants of its program: what is loaded from
-// them at a constant place folds. If the scene has only a few primitives, rays test them one after
-// the other: no tree, and `intersect` of each has the members of its object as constants.
+// The records, the instances and the emitters of a small scene are constants of its program: what
+// is loaded from them at a constant place folds. If the scene has only a few primitives, rays test
+// them one after the other: no tree, and `intersect` of each has the members of its object as
+// constants.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/BindTables.h"
@@ -132,6 +133,11 @@ void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkR
     return;
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
   ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));
+  // The powers of emitters may depend on whatever is editable.
+  if (scene.emitters && !anyEditable && !request.keep.has(Item::Lights))
+    ir::attr::emitters.set(
+        ir, builder.getDenseI32ArrayAttr(
+                wordsOf(scene.emitters->data(), scene.emitters->size() * sizeof(RtslEmitter))));
   if (isListed(scene.instances) && !request.keep.has(Item::Tree)) {
     ir::attr::listedBoxes.set(ir, builder.getDenseI32ArrayAttr(listedBoxes(scene.instances)));
     if (const std::vector<std::int32_t> pairs = listedPairs(scene.instances); !pairs.empty())

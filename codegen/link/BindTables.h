@@ -7,8 +7,8 @@
 
 namespace rtsl {
 
-/// Records on a bound program the records and instances of its scene if they are small, and whether
-/// rays test the instances without a tree (codegen/emit/SceneTables.h). Items in
+/// Records on a bound program the records, instances and emitters of its scene if they are few, and
+/// whether rays test the instances without a tree (codegen/emit/SceneTables.h). Items in
 /// LinkRequest::keep are treated as unknown. Adds to `findings`, if given.
 void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkRequest &request,
                 Findings *findings = nullptr);

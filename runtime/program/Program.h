@@ -116,6 +116,8 @@ struct SceneFacts {
   bool hasBuffers = false;
   std::vector<RtslInstance> instances; // empty: not known, or more than mostInstances
   std::size_t instanceCount = 0;       // of the scene, listed or not
+  /// Those of the launch, if the instances are listed; null: not known.
+  std::optional<std::vector<RtslEmitter>> emitters;
   std::uint32_t lightCount = 0;
   std::vector<float> ambient; // one number per component of a color
   std::uint32_t needs = 0;    // RTSL_HAS_*

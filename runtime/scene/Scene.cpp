@@ -256,8 +256,11 @@ SceneFacts Scene::facts() const {
   facts.recordBytes = self->objects.recordBytes();
   facts.hasBuffers = !self->objects.buffers().empty();
   facts.instanceCount = self->geometry.all().size();
-  if (facts.instanceCount <= SceneFacts::mostInstances)
+  if (facts.instanceCount <= SceneFacts::mostInstances) {
     facts.instances = self->geometry.all();
+    if (self->emitters)
+      facts.emitters.emplace(launch.emitters, launch.emitters + launch.emitterCount);
+  }
   facts.lightCount = self->cameraAndLights.lightCount();
   const float *const ambient = self->cameraAndLights.ambientLight();
   facts.ambient.assign(ambient, ambient + program().colorComponents);

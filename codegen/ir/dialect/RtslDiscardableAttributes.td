@@ -337,6 +337,12 @@ def instances : DiscardableAttribute<"instances", DenseI32Array, ["builtin.modul
   let readBy = "emit/SceneTables";
 }
 
+def emitters : DiscardableAttribute<"emitters", DenseI32Array, ["builtin.module"]> {
+  let meaning = "the emitters of a bound scene: RtslEmitter in runtime/device/ray/Abi.h";
+  let setBy = "link/BindTables";
+  let readBy = "emit/SceneTables";
+}
+
 def meshAttributes : DiscardableAttribute<"mesh_attributes", DenseI32Array, ["builtin.module"]> {
   let meaning =
     "the attributes of meshes that the program of a scene reads: RtslMeshAttribute in "

@@ -32,7 +32,7 @@ inline void clearForBackground(RtslState &state) {
 inline float backgroundChance(const RtslLaunch &launch) {
   if (!(rtsl_needs(&launch) & launch.needs & RTSL_HAS_SAMPLED_BACKGROUND))
     return 0;
-  return launch.emitterCount == 0 ? 1.0f : 0.5f;
+  return rtsl_emitter_count(&launch) == 0 ? 1.0f : 0.5f;
 }
 
 /// The density with which `illuminate` at its origin chooses the direction of a ray that has met

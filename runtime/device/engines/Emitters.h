@@ -45,7 +45,7 @@ float probabilityOf(uint32_t number, ChanceOf chanceOf) {
 }
 
 inline auto chancesOfEmitters(const RtslLaunch &launch) {
-  return [emitters = launch.emitters](uint32_t i) { return emitters[i].chances; };
+  return [emitters = rtsl_emitters(&launch)](uint32_t i) { return emitters[i].chances; };
 }
 /// The chances of the triangles of a mesh, or of the primitives of an object with several.
 inline auto chancesOfParts(const RtslLaunch &launch, const RtslEmitter &emitter) {
@@ -117,7 +117,7 @@ inline bool hasLightTree(const RtslLaunch &launch) {
 /// The probability with which `illuminate` at `point` chooses this part of an emitter; of one that
 /// is a single primitive: it.
 inline float chanceOfPart(const RtslLaunch &launch, uint32_t number, uint32_t part, Vec3 point) {
-  const RtslEmitter &emitter = launch.emitters[number];
+  const RtslEmitter &emitter = rtsl_emitters(&launch)[number];
   float chance;
   if (hasLightTree(launch)) {
     const uint32_t leaf = launch.lightLeaves[emitter.firstLeaf + (emitter.isDivided ? part : 0)];
@@ -179,15 +179,16 @@ inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
 /// The same for any hit; 0 if it is not on an emitter.
 inline float emitterDensity(const RtslState &hit) {
   const RtslLaunch &launch = *hit.launch;
-  uint32_t first = 0, last = launch.emitterCount;
+  uint32_t first = 0, last = rtsl_emitter_count(&launch);
   while (first < last) {
     const uint32_t middle = first + (last - first) / 2;
-    if (launch.emitters[middle].instance < hit.instance)
+    if (rtsl_emitters(&launch)[middle].instance < hit.instance)
       first = middle + 1;
     else
       last = middle;
   }
-  if (first == launch.emitterCount || launch.emitters[first].instance != hit.instance)
+  if (first == rtsl_emitter_count(&launch) ||
+      rtsl_emitters(&launch)[first].instance != hit.instance)
     return 0;
   return densityOfEmitter(hit, first);
 }
@@ -218,11 +219,12 @@ inline ChosenPart choosePart(const RtslLaunch &launch, const EmitterChoice &choi
       return {RTSL_NO_LIGHT_LEAF, 0};
     chosen = {launch.lightNodes[leaf].first, launch.lightNodes[leaf].part};
   } else {
-    chosen.emitter = chosenOf(launch.emitterCount, choice.emitter, chancesOfEmitters(launch));
+    chosen.emitter =
+        chosenOf(rtsl_emitter_count(&launch), choice.emitter, chancesOfEmitters(launch));
   }
   if (chosen.part != RTSL_WHOLE_EMITTER)
     return chosen;
-  const RtslEmitter &emitter = launch.emitters[chosen.emitter];
+  const RtslEmitter &emitter = rtsl_emitters(&launch)[chosen.emitter];
   const uint32_t parts = partsOf(launch, instanceAt(launch, emitter.instance));
   chosen.part = parts ? chosenOf(parts, choice.part, chancesOfParts(launch, emitter)) : 0;
   return chosen;
@@ -260,7 +262,7 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   const ChosenPart chosen = choosePart(launch, choice, ray.origin, ray.randomKey);
   if (chosen.emitter == RTSL_NO_LIGHT_LEAF)
     return light;
-  const RtslEmitter &emitter = launch.emitters[chosen.emitter];
+  const RtslEmitter &emitter = rtsl_emitters(&launch)[chosen.emitter];
   const RtslInstance &instance = instanceAt(launch, emitter.instance);
   RtslState state;
   startShadowRay(state, ray);
@@ -295,14 +297,15 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   setColor(state.LightColor, components, 0);
   state.PDF = 0;
   const float ofBackground = backgroundChance(launch);
-  const bool isOnly = ofBackground == 0 && launch.emitterCount == 1 && !hasLightTree(launch);
+  const bool isOnly =
+      ofBackground == 0 && rtsl_emitter_count(&launch) == 1 && !hasLightTree(launch);
   EmitterChoice choice;
   choice.emitter = isOnly ? 0 : drawNumber(state, state.dimension);
   choice.part = drawNumber(state, state.dimension + 1);
   choice.u = drawNumber(state, state.dimension + 2);
   choice.v = drawNumber(state, state.dimension + 3);
   state.dimension += 4;
-  if (ofBackground == 0 && launch.emitterCount == 0)
+  if (ofBackground == 0 && rtsl_emitter_count(&launch) == 0)
     return false;
   EmittedLight light;
   if (choice.emitter < ofBackground) {

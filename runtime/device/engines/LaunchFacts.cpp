@@ -17,6 +17,12 @@ __attribute__((weak)) uint32_t rtsl_color_components(const RtslLaunch *launch) {
 __attribute__((weak)) const RtslInstance *rtsl_instances(const RtslLaunch *launch) {
   return launch->instances;
 }
+__attribute__((weak)) const RtslEmitter *rtsl_emitters(const RtslLaunch *launch) {
+  return launch->emitters;
+}
+__attribute__((weak)) uint32_t rtsl_emitter_count(const RtslLaunch *launch) {
+  return launch->emitterCount;
+}
 __attribute__((weak)) const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch) {
   return launch->meshAttributes;
 }

@@ -68,6 +68,9 @@ uint32_t rtsl_color_components(const RtslLaunch *launch);
 /// RtslLaunch::instances. A program that was bound to a scene of few instances has a copy of them,
 /// so that what it loads from there at a constant index is a constant.
 const RtslInstance *rtsl_instances(const RtslLaunch *launch);
+/// RtslLaunch::emitters and emitterCount. Such a program has a copy of them, too.
+const RtslEmitter *rtsl_emitters(const RtslLaunch *launch);
+uint32_t rtsl_emitter_count(const RtslLaunch *launch);
 /// RtslLaunch::meshAttributes and meshAttributeCount. A compiled program has a copy of them.
 const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch);
 uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launch);

@@ -6,6 +6,34 @@ from harness import DIAGNOSED, EXAMPLES, Case
 
 GLASS = EXAMPLES / "glass" / "scene.json"
 
+# Two lamps above a floor.
+LAMPS = {
+    "rtsl": 1,
+    "import": ["std.cameras", "std.primitives", "std.materials"],
+    "camera": {
+        "class": "PerspectiveCamera",
+        "constructor": {"eye": [0, 3, 8], "target": [0, 1, 0], "up": [0, 1, 0]},
+        "fieldOfView": 50,
+    },
+    "materials": {
+        "clay": {"class": "Lambert", "reflectance": 0.7},
+        "near": {"class": "Emitter", "radiance": 9},
+        "far": {"class": "Emitter", "radiance": 3},
+    },
+    "objects": [
+        {"primitive": {"class": "Sphere", "center": [-2, 2, 0], "radius": 0.5}, "material": "near"},
+        {"primitive": {"class": "Sphere", "center": [2, 3, -2], "radius": 0.7}, "material": "far"},
+        {
+            "primitive": {
+                "class": "Parallelogram",
+                "constructor": [[-4, 0, -4], [0, 0, 8], [8, 0, 0]],
+            },
+            "material": "clay",
+        },
+    ],
+    "render": {"engine": "path", "depth": 4},
+}
+
 
 class Editable(Case):
     def ptx(self, *settings):
@@ -39,6 +67,29 @@ class Editable(Case):
         self.assertTrue("listed_boxes" in listed)
         self.assertFalse("listed_boxes" in one)
         self.assertTrue(one == other, "the code depends on a radius")
+
+    def test_chances_of_lamps_that_are_edited_are_not_in_the_code(self):
+        self.write("lamps.json", json.dumps(LAMPS))
+        dimmer, editable = "materials.near.radiance=1", 'render.editable=["Emitter"]'
+
+        def code(*settings):
+            return self.run_rtslc("compile", "lamps.json", "--emit=ssa", *self.set_all(settings))[0]
+
+        self.assertIn("rtsl.emitters = ", code())
+        self.assertNotIn("rtsl.emitters = ", code(editable))
+        self.assertEqual(code(editable), code(editable, dimmer))
+        for name, settings in (("a.exr", []), ("b.exr", [editable])):
+            self.run_rtslc(
+                "render",
+                "lamps.json",
+                "-o",
+                name,
+                "--size=16x16",
+                "--spp=4",
+                "-q",
+                *self.set_all([dimmer, *settings]),
+            )
+        self.assert_same_bits("a.exr", "b.exr")
 
     def test_the_picture_is_the_same(self):
         everything = (

@@ -126,6 +126,30 @@ TEST(Bind, TheTablesOfASmallSceneAreInTheProgram) {
   EXPECT_EQ(tree->reason, "2 primitives, tested one after the other");
 }
 
+TEST(Bind, EmittersAreInTheProgramUnlessTheyMayChange) {
+  runtime::SceneFacts facts;
+  facts.instances = {instanceOf(16), instanceOf(32)};
+  const auto words = [&](const LinkRequest &request) {
+    Linked linked(lenses, {{"Lens", "Ball"}, {}});
+    bindScene(*linked.ir, facts, request);
+    const auto emitters = ir::attr::emitters.of(*linked.ir);
+    return emitters ? std::optional(emitters.size()) : std::nullopt;
+  };
+  EXPECT_EQ(words({}), std::nullopt);
+  facts.emitters.emplace();
+  EXPECT_EQ(words({}), 0);
+  facts.emitters->push_back({1, 0, 1.0f, 0, 0});
+  EXPECT_EQ(words({}), int64_t(sizeof(RtslEmitter) / 4));
+  LinkRequest request;
+  request.editable = {"Lens"};
+  EXPECT_EQ(words(request), std::nullopt);
+  request.editable = {};
+  for (const Item item : {Item::Lights, Item::Parameters}) {
+    request.keep = ItemSet::only(item);
+    EXPECT_EQ(words(request), std::nullopt);
+  }
+}
+
 TEST(Bind, AMeshNeedsTheTree) {
   Linked linked(lenses, {{"Lens", "Ball"}, {}});
   runtime::SceneFacts facts;
