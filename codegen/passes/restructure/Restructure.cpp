@@ -116,8 +116,10 @@ void findCondition(ir::LoopOp loop) {
 /// Erases values that only branches used.
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
-    const bool isUnread = llvm::isa<ir::EvaluateOp>(op) && op->use_empty() &&
-                          ir::attr::plain.isOn(op) && !ir::attr::changes.isOn(op);
+    auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op);
+    const bool isUnread = evaluation && op->use_empty() && ir::attr::plain.isOn(op) &&
+                          !ir::attr::changes.isOn(op) &&
+                          (!evaluation.getWrites() || evaluation.getWrites()->empty());
     if (isUnread || mlir::isOpTriviallyDead(op))
       op->erase();
   });
