@@ -14,8 +14,8 @@
 namespace rtsl::codegen {
 
 /// Adds a global variable for each table, and defines rtsl_instances, rtsl_emitters,
-/// rtsl_listed_instances, rtsl_listed_boxes and rtsl_mesh_attributes (runtime/device/ray/Abi.h),
-/// which otherwise read the launch.
+/// rtsl_listed_instances, rtsl_listed_boxes, rtsl_listed_pairs and rtsl_mesh_attributes
+/// (runtime/device/ray/Abi.h), which otherwise read the launch.
 void defineSceneTables(mlir::ModuleOp module);
 
 /// In a function of such a program, the address of the records; null if they are not constants.

@@ -338,7 +338,7 @@ def instances : DiscardableAttribute<"instances", DenseI32Array, ["builtin.modul
 }
 
 def emitters : DiscardableAttribute<"emitters", DenseI32Array, ["builtin.module"]> {
-  let meaning = "the emitters of a bound scene: RtslEmitter in runtime/device/ray/Abi.h";
+  let meaning = "the emitters of a bound scene: RtslEmitter in runtime/device/ray/Launch.h";
   let setBy = "link/BindTables";
   let readBy = "emit/SceneTables";
 }

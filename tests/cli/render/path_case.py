@@ -1,8 +1,9 @@
 """Scenes for tests of the engine `path`."""
 
 import json
+import pathlib
 
-from harness import Case
+from harness import RTSLC, Case
 
 # A diffuse surface, without emission and evaluatePDF.
 DIFFUSE = """\
@@ -147,6 +148,17 @@ class PathCase(Case):
                 }
             ),
         )
+
+    def write_plain_tracer(self):
+        """PathTracer.rtsl, which finds directions by the materials alone."""
+        source = (
+            pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
+        ).read_text()
+        plain = source.replace("if (illuminate(rt_HitPoint, pathSide()))", "if (false)").replace(
+            "pathShare(path, path.density, rt_PDF)", "1.0"
+        )
+        self.assertEqual(len(plain.split("if (false)")), 2)
+        self.write("PathTracer.rtsl", plain)
 
     def mean(self, *arguments):
         """Of red, green and blue."""

@@ -2,11 +2,9 @@
 
 import json
 import math
-import pathlib
 import struct
 import unittest
 
-from harness import RTSLC
 from path_case import FLOOR, WAYS, PathCase
 
 CLAY = {"class": "Own", "albedo": 0.5}
@@ -68,14 +66,7 @@ class EnvironmentCase(PathCase):
 
     def without_search(self):
         """What the same scene gives if directions are found by the materials alone."""
-        source = (
-            pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
-        ).read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint, pathSide()))", "if (false)").replace(
-            "pathShare(path, path.density, rt_PDF)", "1.0"
-        )
-        self.assertEqual(len(plain.split("if (false)")), 2)
-        self.write("PathTracer.rtsl", plain)
+        self.write_plain_tracer()
         scene = (self.folder / "scene.json").read_text()
         self.write(
             "scene.json",

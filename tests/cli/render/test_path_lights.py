@@ -8,7 +8,6 @@ import struct
 import unittest
 
 from exr_files import channels
-from harness import RTSLC
 from path_case import FLOOR, PathCase
 
 
@@ -222,14 +221,7 @@ class Lamps(PathCase):
         ]
         self.scene(objects, spp=128)
         both = self.mean()
-        source = (
-            pathlib.Path(RTSLC).parent.parent / "share/rtslc/library/std/engines/PathTracer.rtsl"
-        ).read_text()
-        plain = source.replace("if (illuminate(rt_HitPoint, pathSide()))", "if (false)").replace(
-            "pathShare(path, path.density, rt_PDF)", "1.0"
-        )
-        self.assertEqual(len(plain.split("if (false)")), 2)
-        self.write("PathTracer.rtsl", plain)
+        self.write_plain_tracer()
         self.scene(objects, spp=4096, rayGeneration={"class": "PathTracer", "bounces": 64})
         found = self.mean(
             "--set",

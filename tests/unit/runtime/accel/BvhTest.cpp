@@ -137,29 +137,40 @@ TEST(Bvh, ChildrenAreEnteredWhereverRaysHaveARangeInTheirBoxes) {
   EXPECT_LT(exact, 2 * met);
 }
 
+namespace {
+
+/// Calls visit(ray, the inverse of its direction, boxes) for rays at 300,000 nodes, up to the first
+/// failure.
+template <typename Visit>
+void forRaysAtNodes(std::mt19937 &random, Visit visit) {
+  for (int i = 0; i < 300000 && !testing::Test::HasFatalFailure(); ++i) {
+    const RandomNode made(random);
+    const Ray ray = rayAtNode(random, made);
+    if (isTraceable(ray))
+      visit(ray, device::makeTriangleRay(ray.o, ray.d).inverse, made.boxes);
+  }
+}
+
+} // namespace
+
 // The same for the boxes of scenes without a tree, whose first test is another one.
 TEST(Bvh, ListedBoxesAreEnteredWhereverRaysHaveARangeInThem) {
   std::mt19937 random(4);
   int met = 0, entered = 0, missed = 0;
-  for (int i = 0; i < 300000; ++i) {
-    const RandomNode made(random);
-    const Ray ray = rayAtNode(random, made);
-    if (!isTraceable(ray))
-      continue;
-    const Vec3 inverse = device::makeTriangleRay(ray.o, ray.d).inverse;
+  forRaysAtNodes(random, [&](const Ray &ray, Vec3 inverse, const auto &boxes) {
     const device::ListedBoxRay boxRay(ray.o, inverse);
     const float tMin = random() % 4 ? 0 : std::ldexp(1.0f, int(random() % 80) - 40),
                 tMax = random() % 2 ? INFINITY : std::ldexp(1.0f, int(random() % 120) - 60);
-    for (const Bounds &box : made.boxes) {
+    for (const Bounds &box : boxes) {
       const bool meets =
           device::enterBox(box.lower, box.upper, ray.o, inverse, tMin, tMax) < device::infinity;
       const bool enters = boxRay.mayEnter(device::listedBox(box.lower, box.upper), tMin, tMax);
-      ASSERT_TRUE(!meets || enters) << i;
+      ASSERT_TRUE(!meets || enters) << met;
       met += meets;
       entered += enters;
       missed += !enters;
     }
-  }
+  });
   EXPECT_GT(met, 200000);
   EXPECT_GT(missed, 200000);   // it does not simply enter all
   EXPECT_LT(entered, 3 * met); // half of the rays have axes that leave out nothing
@@ -168,21 +179,16 @@ TEST(Bvh, ListedBoxesAreEnteredWhereverRaysHaveARangeInThem) {
 TEST(Bvh, RaysHaveNoRangeInListedBoxesThatEndBeforeTheyStart) {
   std::mt19937 random(6);
   int ends = 0;
-  for (int i = 0; i < 300000; ++i) {
-    const RandomNode made(random);
-    const Ray ray = rayAtNode(random, made);
-    if (!isTraceable(ray))
-      continue;
-    const Vec3 inverse = device::makeTriangleRay(ray.o, ray.d).inverse;
+  forRaysAtNodes(random, [&](const Ray &ray, Vec3 inverse, const auto &boxes) {
     const float tMin = std::ldexp(1.0f, int(random() % 80) - 40);
-    for (const Bounds &box : made.boxes)
+    for (const Bounds &box : boxes)
       if (device::endsBefore(device::listedBox(box.lower, box.upper), ray.o, inverse, tMin)) {
         ++ends;
         ASSERT_FALSE(device::enterBox(box.lower, box.upper, ray.o, inverse, tMin, INFINITY) <
                      device::infinity)
-            << i;
+            << ends;
       }
-  }
+  });
   EXPECT_GT(ends, 150000);
 }
 
