@@ -4,6 +4,7 @@
 #include "codegen/formulas/Library.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/passes/errors/HitBranches.h"
 #include "runtime/device/ray/HitError.h"
 
 #include "mlir/Dialect/ControlFlow/IR/ControlFlowOps.h"
@@ -111,6 +112,7 @@ static void tryOtherwise(mlir::Block *start, Value bound, Value otherwise) {
 
 bool boundHitError(mlir::func::FuncOp intersect, ElementaryErrors elementary,
                    std::vector<UnboundHit> &unbound) {
+  takeBranchesToHits(intersect);
   llvm::SmallVector<ir::HitOp> hits;
   intersect.walk([&](ir::HitOp hit) { hits.push_back(hit); });
   llvm::SmallVector<arith::CmpFOp> comparisons;

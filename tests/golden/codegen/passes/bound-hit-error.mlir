@@ -71,6 +71,56 @@ func.func @Literal.intersect(%x: f32) {
   return
 }
 
+// The hit was reported: what it depends on is not asked again.
+// CHECK-LABEL: func.func @Condition.intersect(
+// CHECK-NOT: cmpf ogt
+// CHECK-NOT: cf.cond_br
+// CHECK: return
+func.func @Condition.intersect(%x: f32, %away: f32) {
+  %zero = arith.constant 0.0 : f32
+  %square = arith.mulf %x, %x : f32
+  %isAway = arith.cmpf ogt, %away, %zero : f32
+  cf.cond_br %isAway, ^miss, ^near
+^near:
+  %h = rtsl.hit %square
+  return
+^miss:
+  return
+}
+
+// After a hit, which may have been the one, and in a loop, conditions are asked.
+// CHECK-LABEL: func.func @Second.intersect(
+// CHECK: cf.cond_br
+func.func @Second.intersect(%x: f32, %away: i1) {
+  %square = arith.mulf %x, %x : f32
+  %first = rtsl.hit %square
+  cf.cond_br %away, ^miss, ^again
+^again:
+  %h = rtsl.hit %x
+  return
+^miss:
+  return
+}
+// CHECK-LABEL: func.func @Until.intersect(
+// CHECK: cf.cond_br
+func.func @Until.intersect(%x: f32, %n: i32) {
+  %zero = arith.constant 0 : i32
+  %one = arith.constant 1 : i32
+  cf.br ^loop(%zero : i32)
+^loop(%i: i32):
+  %more = arith.cmpi slt, %i, %n : i32
+  cf.cond_br %more, ^body, ^end
+^body:
+  %next = arith.addi %i, %one : i32
+  %found = arith.cmpi eq, %next, %n : i32
+  cf.cond_br %found, ^near, ^loop(%next : i32)
+^near:
+  %h = rtsl.hit %x
+  return
+^end:
+  return
+}
+
 // What is compared is double.
 // CHECK-LABEL: func.func @Branch.intersect(
 // CHECK: %[[SQUARE:.*]] = arith.mulf %{{.*}}, %{{.*}} : f64
@@ -85,6 +135,7 @@ func.func @Branch.intersect(%x: f32) {
   %h = rtsl.hit %square
   return
 ^far:
+  %g = rtsl.hit %one
   return
 }
 
@@ -109,5 +160,6 @@ func.func @Doubt.intersect(%x: f32) {
   %h = rtsl.hit %cosine
   return
 ^far:
+  %g = rtsl.hit %half
   return
 }
