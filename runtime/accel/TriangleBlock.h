@@ -35,6 +35,14 @@ struct alignas(32) TriangleBlock {
     triangle[lane] = number;
   }
 
+  /// The lanes that are not empty.
+  unsigned used() const {
+    const __m256i none = _mm256_set1_epi32(int(RTSL_NO_HIT)),
+                  all = _mm256_load_si256(reinterpret_cast<const __m256i *>(instance));
+    return ~unsigned(_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(all, none)))) &
+           0xffu;
+  }
+
   device::TriangleVertices lane(unsigned i) const {
     auto vertex = [&](int n) -> device::Vec3 {
       return {vertices[n][0][i], vertices[n][1][i], vertices[n][2][i]};
@@ -91,8 +99,8 @@ inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
 struct LaneHits {
   Lanes t, u, v;
   Lanes determinant; // its sign is that of TriangleHit::isBack, if the ray goes up its axis
-  unsigned hit;      // t, u and v are valid, before moveIntoBox
-  unsigned other;    // lanes to be tested by device::testTriangle
+  unsigned hit;      // t, u and v are valid, before moveIntoBox; none of them is empty
+  unsigned other;    // lanes to be tested by device::testTriangle; the same
 };
 
 /// intersectTriangle for all lanes.
@@ -125,13 +133,19 @@ struct LaneHits {
   hits.hit = unsigned(_mm256_movemask_ps(isInside)) & ~hits.other;
   if ((hits.hit | hits.other) == 0)
     return hits;
+  const unsigned used = block.used();
+  hits.hit &= used;
+  hits.other &= used;
 
   const Lanes determinant = hits.determinant = (e0 + e1) + e2;
   const Lanes deepest = maximum(absolute(z[0]), absolute(z[1]), absolute(z[2]));
+  // Depths that are all 0 are not scaled either: a floor along two axes, and a ray that leaves it.
+  const Lanes needsNoScale =
+      _mm256_and_ps(_mm256_or_ps(_mm256_cmp_ps(deepest, all(0x1p-30f), _CMP_GT_OQ),
+                                 _mm256_cmp_ps(deepest, zero, _CMP_EQ_OQ)),
+                    _mm256_cmp_ps(deepest, all(0x1p30f), _CMP_LT_OQ));
   const Lanes isUsualDepth =
-      _mm256_and_ps(_mm256_cmp_ps(determinant, zero, _CMP_NEQ_OQ),
-                    _mm256_and_ps(_mm256_cmp_ps(deepest, all(0x1p-30f), _CMP_GT_OQ),
-                                  _mm256_cmp_ps(deepest, all(0x1p30f), _CMP_LT_OQ)));
+      _mm256_and_ps(_mm256_cmp_ps(determinant, zero, _CMP_NEQ_OQ), needsNoScale);
   const unsigned usualDepth = unsigned(_mm256_movemask_ps(isUsualDepth));
   hits.other |= hits.hit & ~usualDepth;
   hits.hit &= usualDepth;
@@ -195,8 +209,7 @@ inline unsigned backsOf(const device::TriangleRay &ray, const LaneHits &hits) {
 template <typename Ray>
 [[gnu::cold, gnu::noinline]] bool testLane(RtslState &state, const Ray &ray,
                                            const TriangleBlock &block, unsigned i) {
-  return block.instance[i] != RTSL_NO_HIT &&
-         device::testTriangle(state, ray, block.lane(i), device::instanceOf(ray, block.instance[i]),
+  return device::testTriangle(state, ray, block.lane(i), device::instanceOf(ray, block.instance[i]),
                               block.triangle[i]);
 }
 
@@ -229,8 +242,7 @@ template <typename Ray>
     for (; lanes != 0; lanes &= lanes - 1) {
       const unsigned i = unsigned(__builtin_ctz(lanes));
       const std::uint32_t instance = device::instanceOf(ray, block.instance[i]);
-      if (block.instance[i] == RTSL_NO_HIT ||
-          !device::wins(state, t[i], instance, block.triangle[i]))
+      if (!device::wins(state, t[i], instance, block.triangle[i]))
         continue;
       if (device::hasNoBacks(*state.launch, instance) && (backsOf(ray, hits) >> i & 1) != 0)
         continue;
