@@ -91,8 +91,10 @@ RtslLeafItem itemOf(const EmbreeContext &context, const EmbreePrimitive &primiti
   return {device::instanceOf(rayOf<Ray>(context), primitive.instance), primitive.number};
 }
 
-template <typename Ray>
-bool testPrimitive(const EmbreeContext &context, unsigned number) {
+/// `test(instance, item, intersect)` tests an RTSL primitive.
+template <typename Ray, typename Test>
+[[gnu::always_inline]] inline bool testPrimitive(const EmbreeContext &context, unsigned number,
+                                                 Test test) {
   const EmbreePrimitive &primitive = context.space->primitives[number];
   const RtslLeafItem item = itemOf<Ray>(context, primitive);
   const RtslLaunch &launch = context.space->scene->launch;
@@ -100,23 +102,41 @@ bool testPrimitive(const EmbreeContext &context, unsigned number) {
   if (!primitive.intersect)
     return device::testTriangle(*context.state, rayOf<Ray>(context), launch.meshes[instance.mesh],
                                 item.instance, item.primitive);
-  return device::testPrimitive(*context.state, rayOf<Ray>(context), instance, item,
-                               primitive.intersect);
+  return test(instance, item, primitive.intersect);
 }
 
-/// Searches a primitive for the nearest hit. True if the search is over.
 template <typename Ray>
-bool searchPrimitive(const EmbreeContext &context, unsigned number) {
+bool testPrimitive(const EmbreeContext &context, unsigned number) {
+  return testPrimitive<Ray>(context, number,
+                            [&](const RtslInstance &instance, RtslLeafItem item, auto intersect) {
+                              return device::testPrimitive(*context.state, rayOf<Ray>(context),
+                                                           instance, item, intersect);
+                            });
+}
+
+/// The same for one of the world, where the ray is in its box.
+bool testListed(const EmbreeContext &context, unsigned number, device::Range inBox) {
+  return testPrimitive<device::TriangleRay>(
+      context, number, [&](const RtslInstance &instance, RtslLeafItem item, auto intersect) {
+        return device::testInRange(*context.state, *context.ray, instance, item, inBox, intersect);
+      });
+}
+
+/// Searches a primitive, which `test` tests, for the nearest hit. True if the search is over.
+template <typename Ray, typename Test>
+[[gnu::always_inline]] inline bool searchPrimitive(const EmbreeContext &context, unsigned number,
+                                                   Test test) {
   if (context.visitor)
     return visitItem(context, itemOf<Ray>(context, context.space->primitives[number]));
-  return testPrimitive<Ray>(context, number) && endsAtHit(context, {}); // no block or instance
+  return test() && endsAtHit(context, {}); // no block or instance
 }
 
 template <typename Ray>
 void intersectPrimitive(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
   setEnd(context, reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray,
-         searchPrimitive<Ray>(context, arguments->primID));
+         searchPrimitive<Ray>(context, arguments->primID,
+                              [&] { return testPrimitive<Ray>(context, arguments->primID); }));
 }
 
 template <typename Ray>
@@ -148,9 +168,10 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
   return false;
 }
 
-/// Searches an instance that has a space of its own. True if the search is over.
+/// Searches an instance that has a space of its own, where the ray is in its box (reachBox). True
+/// if the search is over.
 template <bool anyHit>
-bool searchInstance(const EmbreeContext &outer, unsigned number) {
+bool searchInstance(const EmbreeContext &outer, unsigned number, device::Range inBox) {
   const EmbreeInstance &one = outer.space->instances[number];
   const Implementation &scene = *outer.space->scene;
   RtslState &state = *outer.state;
@@ -159,8 +180,8 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
     return outer.seesAll ||
            device::isSeen(state, scene.launch.instances[one.instance], FilledSlots{*scene.slots});
   };
-  if (!isSeen() ||
-      !enterSpace(*state.launch, *outer.ray, one, state.Time, state.Epsilon, outer.limit(), ray))
+  if (!isSeen() || !enterSpace(*state.launch, *outer.ray, one, inBox, state.Time, state.Epsilon,
+                               outer.limit(), ray))
     return false;
   EmbreeContext context;
   rtcInitIntersectContext(&context.embree);
@@ -199,13 +220,25 @@ bool searchInstance(const EmbreeContext &outer, unsigned number) {
   }
 }
 
+bool reachBox(const EmbreeContext &context, unsigned number, device::Range &inBox) {
+  return reachBox(*context.ray, context.space->instances[number], context.state->Epsilon,
+                  context.limit(), inBox);
+}
+
+/// The same wherever the ray is.
+template <bool anyHit>
+bool searchInstance(const EmbreeContext &context, unsigned number) {
+  device::Range inBox;
+  return reachBox(context, number, inBox) && searchInstance<anyHit>(context, number, inBox);
+}
+
 /// Searches one for the nearest hit, and records if it has that so far. True if the search is over.
-bool searchForNearest(const EmbreeContext &context, unsigned number) {
+bool searchForNearest(const EmbreeContext &context, unsigned number, device::Range inBox) {
   const Occluder item = {number, true};
   if (isTested(context, item))
     return false;
   const float before = context.state->nearest;
-  if (searchInstance<false>(context, number)) {
+  if (searchInstance<false>(context, number, inBox)) {
     context.occluder = item;
     return true;
   }
@@ -215,8 +248,8 @@ bool searchForNearest(const EmbreeContext &context, unsigned number) {
 }
 
 /// Searches one for any hit.
-bool searchForAny(const EmbreeContext &context, unsigned number) {
-  if (!searchInstance<true>(context, number))
+bool searchForAny(const EmbreeContext &context, unsigned number, device::Range inBox) {
+  if (!searchInstance<true>(context, number, inBox))
     return false;
   context.occluder = {number, true};
   return true;
@@ -224,12 +257,17 @@ bool searchForAny(const EmbreeContext &context, unsigned number) {
 
 void intersectInstance(const RTCIntersectFunctionNArguments *arguments) {
   const EmbreeContext &context = contextOf(arguments);
+  device::Range inBox;
   setEnd(context, reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray,
-         searchForNearest(context, arguments->primID));
+         reachBox(context, arguments->primID, inBox) &&
+             searchForNearest(context, arguments->primID, inBox));
 }
 
 void occludedInstance(const RTCOccludedFunctionNArguments *arguments) {
-  if (searchForAny(contextOf(arguments), arguments->primID))
+  const EmbreeContext &context = contextOf(arguments);
+  device::Range inBox;
+  if (reachBox(context, arguments->primID, inBox) &&
+      searchForAny(context, arguments->primID, inBox))
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
@@ -247,12 +285,12 @@ void EmbreeScene::Implementation::searchInInstance(const EmbreeContext &context,
 bool EmbreeScene::Implementation::searchList(const EmbreeContext &context, bool anyHit) {
   const EmbreeSpace &world = *context.space;
   const auto primitives = unsigned(world.primitives.size());
-  const auto search = [&](unsigned i) {
-    if (i < primitives)
-      return anyHit ? testPrimitive<device::TriangleRay>(context, i)
-                    : searchPrimitive<device::TriangleRay>(context, i);
-    return anyHit ? searchForAny(context, i - primitives)
-                  : searchForNearest(context, i - primitives);
+  const auto search = [&](unsigned i, device::Range inBox) {
+    if (i >= primitives)
+      return anyHit ? searchForAny(context, i - primitives, inBox)
+                    : searchForNearest(context, i - primitives, inBox);
+    const auto test = [&] { return testListed(context, i, inBox); };
+    return anyHit ? test() : searchPrimitive<device::TriangleRay>(context, i, test);
   };
   ItemList::Entered entered =
       world.list.enter(*context.ray, context.state->Epsilon, context.limit());
@@ -260,7 +298,7 @@ bool EmbreeScene::Implementation::searchList(const EmbreeContext &context, bool 
     const unsigned i = entered.takeNearest();
     if (!(entered.near[i] <= context.limit()))
       return false;
-    if (search(i))
+    if (search(i, entered.range(i)))
       return true;
   }
   return false;

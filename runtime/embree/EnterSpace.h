@@ -138,24 +138,29 @@ inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
                       epsilon, limit);
 }
 
-/// The ray in the object space of an instance, as device::enterInstance computes it. False if it
-/// hits nothing there before `limit`.
+/// The part of the ray in the box of an instance in world space, widened. False: there is none
+/// between `epsilon` and `limit`.
+[[gnu::always_inline]] inline bool reachBox(const device::TriangleRay &world,
+                                            const EmbreeInstance &instance, float epsilon,
+                                            float limit, device::Range &inBox) {
+  const device::Range range =
+      rangeInBox(instance.lower, instance.upper, axesAt(&world.origin.x), axesAt(&world.inverse.x));
+  if (range.isEmpty())
+    return false;
+  inBox = range.widened();
+  return !(inBox.near > limit || inBox.far < epsilon);
+}
+
+/// The ray in the object space of an instance, as device::enterInstance computes it; `inBox` is
+/// that of reachBox. False if it hits nothing there before `limit`.
 [[gnu::always_inline]] inline bool enterSpace(const RtslLaunch &launch,
                                               const device::TriangleRay &world,
-                                              const EmbreeInstance &instance, float time,
-                                              float epsilon, float limit,
+                                              const EmbreeInstance &instance, device::Range inBox,
+                                              float time, float epsilon, float limit,
                                               device::InstanceRay &entered) {
   const std::uint32_t number = instance.instance;
   const RtslBox &bounds = instance.inside->bounds;
   const Axes worldOrigin = axesAt(&world.origin.x);
-  const device::Range range =
-      rangeInBox(instance.lower, instance.upper, worldOrigin, axesAt(&world.inverse.x));
-  if (range.isEmpty())
-    return false;
-  const device::Range widened = range.widened();
-  if (widened.near > limit || widened.far < epsilon)
-    return false;
-
   const Axes origin = product(instance.inverse, _mm256_cvtps_pd(worldOrigin) -
                                                     _mm256_cvtps_pd(axesAt(instance.translation)));
   const Axes direction = product(instance.inverse, _mm256_cvtps_pd(axesAt(&world.direction.x)));
@@ -166,7 +171,7 @@ inline bool entersBounds(device::Range inBounds, float epsilon, float limit) {
     return false;
   axes.fill(entered, origin);
   entered.instance = number;
-  entered.range = widened;
+  entered.range = inBox;
   return true;
 }
 

@@ -21,10 +21,13 @@ class ItemList {
 public:
   static constexpr std::size_t most = 32;
 
-  /// Where a ray enters the boxes of items.
+  /// The parts of a ray in the boxes of items.
   struct Entered {
-    std::uint32_t items;          // bit i: item i is entered before the limit
-    alignas(32) float near[most]; // of those: they hold no hit before it
+    std::uint32_t items; // bit i: item i is entered before the limit
+    // of those: device::rangeInBox, widened; they hold no hit elsewhere
+    alignas(32) float near[most], far[most];
+
+    device::Range range(unsigned item) const { return {near[item], far[item]}; }
 
     /// Takes out the item that is entered first; there must be one.
     unsigned takeNearest() {
@@ -57,10 +60,12 @@ public:
   [[gnu::always_inline]] Entered enter(const device::TriangleRay &ray, float epsilon,
                                        float limit) const {
     Entered entered;
-    entered.items = 0;
+    std::uint32_t items = 0; // in a register: in `entered` it would be stored and loaded again
     for (std::size_t i = 0; i < eights; ++i)
-      entered.items |= enterEight(ray, groups[i], epsilon, limit, entered.near + lanes * i)
-                       << lanes * i;
+      items |= enterEight(ray, groups[i], epsilon, limit, entered.near + lanes * i,
+                          entered.far + lanes * i)
+               << lanes * i;
+    entered.items = items;
     return entered;
   }
 
@@ -73,7 +78,7 @@ private:
   /// Returns the lanes that are entered.
   [[gnu::always_inline]] static unsigned enterEight(const device::TriangleRay &ray,
                                                     const EightBoxes &boxes, float epsilon,
-                                                    float limit, float *nears) {
+                                                    float limit, float *nears, float *fars) {
     device::EightRanges ranges;
 #pragma GCC unroll 3
     for (int axis = 0; axis < 3; ++axis) {
@@ -84,6 +89,7 @@ private:
     }
     const unsigned entered = ranges.widen(epsilon, limit);
     _mm256_store_ps(nears, ranges.near);
+    _mm256_store_ps(fars, ranges.far);
     return entered;
   }
 

@@ -161,8 +161,10 @@ unsigned compare(Form form, unsigned count) {
     runtime::EmbreeSpace inside;
     inside.bounds = one.bounds;
     const runtime::EmbreeInstance entry(launch, 0, &inside);
+    device::Range inBox;
     const bool enters =
-        runtime::enterSpace(launch, one.ray, entry, 0, one.epsilon, one.limit, lanes);
+        runtime::reachBox(one.ray, entry, one.epsilon, one.limit, inBox) &&
+        runtime::enterSpace(launch, one.ray, entry, inBox, 0, one.epsilon, one.limit, lanes);
     EXPECT_EQ(enters, runtime::enterAnySpace(launch, one.ray, 0, one.bounds, 0, one.epsilon,
                                              one.limit, each))
         << "case " << i;
