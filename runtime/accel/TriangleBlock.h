@@ -81,18 +81,39 @@ inline Lanes differenceOfProducts(Lanes a, Lanes b, Lanes c, Lanes d) {
   return _mm256_fmsub_ps(a, b, cd) + error;
 }
 
-/// Corrects the depths of hits near the ray's origin.
-[[gnu::cold, gnu::noinline]] inline void correctNearDepths(const device::TriangleRay &ray,
-                                                           const TriangleBlock &block,
-                                                           unsigned near, Lanes &depth) {
-  alignas(32) float depths[TriangleBlock::lanes];
-  _mm256_store_ps(depths, depth);
-  for (; near != 0; near &= near - 1) {
-    const unsigned i = unsigned(__builtin_ctz(near));
-    const auto [v0, v1, v2] = block.lane(i);
-    depths[i] = device::depthNearOrigin(ray, v0, v1, v2, 1, depths[i]);
-  }
-  depth = _mm256_load_ps(depths);
+/// device::depthNearOrigin with the scale 1, for the four lanes from `first` on.
+[[gnu::always_inline]] inline __m128 fourDepthsNearOrigin(const device::TriangleRay &ray,
+                                                          const TriangleBlock &block,
+                                                          unsigned first, __m128 depth) {
+  using Doubles = __m256d;
+  const auto all = [](float a) { return _mm256_set1_pd(double(a)); };
+  const auto along = [&](int vertex, int axis) {
+    return _mm256_cvtps_pd(_mm_load_ps(&block.vertices[vertex][axis][first]));
+  };
+  const Doubles vx = along(0, ray.kx), vy = along(0, ray.ky), vz = along(0, ray.kz);
+  const Doubles ax = vx - all(ray.turned.x), ay = vy - all(ray.turned.y),
+                az = vz - all(ray.turned.z);
+  const Doubles bx = along(1, ray.kx) - vx, by = along(1, ray.ky) - vy, bz = along(1, ray.kz) - vz;
+  const Doubles cx = along(2, ray.kx) - vx, cy = along(2, ray.ky) - vy, cz = along(2, ray.kz) - vz;
+  const Doubles nx = by * cz - bz * cy, ny = bz * cx - bx * cz, nz = bx * cy - by * cx;
+  const Doubles down = (nx * all(ray.sx) + ny * all(ray.sy)) + nz;
+  const __m128 computed = _mm256_cvtpd_ps(((nx * ax + ny * ay) + nz * az) / down);
+  const __m256i isDown =
+      _mm256_castpd_si256(_mm256_cmp_pd(down, _mm256_setzero_pd(), _CMP_NEQ_UQ)); // of 64 bits each
+  const __m128i low = _mm256_castsi256_si128(isDown), high = _mm256_extracti128_si256(isDown, 1);
+  return _mm_blendv_ps(depth, computed, _mm_castsi128_ps(_mm_packs_epi32(low, high)));
+}
+
+/// The same for all lanes, of which those with hits near the ray's origin are the bits of `near`.
+[[gnu::noinline]] inline Lanes depthsNearOrigin(const device::TriangleRay &ray,
+                                                const TriangleBlock &block, unsigned near,
+                                                Lanes depth) {
+  __m128 low = _mm256_castps256_ps128(depth), high = _mm256_extractf128_ps(depth, 1);
+  if (near & 0xfu)
+    low = fourDepthsNearOrigin(ray, block, 0, low);
+  if (near & 0xf0u)
+    high = fourDepthsNearOrigin(ray, block, 4, high);
+  return _mm256_set_m128(high, low);
 }
 
 /// The intersections of a ray with the planes of triangles, and the lanes with a hit.
@@ -155,7 +176,7 @@ struct LaneHits {
   const Lanes isNear =
       _mm256_cmp_ps(absolute(depth), all(device::nearShare) * (size + deepest), _CMP_LT_OQ);
   if (const unsigned near = hits.hit & unsigned(_mm256_movemask_ps(isNear)))
-    correctNearDepths(ray, block, near, depth);
+    depth = _mm256_blendv_ps(depth, depthsNearOrigin(ray, block, near, depth), isNear);
   hits.t = depth * all(ray.sz);
   hits.u = e1 * reciprocal;
   hits.v = e2 * reciprocal;
