@@ -58,18 +58,22 @@ std::vector<double> vectorOf(const runtime::NamedValue &member) {
 /// Makes the points and directions of a light those in world space.
 void moveLight(const char *className, std::vector<runtime::NamedValue> &members,
                const runtime::Transform &toWorld) {
-  for (const scene::SpatialMember &spatial : scene::spatialMembers({className, {}})) {
-    auto member = std::find_if(members.begin(), members.end(), [&](const runtime::NamedValue &one) {
-      return one.name == spatial.name;
-    });
-    const std::vector<double> value =
-        member != members.end()
-            ? vectorOf(*member)
-            : std::vector<double>(spatial.otherwise.begin(), spatial.otherwise.end());
+  const auto own = [&](const char *name) {
+    return std::find_if(members.begin(), members.end(),
+                        [&](const runtime::NamedValue &member) { return member.name == name; });
+  };
+  const auto valueOf = [&](const scene::SpatialMember &spatial) {
+    const auto member = own(spatial.name);
+    return member != members.end()
+               ? vectorOf(*member)
+               : std::vector<double>(spatial.otherwise.begin(), spatial.otherwise.end());
+  };
+  for (const scene::PlacedMember &placed :
+       scene::placedMembers({className, {}}, toWorld, valueOf)) {
+    auto member = own(placed.name);
     if (member == members.end())
-      member = members.insert(member, {spatial.name, 0.0});
-    const auto moved = spatial.moved(value, toWorld);
-    member->value = rtsl::c::valueOf(moved.data(), moved.size());
+      member = members.insert(member, {placed.name, 0.0});
+    member->value = rtsl::c::valueOf(placed.value.data(), placed.value.size());
   }
 }
 

@@ -26,9 +26,23 @@ const std::vector<PlaceableLight> &placeableLights() {
       {"DistantLight", {{"direction", false, {0, 1, 0}}}},
       {"PointLight", {{"position", true, {0, 0, 0}}}},
       {"RectangleLight",
-       {{"corner", true, {0, 0, 0}}, {"side1", false, {1, 0, 0}}, {"side2", false, {0, 0, 1}}}},
+       {{"corner", true, {0, 0, 0}},
+        {"side1", false, {1, 0, 0}, "side2"},
+        {"side2", false, {0, 0, 1}, "side1"}}},
       {"SpotLight", {{"position", true, {0, 0, 0}}, {"direction", false, {0, -1, 0}}}}};
   return lights;
+}
+
+/// Throws NotSupported, as requirePlaceable.
+const std::vector<SpatialMember> &spatialMembers(const LocatedName &className) {
+  std::vector<std::string> names;
+  for (const PlaceableLight &light : placeableLights()) {
+    if (className.text == light.className)
+      return light.members;
+    names.emplace_back(light.className);
+  }
+  throw Error(message::lightClassNotInNode(className.text, fmt::join(names, "`, `")),
+              className.place);
 }
 
 JsonValue listAt(const Place &place, const std::array<double, 3> &numbers) {
@@ -48,10 +62,8 @@ JsonValue listAt(const Place &place, const std::array<double, 3> &numbers) {
   return result;
 }
 
-} // namespace
-
-std::array<double, 3> SpatialMember::moved(const std::vector<double> &value,
-                                           const Transform &toWorld) const {
+std::array<double, 3> inWorld(const std::vector<double> &value, bool isPoint,
+                              const Transform &toWorld) {
   std::array<double, 3> result{};
   for (std::size_t row = 0; row < 3; ++row) {
     result[row] = isPoint ? toWorld.columns[3][row] : 0;
@@ -61,15 +73,17 @@ std::array<double, 3> SpatialMember::moved(const std::vector<double> &value,
   return result;
 }
 
-const std::vector<SpatialMember> &spatialMembers(const LocatedName &className) {
-  std::vector<std::string> names;
-  for (const PlaceableLight &light : placeableLights()) {
-    if (className.text == light.className)
-      return light.members;
-    names.emplace_back(light.className);
-  }
-  throw Error(message::lightClassNotInNode(className.text, fmt::join(names, "`, `")),
-              className.place);
+} // namespace
+
+std::vector<PlacedMember>
+placedMembers(const LocatedName &className, const Transform &toWorld,
+              const std::function<std::vector<double>(const SpatialMember &)> &valueOf) {
+  const bool isMirrored = toWorld.determinant() < 0;
+  std::vector<PlacedMember> placed;
+  for (const SpatialMember &member : spatialMembers(className))
+    placed.push_back({isMirrored ? member.ifMirrored : member.name,
+                      inWorld(valueOf(member), member.isPoint, toWorld)});
+  return placed;
 }
 
 void requirePlaceable(const LocatedName &className) {
@@ -80,21 +94,23 @@ ObjectDescription placedLight(const ObjectDescription &light, const runtime::Mov
                               SceneDescription &scene) {
   if (way.moves())
     throw Error(message::movingLight(), light.place);
-  const Transform &toWorld = way.still();
+  const auto own = [](auto &members, const char *name) {
+    return std::find_if(members.begin(), members.end(),
+                        [&](const auto &member) { return member.first.text == name; });
+  };
+  const auto valueOf = [&](const SpatialMember &member) {
+    const auto found = own(light.members, member.name);
+    return found != light.members.end()
+               ? readNumbers(*found->second, 3, fmt::format("`{}`", member.name))
+               : std::vector<double>(member.otherwise.begin(), member.otherwise.end());
+  };
   ObjectDescription placed = light;
-  for (const SpatialMember &member : spatialMembers(light.className)) {
-    auto found = std::find_if(placed.members.begin(), placed.members.end(),
-                              [&](const auto &own) { return own.first.text == member.name; });
-    if (found == placed.members.end()) {
-      placed.members.push_back({{member.name, light.place}, nullptr});
-      found = placed.members.end() - 1;
-    }
+  for (const PlacedMember &member : placedMembers(light.className, way.still(), valueOf)) {
+    auto found = own(placed.members, member.name);
+    if (found == placed.members.end())
+      found = placed.members.insert(found, {{member.name, light.place}, nullptr});
     const Place place = found->second ? found->second->place() : light.place;
-    const std::vector<double> value =
-        found->second ? readNumbers(*found->second, 3, fmt::format("`{}`", member.name))
-                      : std::vector<double>(member.otherwise.begin(), member.otherwise.end());
-    scene.placedValues.push_back(
-        std::make_shared<JsonValue>(listAt(place, member.moved(value, toWorld))));
+    scene.placedValues.push_back(std::make_shared<JsonValue>(listAt(place, member.value)));
     found->second = scene.placedValues.back().get();
   }
   return placed;

@@ -4,6 +4,7 @@
 #include "scenefile/SceneFile.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace rtsl::scene {
@@ -13,14 +14,21 @@ struct SpatialMember {
   const char *name;
   bool isPoint; // or a direction
   std::array<double, 3> otherwise;
-
-  /// The value in world space.
-  std::array<double, 3> moved(const std::vector<double> &value,
-                              const runtime::Transform &toWorld) const;
+  const char *ifMirrored = name; // the member that has the value if the transform mirrors
 };
 
-/// Throws NotSupported, as requirePlaceable.
-const std::vector<SpatialMember> &spatialMembers(const LocatedName &className);
+/// A member of a light and its value in world space.
+struct PlacedMember {
+  const char *name;
+  std::array<double, 3> value;
+};
+
+/// All of the members of a light that a transform changes; `valueOf` gives their three numbers in
+/// the space of the node. A transform that mirrors exchanges the sides of a RectangleLight, so that
+/// it shines where an Emitter in its place does. Throws NotSupported, as requirePlaceable.
+std::vector<PlacedMember>
+placedMembers(const LocatedName &className, const runtime::Transform &toWorld,
+              const std::function<std::vector<double>(const SpatialMember &)> &valueOf);
 
 /// Throws NotSupported unless lights of this class may be in a node: those of the standard library
 /// whose members say which of them are points and which directions.

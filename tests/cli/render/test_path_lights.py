@@ -75,6 +75,34 @@ class Lights(PathCase):
                     )
                     self.assert_gray(0.5 * 2 * factor, 0.01)
 
+    def test_a_light_in_a_node_shines_where_a_lamp_in_its_place_does(self):
+        """Also where the transform mirrors: on the floor, or on neither side of it."""
+        corner, side1, side2 = [-1, 0, -1], [2, 0, 0], [0, 0, 2]
+        square = {"class": "Parallelogram", "constructor": [corner, side1, side2]}
+        light = {"class": "RectangleLight", "corner": corner, "side1": side1, "side2": side2}
+        kinds = (
+            {"light": light},
+            {"primitive": square, "material": {"class": "Emitter"}},
+        )
+        for scale, isLit in (
+            ([1, 1, 1], True),
+            ([-1, 1, 1], True),
+            ([1, -1, 1], False),
+            ([-1, -1, 1], False),
+        ):
+            means = []
+            for kind in kinds:
+                self.scene(
+                    [(FLOOR, {"class": "Own", "albedo": 0.5})],
+                    camera="Under",
+                    nodes={"lamp": {**kind, "transform": {"scale": scale, "translate": [0, 1, 0]}}},
+                    root="lamp",
+                )
+                means.append(self.mean()[0])
+            with self.subTest(scale=scale):
+                self.assertEqual(means[1] > 0, isLit)
+                self.assertAlmostEqual(*means, delta=0.02 * means[1])
+
     def test_lights_without_an_area_send_out_nothing(self):
         """And each is named, with what is wrong; those that have an area are not."""
         lines = [[0, 1, 0], [1, 1, 0], [3, 1, 0]]
