@@ -35,6 +35,17 @@ void import(SceneDescription &scene, const std::string &module, const Place &pla
   scene.imports.push_back({{module, place}, ""});
 }
 
+/// Makes a background color an object that rays with a payload can meet.
+void useBackgroundObject(SceneDescription &scene) {
+  if (scene.background || !scene.backgroundColor)
+    return;
+  const Place where = scene.backgroundColor->place();
+  import(scene, std::string("std.backgrounds.") + backgroundClass, where);
+  scene.background = objectOf(backgroundClass, where);
+  scene.background->members.push_back({{radianceOfBackground, where}, scene.backgroundColor});
+  scene.backgroundColor = nullptr;
+}
+
 } // namespace
 
 static std::vector<std::string> namesOfEngines(bool areViews) {
@@ -69,14 +80,15 @@ void useLibraryEngine(SceneDescription &scene, const JsonValue &engine) {
   if (chosen.limit && depth && std::none_of(members.begin(), members.end(), isLimit))
     members.push_back({{chosen.limit, depth->place()}, depth});
   scene.render.depth = std::min(scene.render.depth + chosen.beyond, runtime::maxRayDepth);
+  useBackgroundObject(scene);
+}
 
-  if (scene.background || !scene.backgroundColor)
-    return;
-  const Place where = scene.backgroundColor->place();
-  import(scene, std::string("std.backgrounds.") + backgroundClass, where);
-  scene.background = objectOf(backgroundClass, where);
-  scene.background->members.push_back({{radianceOfBackground, where}, scene.backgroundColor});
-  scene.backgroundColor = nullptr;
+void useRayGeneration(SceneDescription &scene) {
+  if (scene.rayGeneration &&
+      std::any_of(std::begin(engines), std::end(engines), [&](const LibraryEngine &one) {
+        return scene.rayGeneration->className.text == one.className;
+      }))
+    useBackgroundObject(scene);
 }
 
 } // namespace rtsl::scene

@@ -20,4 +20,8 @@ const std::vector<std::string> &libraryViews();
 /// that rays with a payload can meet. `engine` is the value in the scene.
 void useLibraryEngine(SceneDescription &scene, const JsonValue &engine);
 
+/// Prepares a scene for the engine `programs`: a background color becomes such an object if the ray
+/// generation is of a class of one of these engines.
+void useRayGeneration(SceneDescription &scene);
+
 } // namespace rtsl::scene

@@ -86,6 +86,8 @@ public:
         requireStart();
       if (libraryEngine)
         useLibraryEngine(scene, *libraryEngine);
+      else if (scene.render.engine == runtime::Engine::Programs)
+        useRayGeneration(scene);
     });
   }
 

@@ -120,6 +120,15 @@ class Eye : rt_RayGeneration {
         self.write("scene.json", json.dumps(scene))
         self.assertEqual(self.mean("--set", "render.engine=programs"), [0, 0, 0])
 
+    def test_the_color_of_the_background_with_the_engine_programs(self):
+        """Rays of the library's path tracers meet it, however they are chosen."""
+        for tracer in ("PathTracer", "VolumeTracer"):
+            self.scene([], spp=1, background=0.75, rayGeneration={"class": tracer})
+            self.assertEqual(
+                self.mean("--set", "render.engine=programs", "--set", "import.4=std.engines"),
+                [0.75] * 3,
+            )
+
 
 class ClassicEngine(PathCase):
     """Materials without `shade` in the engine `classic`."""
