@@ -11,6 +11,7 @@
 #include "mlir/IR/SymbolTable.h"
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/Inliner.h"
+#include "llvm/ADT/DenseSet.h"
 
 namespace rtsl::codegen {
 
@@ -41,38 +42,72 @@ bool traces(mlir::func::FuncOp function) {
          });
 }
 
+/// Finds functions without which no cycle of calls is left: those at which a depth-first walk
+/// closes one. They are not inlined ("loop breakers" of Peyton Jones and Marlow, Secrets of the
+/// Glasgow Haskell Compiler inliner, 2002): if all functions of a cycle were, a caller would unroll
+/// it as far as the inliner goes, and each caller of that one would unroll again what is left.
+class CycleBreakers {
+public:
+  explicit CycleBreakers(const mlir::CallGraph &graph) {
+    for (const mlir::CallGraphNode *node : graph)
+      if (!visited.contains(node))
+        visit(node);
+  }
+  bool contains(const mlir::CallGraphNode *node) const { return breakers.contains(node); }
+
+private:
+  void visit(const mlir::CallGraphNode *node) {
+    visited[node] = State::Open;
+    for (const mlir::CallGraphNode::Edge &edge : *node) {
+      const auto callee = visited.find(edge.getTarget());
+      if (callee == visited.end())
+        visit(edge.getTarget());
+      else if (callee->second == State::Open)
+        breakers.insert(callee->first);
+    }
+    visited[node] = State::Done;
+  }
+
+  enum class State : std::uint8_t { Open, Done };
+  llvm::DenseMap<const mlir::CallGraphNode *, State> visited;
+  llvm::DenseSet<const mlir::CallGraphNode *> breakers;
+};
+
+/// How often each function is used, now.
+class UseCounts {
+public:
+  explicit UseCounts(mlir::Region &body) { add(body); }
+
+  bool isOne(mlir::func::FuncOp function) const {
+    return function.isPrivate() && uses.lookup(function.getSymNameAttr()) == 1;
+  }
+  /// A call is to be inlined: what the function uses is used once more, unless this was the only
+  /// use and the function is removed.
+  void inlineCall(mlir::func::FuncOp callee) {
+    if (!isOne(callee))
+      add(callee.getBody());
+    --uses[callee.getSymNameAttr()];
+  }
+
+private:
+  void add(mlir::Region &body) {
+    if (const auto all = mlir::SymbolTable::getSymbolUses(&body))
+      for (const mlir::SymbolTable::SymbolUse &use : *all)
+        ++uses[use.getSymbolRef().getLeafReference()];
+  }
+  llvm::DenseMap<mlir::StringAttr, unsigned> uses;
+};
+
 struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<mlir::ModuleOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(InlineFunctions)
   explicit InlineFunctions(bool inlinesAll) : inlinesAll(inlinesAll) {}
   llvm::StringRef getArgument() const override { return "rtsl-inline"; }
   llvm::StringRef getDescription() const override { return "inlines calls"; }
 
-  bool isWorthIt(const mlir::Inliner::ResolvedCall &resolved) {
-    auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
-    auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
-    if (!callee || !caller || ir::attr::noinline.isOn(callee) || ir::attr::separate.isOn(callee))
-      return false;
-    if (ir::attr::constructor.isOn(callee) && !ir::attr::constructor.isOn(caller))
-      return false;
-    if (inlinesAll)
-      return true;
-    const bool isDouble = ir::attr::inDouble.isOn(getOperation());
-    unsigned limit = isDouble         ? smallFunctionInDouble
-                     : traces(callee) ? smallTracingFunction
-                                      : smallFunction;
-    if (operationCount(callee, limit) <= limit)
-      return true;
-    return callee.isPrivate() && useCount.lookup(callee.getSymNameAttr()) == 1;
-  }
-
   void runOnOperation() override {
-    // Counted once: callees are processed before their callers, so a function that is called once
-    // has been inlined before the call could be copied. Querying the uses of each callee would walk
-    // the whole module each time.
-    useCount.clear();
-    if (auto uses = mlir::SymbolTable::getSymbolUses(getOperation()))
-      for (const mlir::SymbolTable::SymbolUse &use : *uses)
-        ++useCount[use.getSymbolRef().getLeafReference()];
+    auto &graph = getAnalysis<mlir::CallGraph>();
+    const CycleBreakers breakers(graph);
+    UseCounts uses(getOperation().getBodyRegion());
 
     mlir::InlinerConfig config;
     config.setMaxInliningIterations(4);
@@ -80,16 +115,39 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
     auto runNothing = [](mlir::Pass &, mlir::OpPassManager &, mlir::Operation *) {
       return mlir::success();
     };
-    mlir::Inliner inliner(
-        getOperation(), getAnalysis<mlir::CallGraph>(), *this, getAnalysisManager(), runNothing,
-        config, [this](const mlir::Inliner::ResolvedCall &call) { return isWorthIt(call); });
+    auto decide = [&](const mlir::Inliner::ResolvedCall &resolved) {
+      auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
+      auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
+      if (!callee || !caller || breakers.contains(resolved.targetNode) ||
+          !isAllowed(callee, caller) || !(uses.isOne(callee) || isSmall(callee)))
+        return false;
+      uses.inlineCall(callee);
+      return true;
+    };
+    mlir::Inliner inliner(getOperation(), graph, *this, getAnalysisManager(), runNothing, config,
+                          decide);
     if (mlir::failed(inliner.doInlining()))
       signalPassFailure();
   }
 
 private:
+  static bool isAllowed(mlir::func::FuncOp callee, mlir::func::FuncOp caller) {
+    return !ir::attr::noinline.isOn(callee) && !ir::attr::separate.isOn(callee) &&
+           (!ir::attr::constructor.isOn(callee) || ir::attr::constructor.isOn(caller));
+  }
+
+  /// Is a copy for each caller worth it?
+  bool isSmall(mlir::func::FuncOp callee) {
+    if (inlinesAll)
+      return true;
+    const bool isDouble = ir::attr::inDouble.isOn(getOperation());
+    const unsigned limit = isDouble         ? smallFunctionInDouble
+                           : traces(callee) ? smallTracingFunction
+                                            : smallFunction;
+    return operationCount(callee, limit) <= limit;
+  }
+
   bool inlinesAll;
-  llvm::DenseMap<mlir::StringAttr, unsigned> useCount; // before inlining
 };
 
 } // namespace

@@ -2,8 +2,8 @@
 //
 // Inlines functions, callees first: functions that trace (separately they would need a frame of
 // their own), small ones, and those that are called once. It never inlines a function with
-// `rtsl.noinline`, a recursive one (dispatch may be), or a constructor into another function:
-// members are constants outside of constructors.
+// `rtsl.noinline`, or a constructor into another function: members are constants outside of
+// constructors. On each cycle of calls (dispatch may be on one) one function is not inlined.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
