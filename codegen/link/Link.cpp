@@ -98,6 +98,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   if (diagnostics.hasErrors())
     return false;
   program.paths = linking::findPaths(context);
+  program.raysLeaveHits = linking::raysLeaveHits(context);
   linking::makeEntries(context);
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 

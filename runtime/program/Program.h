@@ -189,6 +189,7 @@ struct Program {
   /// RTSL_NEEDS_*: the state that the methods of the program's classes read.
   std::uint32_t needs = RTSL_NEEDS_ALL;
   Paths paths = Paths::Random;
+  bool raysLeaveHits = true; // shaders of hits send rays; otherwise only `generate` does
   /// RTSL_HAS_*: what the scenes that it renders may have.
   std::uint32_t sceneNeeds = RTSL_HAS_ALL;
   /// Keep normals and texture coordinates of meshes, and named attributes, even if nothing reads

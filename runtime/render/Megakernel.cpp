@@ -17,6 +17,9 @@ namespace rtsl::runtime {
 
 /// Traversal, and the beginning of samples.
 static constexpr std::size_t stepsBesideStates = 2;
+/// If a slice has at least so many pixels for each lane, it costs little time that some lanes end
+/// a pixel earlier than others.
+static constexpr std::uint64_t pixelsOfLane = 4;
 /// The numbers of samples have 32 bits, and lanes count a little beyond the last.
 static constexpr std::uint64_t mostInSlice = 0x7fffffff;
 
@@ -190,6 +193,8 @@ void Megakernel::run(Watch &watch) {
     job.firstSample = leastTaken;
     device::setSampleCount(job, std::min(samplesAtOnce(openPixels), samplesOfPixel - leastTaken));
     job.taken = isUneven ? job.sums.taken : nullptr;
+    job.mayTakePixels = options.wantsPicture && !isUneven && !job.sums.closed &&
+                        openPixels >= pixelsOfLane * samplesInFlight();
     runSlice(watch, share);
     const std::uint64_t whole = openPixels * job.sampleCount;
     before += whole;
@@ -206,12 +211,14 @@ void Megakernel::run(Watch &watch) {
 /// also drives a screen must be able to refresh it.
 void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share) {
   const std::uint64_t none = 0, all = openPixels * job.sampleCount;
+  const std::uint32_t isFalse = 0;
   const Address next = statusAddress + offsetof(RtslStatus, nextSample);
   upload(next, &none, sizeof none);
+  upload(statusAddress + offsetof(RtslStatus, hasSums), &isFalse, sizeof isFalse);
   samplesOfSlice = 0;
+  bool hasSums = false;
   while (samplesOfSlice < all && !watch.isStopped()) {
-    const std::uint32_t isStopped = 0;
-    upload(statusAddress + offsetof(RtslStatus, stop), &isStopped, sizeof isStopped);
+    upload(statusAddress + offsetof(RtslStatus, stop), &isFalse, sizeof isFalse);
     {
       const Watch::Poll poll(
           watch, launchSeconds(), [&] { return share(std::min(get(next), all)); },
@@ -226,8 +233,9 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
     if (status.problem != RTSL_PROBLEM_NONE)
       return; // finish() reports it
     samplesOfSlice = rendered;
+    hasSums = status.hasSums;
   }
-  if (options.wantsPicture && samplesOfSlice > 0)
+  if (options.wantsPicture && samplesOfSlice > 0 && !hasSums)
     kernelSeconds += addSamples(job);
 }
 

@@ -95,7 +95,7 @@ private:
   /// Run all lanes of the job and wait for them: for its samples, and to add these to the sums.
   /// Return RenderStatistics::kernelSeconds.
   virtual double runLanes(const RtslJob &job) = 0;
-  virtual double addSamples(const RtslJob &job) = 0;
+  virtual double addSamples(const RtslJob &job) = 0; // unless the lanes have done so
   // Read and write a number in the status while lanes run, from another thread.
   virtual std::uint64_t get(Address number) = 0;
   virtual void set(Address number, std::uint32_t value) = 0;

@@ -193,8 +193,10 @@ LlvmCode PartCompiler::rest() {
                             options.checksNumbers ? &program.numberPlaces : nullptr);
   defineFacts(code, options, program);
   const bool isMegakernel = options.target == Target::HostMegakernel;
-  const bool keepsRecords =
-      isMegakernel && options.organisation && *options.organisation != Organisation::Megakernel;
+  code.organisation = options.organisation.value_or(Organisation::Megakernel);
+  const bool keepsRecords = isMegakernel && code.organisation != Organisation::Megakernel;
+  if (isMegakernel)
+    decideWhetherLanesTakePixels(code, program);
   if (keepsRecords)
     beginRecords(code, program);
   std::vector<std::string_view> linked = bitcodes;

@@ -52,6 +52,7 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
   if (program.engine != runtime::Engine::Either)
     codegen::defineConstant(*code.module, "rtsl_generates",
                             program.engine == runtime::Engine::Programs);
+  codegen::defineConstant(*code.module, "rtsl_rays_leave_hits", program.raysLeaveHits);
   codegen::defineConstant(*code.module, "rtsl_is_fast",
                           options.floatingPoint == FloatingPoint::Fast);
 }
@@ -80,6 +81,14 @@ static bool followsPaths(const runtime::Program &program, const llvm::Module &mo
 
 static bool hasTree(const llvm::Module &module) {
   return codegen::knownConstant(module, "rtsl_listed_instances").value_or(0) == 0;
+}
+
+/// Whether the states of a program send rays. Without `generate` cameras do.
+static bool sendsRays(const runtime::Program &program, const llvm::Module &module) {
+  return program.engine != runtime::Engine::Programs ||
+         llvm::any_of(std::array{"rtsl_spawn", "rtsl_spawn_last", "rtsl_spawn_payload",
+                                 "rtsl_spawn_last_payload"},
+                      [&](const char *name) { return module.getFunction(name); });
 }
 
 bool hasList(const LlvmCode &code) {
@@ -116,12 +125,25 @@ static Organisation organisationFor(const CompileOptions &options, const runtime
                                                   : Organisation::Megakernel;
 }
 
+static bool hasShortShaders(const llvm::Module &module) {
+  return module.getInstructionCount() < 600; // before optimisation
+}
+
 /// How many samples a warp takes at once. To take several for each lane costs less, but then the
 /// warps that run at the same time are further apart in the picture, and need more of the program:
 /// a gain only for short shaders (docs/gpu.md).
 static std::uint32_t samplesAtOnce(const llvm::Module &module) {
-  constexpr unsigned shortShaders = 600; // instructions, before optimisation
-  return module.getInstructionCount() < shortShaders ? 128 : 32;
+  return hasShortShaders(module) ? 128 : 32;
+}
+
+/// A gain if what this saves is much of a sample, and if the lanes of a warp, which then have other
+/// pixels, still do the same. Searching a tree takes the registers that the sums would need.
+void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program) {
+  const llvm::Module &module = *code.module;
+  code.takesPixels = code.organisation == Organisation::Megakernel &&
+                     program.paths == runtime::Paths::Single && hasShortShaders(module) &&
+                     !(hasTree(module) && sendsRays(program, module));
+  codegen::defineConstant(*code.module, "rtsl_takes_pixels", code.takesPixels);
 }
 
 /// How the lanes of a warp choose their steps.
@@ -160,12 +182,13 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, options, program);
+  code.organisation = forGpu ? organisationFor(options, program, *code.module)
+                             : options.organisation.value_or(Organisation::Megakernel);
+  decideWhetherLanesTakePixels(code, program);
   if (forGpu) {
     codegen::alignMembers(*code.module);
     defineSchedule(*code.module, options, program);
   }
-  code.organisation = forGpu ? organisationFor(options, program, *code.module)
-                             : options.organisation.value_or(Organisation::Megakernel);
   const bool keepsRecords = code.organisation != Organisation::Megakernel;
   if (keepsRecords)
     beginRecords(code, program);

@@ -42,7 +42,9 @@ struct LlvmCode {
   std::unique_ptr<llvm::Module> module;
   codegen::MachineOptions options;
   std::vector<std::string> kept; // functions that are kept although nothing calls them
-  Organisation organisation = Organisation::Megakernel; // of a self-contained program
+  // Of a self-contained program:
+  Organisation organisation = Organisation::Megakernel;
+  bool takesPixels = false; // lanes render whole pixels where a job allows it
 };
 
 /// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
@@ -55,6 +57,9 @@ bool hasList(const LlvmCode &code);
 
 /// Defines constants with which the device code omits unused parts.
 void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
+
+/// Of a self-contained program whose organisation is known.
+void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program);
 
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);

@@ -29,10 +29,14 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
 /// How many registers a thread of a kernel may have; docs/gpu.md has the figures. More registers
 /// are better than more warps if rays wait for others and the lanes of a warp stay together, and if
 /// a kernel has only one step or its shared memory leaves room for only a few warps.
-static std::uint32_t registersFor(Organisation organisation, runtime::Paths paths) {
-  if (organisation != Organisation::Megakernel)
+static std::uint32_t registersFor(const LlvmCode &code, runtime::Paths paths) {
+  if (code.organisation != Organisation::Megakernel)
     return 168;
-  return paths == runtime::Paths::Alike ? 128 : 72;
+  if (code.takesPixels)
+    return 64;
+  if (paths == runtime::Paths::Alike)
+    return 128;
+  return paths == runtime::Paths::Single && !hasList(code) ? 80 : 72;
 }
 
 bool compilePackage(const typed::Module &module, const LinkRequest &request,
@@ -51,12 +55,12 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
   LlvmCode code = megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true);
   const Organisation organisation = code.organisation;
+  package.registers = registersFor(code, compilation.program->paths);
   package.ptx = toPtx(std::move(code), &package.wave);
   if (organisation != Organisation::Megakernel) {
     package.wave.states = std::uint32_t(compilation.program->stateNames.size());
     package.wave.isPersistent = organisation == Organisation::Persistent;
   }
-  package.registers = registersFor(organisation, compilation.program->paths);
   package.stateNames = compilation.program->stateNames;
   package.host = hostImage(compilation);
   return true;

@@ -62,4 +62,12 @@ runtime::Paths findPaths(const LinkContext &context) {
   return paths;
 }
 
+bool raysLeaveHits(const LinkContext &context) {
+  Contains sends(context.symbols, ir::sendsRays);
+  return llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(), [&](FuncOp function) {
+    const llvm::StringRef root = readerOf(context.symbols, function).root;
+    return !root.empty() && root != "rt_RayGeneration" && sends(function);
+  });
+}
+
 } // namespace rtsl::linking

@@ -180,6 +180,8 @@ bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 
 /// Whether shaders send rays from hits, and how they choose them. Runs after slots are resolved.
 runtime::Paths findPaths(const LinkContext &context);
+/// Whether any method but `generate` sends rays, also to lamps. Runs after slots are resolved.
+bool raysLeaveHits(const LinkContext &context);
 
 /// Defines the dispatch function of every slot.
 void resolveSlots(LinkContext &context);

@@ -44,6 +44,9 @@ __attribute__((weak)) uint32_t rtsl_has_half_pairs(void) {
 __attribute__((weak)) uint32_t rtsl_generates(const RtslLaunch *launch) {
   return launch->rayGeneration != 0;
 }
+__attribute__((weak)) uint32_t rtsl_rays_leave_hits(void) {
+  return 1;
+}
 __attribute__((weak)) uint32_t rtsl_is_fast(void) {
   return 0;
 }
@@ -55,6 +58,9 @@ __attribute__((weak)) uint32_t rtsl_states_run_on(const RtslLaunch *) {
 }
 __attribute__((weak)) uint32_t rtsl_samples_at_once(const RtslLaunch *) {
   return 32;
+}
+__attribute__((weak)) uint32_t rtsl_takes_pixels(const RtslLaunch *) {
+  return 0;
 }
 __attribute__((weak)) uint32_t rtsl_counts_steps(const RtslLaunch *) {
   return 0;

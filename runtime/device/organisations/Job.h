@@ -46,8 +46,9 @@ typedef struct RtslJob {
   uint32_t firstSample, sampleCount; // of each pixel in this slice
   // by sampleCount, and by the pixels of a band (runtime/device/organisations/Slice.h)
   RtslDivisor bySampleCount, byBand;
-  float *samples;     // colorComponents for each sample of the slice; null: not wanted
-  RtslPixelSums sums; // of the samples before this slice; all null: there are none
+  float *samples;         // colorComponents for each sample of the slice; null: not wanted
+  uint32_t mayTakePixels; // whether lanes may render whole pixels: see LanePixel.h
+  RtslPixelSums sums;     // of the samples before this slice; all null: there are none
   // the places of the pixels that take samples, ascending, and their number; null: all pixels
   const uint32_t *places;
   uint32_t placeCount;

@@ -10,6 +10,7 @@
 
 #include "runtime/device/engines/Machine.h"
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/LanePixel.h"
 #include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/organisations/Slice.h"
 #include "runtime/device/organisations/StepCounts.h"
@@ -68,6 +69,22 @@ inline void storeSample(const RtslJob &job, uint32_t sample, Rays &rays) {
               rays.ray.state.SampleColor, rtsl_color_components(job.launch));
 }
 
+/// The step of the lanes that begin a sample: they store that before. All lanes of a warp call
+/// together.
+inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, uint32_t &sample,
+                             bool takesPart, Rays &rays) {
+  const uint32_t following = takeSample(job, taken, takesPart);
+  if (!takesPart)
+    return;
+  if (sample != TakenSamples::none)
+    storeSample(job, sample, rays);
+  sample = following;
+  if (sample >= samplesOfSlice(job))
+    rays.next = Step::nothing;
+  else if (!beginSample(job, sample, rays))
+    sample = TakenSamples::none;
+}
+
 /// Runs states until the lane has to trace a ray, or its sample is over. The code generator
 /// recognises the loop by its mark (keepStatesInLoop in codegen/emit/LlvmModule.cpp).
 inline void runStates(const RtslJob &job, Rays &rays) {
@@ -90,7 +107,11 @@ inline void runLane(const RtslJob &job, uint32_t number) {
                     ? local
                     : reinterpret_cast<char *>(job.lanes + number * job.laneBytes);
   TakenSamples taken;
-  uint32_t sample = TakenSamples::none;
+  const bool takesPixels = lanesTakePixels(job);
+  if (takesPixels)
+    __atomic_store_n(&job.status->hasSums, 1, __ATOMIC_RELAXED);
+  LanePixel pixel;                      // of lanes that take pixels
+  uint32_t sample = TakenSamples::none; // of others
   int32_t choice = Step::nothing;
   rays.next = Step::sample;
   for (;;) {
@@ -100,16 +121,10 @@ inline void runLane(const RtslJob &job, uint32_t number) {
     const bool takesPart = rays.next == choice;
     countStep(job, choice, takesPart);
     if (choice == Step::sample) {
-      const uint32_t following = takeSample(job, taken, takesPart);
-      if (!takesPart)
-        continue;
-      if (sample != TakenSamples::none)
-        storeSample(job, sample, rays);
-      sample = following;
-      if (sample >= samplesOfSlice(job))
-        rays.next = Step::nothing;
-      else if (!beginSample(job, sample, rays))
-        sample = TakenSamples::none;
+      if (takesPixels)
+        stepToNextSample(job, taken, pixel, takesPart, rays);
+      else
+        stepToNextSample(job, taken, sample, takesPart, rays);
     } else if (takesPart) {
       if (choice == Step::trace)
         traceRay(rays);

@@ -122,6 +122,16 @@ inline void storeSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel, ui
   }
 }
 
+/// Leaves the sum of a pixel, or of a half of it, that has all samples below `taken`, where the job
+/// wants it.
+inline void putSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t half,
+                   uint32_t taken) {
+  if (job.sums.colors)
+    storeSum(job, sum, pixel, half);
+  if (job.pixels)
+    writeMean(job, sum, pixel, taken);
+}
+
 /// Adds samples `number` to `end` - 1 of the pixel, which are all in one half: four at a time where
 /// 16 bytes can be loaded at once. Each lane of a warp reads other cache lines, and a load takes as
 /// long as its number of lines, however few bytes it reads of them.
@@ -168,10 +178,7 @@ inline void addSamplesOfPixel(const RtslJob &job, uint32_t place, uint32_t count
       for (uint32_t number = before + (before + half) % halves; number < end; number += halves)
         addSample(job, sum, pixel, numberInHalf(number, halves),
                   samples + uint64_t(number - job.firstSample) * components);
-    if (job.sums.colors)
-      storeSum(job, sum, pixel, half);
-    if (job.pixels)
-      writeMean(job, sum, pixel, end);
+    putSum(job, sum, pixel, half, end);
   }
   if (job.sums.colors)
     job.sums.taken[pixel] = end;

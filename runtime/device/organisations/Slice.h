@@ -59,11 +59,16 @@ inline Pixel pixelAt(const RtslJob &job, uint32_t place) {
   const uint32_t left = job.height - band * rowsOfBand; // the last band may have fewer rows
   if (left >= rowsOfBand)
     return {inBand / rowsOfBand, band * rowsOfBand + inBand % rowsOfBand};
-  return {inBand / left, band * rowsOfBand + inBand % left};
+  const uint32_t x = left == 1 ? inBand : left == 2 ? inBand / 2 : inBand / 3;
+  return {x, band * rowsOfBand + (inBand - x * left)};
+}
+
+inline uint32_t placesOfSlice(const RtslJob &job) {
+  return job.places ? job.placeCount : job.width * job.height;
 }
 
 inline uint32_t samplesOfSlice(const RtslJob &job) {
-  return (job.places ? job.placeCount : job.width * job.height) * job.sampleCount;
+  return placesOfSlice(job) * job.sampleCount;
 }
 
 /// Whether the slice has stopped: lanes that see it take no samples any more.
@@ -91,22 +96,22 @@ inline uint32_t samplesAtOnce(const RtslJob &job, uint32_t last) {
   return last + 16 * lanes < samplesOfSlice(job) ? most : lanesOfWarp;
 }
 
-/// The next sample for each lane of the warp that needs one; all lanes call together. The number is
-/// not below samplesOfSlice(job) if none is left.
-inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOne) {
+/// The next number for each lane of the warp that needs one; all lanes call together. `take` takes
+/// the next `atOnce` numbers of all warps, and gives the first one, or TakenSamples::none.
+template <typename Take>
+uint32_t takeNumber(const RtslJob &job, TakenSamples &taken, bool needsOne, uint32_t atOnce,
+                    const Take &take) {
   const uint32_t waiting = warp::lanesWhere(needsOne);
   const auto count = uint32_t(__builtin_popcount(waiting));
   const auto before = uint32_t(__builtin_popcount(waiting & __nvvm_read_ptx_sreg_lanemask_lt()));
   const uint32_t left = taken.end - taken.next;
-  uint32_t sample = taken.next + before;
+  uint32_t number = taken.next + before;
   taken.next += count;
   if (count <= left)
-    return sample;
-  const uint32_t atOnce = samplesAtOnce(job, taken.end);
+    return number;
   uint32_t first = TakenSamples::none, stops = 0;
   if (needsOne && before == 0 && !taken.areLast) { // a GPU does both at the same time
-    first =
-        uint32_t(__atomic_fetch_add(&job.status->nextSample, uint64_t(atOnce), __ATOMIC_RELAXED));
+    first = take();
     stops = isToStop(job);
   }
   const int leader = __builtin_ctz(waiting);
@@ -114,11 +119,32 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOn
   taken.areLast |= warp::lanesWhere(stops) != 0;
   if (first == TakenSamples::none) {
     taken.next = taken.end = 0;
-    return before < left ? sample : TakenSamples::none;
+    return before < left ? number : TakenSamples::none;
   }
   taken.next = first + (count - left);
   taken.end = first + atOnce;
-  return before < left ? sample : first + (before - left);
+  return before < left ? number : first + (before - left);
+}
+
+/// The next sample for each lane of the warp that needs one; all lanes call together. The number is
+/// not below samplesOfSlice(job) if none is left.
+inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool needsOne) {
+  const uint32_t atOnce = samplesAtOnce(job, taken.end);
+  return takeNumber(job, taken, needsOne, atOnce, [&] {
+    return uint32_t(
+        __atomic_fetch_add(&job.status->nextSample, uint64_t(atOnce), __ATOMIC_RELAXED));
+  });
+}
+
+/// The same for places, of pixels whose samples are all taken: not below placesOfSlice(job) if none
+/// is left.
+inline uint32_t takePlace(const RtslJob &job, TakenSamples &taken, bool needsOne) {
+  return takeNumber(job, taken, needsOne, lanesOfWarp, [&] {
+    const uint64_t sample = __atomic_fetch_add(
+        &job.status->nextSample, uint64_t(lanesOfWarp) * job.sampleCount, __ATOMIC_RELAXED);
+    return sample < samplesOfSlice(job) ? quotient(uint32_t(sample), job.bySampleCount)
+                                        : TakenSamples::none;
+  });
 }
 
 /// The next sample for each lane of the warp that needs one, without any in reserve; all lanes call
@@ -148,6 +174,15 @@ inline uint32_t takeSample(const RtslJob &job, TakenSamples &taken, bool) {
     taken.end = taken.next + atOnce;
   }
   return taken.next++;
+}
+
+inline uint32_t takePlace(const RtslJob &job, TakenSamples &, bool needsOne) {
+  if (!needsOne || isToStop(job))
+    return TakenSamples::none;
+  const uint64_t sample =
+      __atomic_fetch_add(&job.status->nextSample, uint64_t(job.sampleCount), __ATOMIC_RELAXED);
+  return sample < samplesOfSlice(job) ? quotient(uint32_t(sample), job.bySampleCount)
+                                      : TakenSamples::none;
 }
 
 inline uint32_t takeOneSample(const RtslJob &job, bool) {

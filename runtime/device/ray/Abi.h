@@ -100,6 +100,8 @@ uint32_t rtsl_has_half_pairs(void);
 uint32_t rtsl_generates(const RtslLaunch *launch);
 /// Whether the program was compiled with --fp=fast.
 uint32_t rtsl_is_fast(void);
+/// Whether shaders of hits send rays; otherwise only `generate` does.
+uint32_t rtsl_rays_leave_hits(void);
 /// RTSL_SCHEDULE_*: how the lanes of a warp choose the next step.
 #define RTSL_SCHEDULE_MAJORITY 0u
 #define RTSL_SCHEDULE_PRIORITIZED 1u
@@ -112,6 +114,8 @@ uint32_t rtsl_schedule(const RtslLaunch *launch);
 uint32_t rtsl_states_run_on(const RtslLaunch *launch);
 /// How many samples a warp takes at once while many are left.
 uint32_t rtsl_samples_at_once(const RtslLaunch *launch);
+/// Whether a lane of the megakernel renders whole pixels, where a job allows it.
+uint32_t rtsl_takes_pixels(const RtslLaunch *launch);
 /// What the steps of the megakernel cost, as powers of two: 4 bits for each of traversal, the
 /// beginning of samples, and the states in the order of their numbers; the last for all that
 /// follow. Of RTSL_SCHEDULE_LEAST_WASTE only.

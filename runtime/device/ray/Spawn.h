@@ -108,6 +108,8 @@ struct LeftHit {
 };
 
 inline LeftHit leftHit(const RtslState &parent) {
+  if (!rtsl_rays_leave_hits())
+    return {RTSL_NO_HIT, 0, {0, 0, 0}, {0, 0, 0}, 0};
   return {parent.instance, leftPrimitive(parent), load(parent.HitPoint),
           load(parent.GeometricNormal), parent.hitPointError};
 }

@@ -41,6 +41,7 @@ typedef struct RtslStatus {
   RtslTreeVisits visits;
   uint32_t stop;    // set by the host or a lane: no lane takes samples any more
   uint32_t problem; // RTSL_PROBLEM_*
+  uint32_t hasSums; // lanes have added the samples of the slice to the sums, and computed the means
   RtslPrintedLines
       *printed; // null: the program prints nothing, or the host takes each line at once
 } RtslStatus;
