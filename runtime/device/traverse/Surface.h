@@ -121,16 +121,19 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, const Trian
   if (needs & (RTSL_NEEDS_TEXTURE_COORDINATES | RTSL_NEEDS_DERIVATIVES)) {
     // Without texture coordinates a triangle is its own unit triangle.
     static constexpr float own[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-    const float *uv0 = mesh.uvs ? mesh.uvs + 2 * size_t(index[0]) : own[0];
-    const float *uv1 = mesh.uvs ? mesh.uvs + 2 * size_t(index[1]) : own[1];
-    const float *uv2 = mesh.uvs ? mesh.uvs + 2 * size_t(index[2]) : own[2];
-    float s = fused(uv0[0], w, fused(uv1[0], u, uv2[0] * v));
-    float t = fused(uv0[1], w, fused(uv1[1], u, uv2[1] * v));
-    state.TextureUV[0] = s;
-    state.TextureUV[1] = t;
+    const auto uvOf = [&](int corner) {
+      return mesh.uvs ? mesh.uvs + 2 * size_t(index[corner]) : own[corner];
+    };
+    state.TextureUV[0] = u;
+    state.TextureUV[1] = v;
+    if (mesh.uvs) {
+      const float *uv0 = uvOf(0), *uv1 = uvOf(1), *uv2 = uvOf(2);
+      state.TextureUV[0] = fused(uv0[0], w, fused(uv1[0], u, uv2[0] * v));
+      state.TextureUV[1] = fused(uv0[1], w, fused(uv1[1], u, uv2[1] * v));
+    }
     store(state.TextureUVW, load(state.HitPoint));
     if (needs & RTSL_NEEDS_DERIVATIVES)
-      triangleDerivatives(state, p, uv0, uv1, uv2);
+      triangleDerivatives(state, p, uvOf(0), uvOf(1), uvOf(2));
   }
 }
 
