@@ -249,7 +249,8 @@ void reportUnanswered(const LinkContext &context, const RayType &type) {
   bool isAnswered = !methodsFor(context, type, "miss").empty();
   const std::vector<std::set<std::string>> requirements = requirementsFor(context, type);
   for (const LinkedClass &linked : context.classes) {
-    if (!linked.isUsed || linked.info->root != "rt_Material")
+    // No object is of a default class, which is used if all classes are kept.
+    if (!linked.isUsed || linked.info->root != "rt_Material" || !requiredBy(linked.info).empty())
       continue;
     const bool isHandled = findMethod(context, linked, "closestHit." + type.name()) ||
                            findMethod(context, linked, "anyHit." + type.name());

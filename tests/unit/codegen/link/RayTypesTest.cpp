@@ -153,6 +153,22 @@ class Eye : rt_RayGeneration {
             "`BSDF` and `evaluatePDF`, nor `sampleBSDF`");
 }
 
+TEST(RayTypes, DefaultClassesThatAreKeptAreNoMaterials) {
+  LinkRequest request{{"Eye", "Own"}, {}, {}, {}, {}, {}, true, runtime::Engine::Programs};
+  request.keep = ItemSet::all();
+  Linked linked(R"(
+struct Seen { float x; };
+default class Surface : rt_Material { void shade(); void closestHit(inout Seen s) {} };
+default class Scatters : rt_Material { void sampleBSDF(); };
+class Own : rt_Material { void shade() {} };
+class Eye : rt_RayGeneration {
+  void generate() { Seen s = Seen(0.5); trace(vec3(0.0), vec3(1.0), 0.0, 1.0, s); rt_SampleColor = color(s.x); }
+};)",
+                request);
+  EXPECT_TRUE(linked.succeeded);
+  EXPECT_TRUE(linked.diagnostics.all().empty()) << renderText(linked.diagnostics, false);
+}
+
 TEST(RayTypes, EachTypeHasItsPrograms) {
   Linked linked(R"(
 struct A { float x; };
