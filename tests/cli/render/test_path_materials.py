@@ -31,6 +31,36 @@ LEANING = (  # normals that are not those of the surface
 class Methods(PathCase):
     """Materials that have some of the methods."""
 
+    def test_numbers_of_textures_that_are_no_roughness(self):
+        """They count as the nearest one, and tiny ones as 0: the picture has the same bits."""
+        for name, number, nearest in (
+            ("Conductor", 1e-20, 0),
+            ("Dielectric", 1e30, 1),
+            ("Plastic", -1, 0),
+        ):
+            means = []
+            for value in (number, nearest, 0.3):
+                pattern = {"class": "Solid", "value": value}
+                self.scene(
+                    [(BALL, {"class": name, "alpha": 1, "alphaMap": pattern})],
+                    camera="Down",
+                    spp=4,
+                    size=(8, 8),
+                    background={"class": "GradientSky"},
+                    **{
+                        "import": [
+                            "std.materials",
+                            "std.primitives",
+                            "std.textures",
+                            "std.backgrounds",
+                            "shaders.rtsl",
+                        ]
+                    },
+                )
+                means.append(self.mean())
+            self.assertEqual(means[0], means[1], name)
+            self.assertNotEqual(means[0], means[2], name)
+
     def test_a_derived_class_may_add_evaluatePDF(self):
         pictures = []
         for name in ("Own", "Whole"):
