@@ -1,7 +1,7 @@
 //===- MemoryAccesses.h - memory that operations read and write -----------===//
 //
 // The one analysis of memory on the IR: of single operations here, and of functions with their
-// callees in Recompute.h (WriteSummary).
+// callees in Recompute.h (WriteSummary) and, before they are inlined, in ShareCalls.cpp.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

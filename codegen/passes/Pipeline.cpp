@@ -6,6 +6,7 @@
 #include "codegen/passes/ForgetArguments.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/PropagateConstants.h"
+#include "codegen/passes/ShareCalls.h"
 #include "codegen/passes/ShareExpressions.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
@@ -21,16 +22,23 @@
 
 namespace rtsl::codegen {
 
+static void addOnePromotion(mlir::OpPassManager &function) {
+  function.addPass(mlir::createSROA());
+  function.addPass(createPromoteVariablesPass());
+  function.addPass(mlir::createMem2Reg());
+}
+
 /// Splits variables into parts, promotes them to values and cleans up. Twice: an index that was in
-/// a variable is a constant only after the first time.
-static void addPromotion(mlir::OpPassManager &function) {
+/// a variable is a constant only after the first time. With `endsLoops`, loops that end before
+/// their first iteration are removed.
+static void addPromotion(mlir::OpPassManager &function, bool endsLoops = false) {
   function.addPass(createHoistVariablesPass());
-  for (int round = 0; round < 2; ++round) {
-    function.addPass(mlir::createSROA());
-    function.addPass(createPromoteVariablesPass());
-    function.addPass(mlir::createMem2Reg());
-    function.addPass(createSimplifyPass());
-  }
+  addOnePromotion(function);
+  function.addPass(createSimplifyPass());
+  addOnePromotion(function);
+  if (endsLoops)
+    function.addPass(createPropagateConstantsPass(/*inLoops=*/true));
+  function.addPass(createSimplifyPass());
 }
 
 void buildSsaPipeline(mlir::OpPassManager &module) {
@@ -38,13 +46,17 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   auto &functions = module.nest<mlir::func::FuncOp>();
   functions.addPass(createBindMembersPass());
   functions.addPass(createToControlFlowPass());
-  addPromotion(functions);
+  addPromotion(functions, /*endsLoops=*/true);
 
-  // Arguments and results that are aggregates stay in memory until their function is inlined.
+  // Arguments and results that are aggregates stay in memory until their function is inlined. What
+  // nothing calls would count as a caller.
+  module.addPass(mlir::createSymbolDCEPass());
   module.addPass(createInlineFunctionsPass());
+  auto &promoted = module.nest<mlir::func::FuncOp>();
+  addPromotion(promoted);
+  promoted.addPass(createPropagateConstantsPass());
+  module.addPass(createShareCallsPass());
   auto &inlined = module.nest<mlir::func::FuncOp>();
-  addPromotion(inlined);
-  inlined.addPass(createPropagateConstantsPass());
   inlined.addPass(createExpandCopiesPass());
   inlined.addPass(createBindMembersPass()); // for members that copies have hidden
   inlined.addPass(createSimplifyPass());
@@ -77,9 +89,10 @@ void registerPasses() {
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass(createForgetArgumentsPass);
   mlir::registerPass([] { return createInlineFunctionsPass(); });
+  mlir::registerPass(createShareCallsPass);
   mlir::registerPass(createShareExpressionsPass);
   mlir::registerPass([] { return createPromoteVariablesPass(/*fewest=*/0); });
-  mlir::registerPass(createPropagateConstantsPass);
+  mlir::registerPass([] { return createPropagateConstantsPass(); });
   mlir::registerPass(createSimplifyPass);
   mlir::PassPipelineRegistration<>("rtsl-ssa", "level 1 to level 2, optimised", buildSsaPipeline);
 }

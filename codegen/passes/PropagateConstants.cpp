@@ -12,6 +12,8 @@
 #include "mlir/Pass/Pass.h"
 #include "mlir/Transforms/FoldUtils.h"
 
+#include "llvm/ADT/SmallPtrSet.h"
+
 #include <algorithm>
 
 namespace rtsl::codegen {
@@ -75,9 +77,22 @@ void joinInSteps(mlir::Block &join) {
   }
 }
 
+/// Blocks are in the order of the source, so only loops lead back.
+bool hasLoop(mlir::Region &body) {
+  llvm::SmallPtrSet<mlir::Block *, 16> before;
+  for (mlir::Block &block : body) {
+    before.insert(&block);
+    if (llvm::any_of(block.getSuccessors(),
+                     [&](mlir::Block *next) { return before.contains(next); }))
+      return true;
+  }
+  return false;
+}
+
 struct PropagateConstants
     : mlir::PassWrapper<PropagateConstants, mlir::OperationPass<mlir::func::FuncOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(PropagateConstants)
+  explicit PropagateConstants(bool inLoops) : inLoops(inLoops) {}
   llvm::StringRef getArgument() const override { return "rtsl-propagate-constants"; }
   llvm::StringRef getDescription() const override {
     return "propagates constants through branches and loops";
@@ -85,7 +100,7 @@ struct PropagateConstants
 
   void runOnOperation() override {
     mlir::func::FuncOp function = getOperation();
-    if (function.isExternal())
+    if (function.isExternal() || (inLoops && !hasLoop(function.getBody())))
       return;
     llvm::SmallVector<mlir::Block *> joins;
     for (mlir::Block &block : function.getBody())
@@ -124,12 +139,15 @@ struct PropagateConstants
         replace(argument);
     }
   }
+
+private:
+  bool inLoops;
 };
 
 } // namespace
 
-std::unique_ptr<mlir::Pass> createPropagateConstantsPass() {
-  return std::make_unique<PropagateConstants>();
+std::unique_ptr<mlir::Pass> createPropagateConstantsPass(bool inLoops) {
+  return std::make_unique<PropagateConstants>(inLoops);
 }
 
 } // namespace rtsl::codegen

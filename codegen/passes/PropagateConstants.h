@@ -15,7 +15,7 @@ class Pass;
 
 namespace rtsl::codegen {
 
-/// `rtsl-propagate-constants`, on a function.
-std::unique_ptr<mlir::Pass> createPropagateConstantsPass();
+/// `rtsl-propagate-constants`, on a function. With `inLoops`, only if it has a loop.
+std::unique_ptr<mlir::Pass> createPropagateConstantsPass(bool inLoops = false);
 
 } // namespace rtsl::codegen
