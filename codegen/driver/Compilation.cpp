@@ -2,10 +2,13 @@
 #include "codegen/driver/Compilation.h"
 
 #include "codegen/driver/Places.h"
+#include "codegen/driver/Steps.h"
+#include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/BindScene.h"
 #include "codegen/link/Link.h"
 #include "codegen/link/UnrollRecursion.h"
+#include "codegen/passes/Pipeline.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 
 #include <stdexcept>
@@ -82,8 +85,36 @@ static bool requireNoRecursion(Compilation &compilation) {
   return false;
 }
 
+/// Level 2 without states, if no ray waits for another one and there is one place for traversal, so
+/// that calls can be inlined (runtime/device/organisations/WholeSamples.h).
+static mlir::OwningOpRef<mlir::ModuleOp> withoutStates(const Compilation &compilation) {
+  const CompileOptions &options = compilation.options;
+  const runtime::Program &program = *compilation.program;
+  const bool mayBe =
+      compilation.input.scene && program.engine == runtime::Engine::Programs &&
+      program.paths == runtime::Paths::Single && !program.raysLeaveHits &&
+      options.organisation.value_or(Organisation::Megakernel) == Organisation::Megakernel &&
+      !options.schedule && !options.countsSteps;
+  if (!mayBe)
+    return nullptr;
+  mlir::OwningOpRef<mlir::ModuleOp> whole = mlir::ModuleOp(*compilation.ir).clone();
+  run(*whole, codegen::buildSsaPipeline);
+  std::size_t places = 0;
+  bool looksForLamps = false;
+  whole->walk([&](mlir::Operation *op) {
+    places += ir::isTrace(op);
+    looksForLamps |= ir::sendsRays(op) && !ir::isTrace(op);
+  });
+  if (places > 1 || looksForLamps)
+    return nullptr;
+  return whole;
+}
+
 bool reachGpuMachine(Compilation &compilation) {
-  return reachIr(compilation) && requireNoRecursion(compilation) && reachMachine(compilation);
+  if (!reachIr(compilation) || !requireNoRecursion(compilation))
+    return false;
+  compilation.whole = withoutStates(compilation);
+  return reachMachine(compilation);
 }
 
 } // namespace rtsl::driver

@@ -39,6 +39,8 @@ struct Compilation {
 
   std::shared_ptr<mlir::MLIRContext> context;
   mlir::OwningOpRef<mlir::ModuleOp> ir;
+  /// For a GPU: level 2 without states, if the program needs none.
+  mlir::OwningOpRef<mlir::ModuleOp> whole;
   std::shared_ptr<runtime::Program> program = std::make_shared<runtime::Program>(); // of a scene
   std::optional<ModuleFacts> moduleFacts; // of a module without a scene
   SplitReport report;
@@ -67,8 +69,8 @@ bool reachStates(Compilation &compilation);
 bool reachStructured(Compilation &compilation);
 /// Level 2, like `split`, with numbers in place of names, and the functions that the machine calls.
 bool reachMachine(Compilation &compilation);
-/// The same for a GPU, which has no stack for recursion. In a bound program recursion remains only
-/// if it is deep: that is an error.
+/// The same for a GPU, which has no stack for recursion; and `whole`. In a bound program recursion
+/// remains only if it is deep: that is an error.
 bool reachGpuMachine(Compilation &compilation);
 
 } // namespace rtsl::driver

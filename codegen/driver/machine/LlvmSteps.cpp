@@ -1,6 +1,7 @@
 //===- LlvmSteps.cpp - the steps to LLVM IR, PTX and machine code ---------===//
 #include "codegen/driver/machine/LlvmSteps.h"
 
+#include "codegen/driver/Compilation.h"
 #include "codegen/driver/Steps.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/emit/StepCosts.h"
@@ -167,21 +168,24 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
 }
 
 /// What a program exports on a GPU.
-static std::vector<std::string> kernels(Organisation organisation) {
-  if (organisation == Organisation::Megakernel)
+static std::vector<std::string> kernels(const LlvmCode &code) {
+  if (code.isWhole)
+    return {"rtsl_render_whole", "rtsl_sum"};
+  if (code.organisation == Organisation::Megakernel)
     return {"rtsl_render", "rtsl_sum"};
-  if (organisation == Organisation::Persistent)
+  if (code.organisation == Organisation::Persistent)
     return {"rtsl_persistent", "rtsl_block_state", "rtsl_sum", "rtsl_slots_have_stacks",
             "rtsl_record_groups"};
   return {"rtsl_wave_begin", "rtsl_wave_sample",       "rtsl_wave_trace",   "rtsl_wave_state",
           "rtsl_sum",        "rtsl_slots_have_stacks", "rtsl_record_groups"};
 }
 
-LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
-                    const runtime::Program &program, bool forGpu) {
+static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
+                           const runtime::Program &program, bool forGpu, bool isWhole) {
   LlvmCode code =
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, options, program);
+  code.isWhole = isWhole;
   code.organisation = forGpu ? organisationFor(options, program, *code.module)
                              : options.organisation.value_or(Organisation::Megakernel);
   decideWhetherLanesTakePixels(code, program);
@@ -193,11 +197,26 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   if (keepsRecords)
     beginRecords(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
-                 forGpu ? kernels(code.organisation) : hostEntries(code.organisation));
+                 forGpu ? kernels(code) : hostEntries(code.organisation));
+  if (isWhole)
+    code.module->getFunction("rtsl_render_whole")->setName("rtsl_render");
   if (keepsRecords)
     endRecords(code, program);
   code.options.isMegakernel = true;
   return code;
+}
+
+LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
+                    const runtime::Program &program, bool forGpu) {
+  return makeKernel(ir, options, program, forGpu, /*isWhole=*/false);
+}
+
+LlvmCode gpuKernel(const Compilation &compilation) {
+  const bool isWhole = bool(compilation.whole);
+  // Translation consumes a module, and the program for the host needs the one with states.
+  const mlir::OwningOpRef<mlir::ModuleOp> ir =
+      mlir::ModuleOp(isWhole ? *compilation.whole : *compilation.ir).clone();
+  return makeKernel(*ir, compilation.options, *compilation.program, /*forGpu=*/true, isWhole);
 }
 
 void beginRecords(LlvmCode &code, const runtime::Program &program) {

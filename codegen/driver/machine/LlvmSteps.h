@@ -33,6 +33,8 @@ T take(llvm::Expected<T> expected) {
   return std::move(*expected);
 }
 
+struct Compilation;
+
 /// LLVM IR before code generation.
 struct LlvmCode {
   LlvmCode() = default;
@@ -44,6 +46,7 @@ struct LlvmCode {
   std::vector<std::string> kept; // functions that are kept although nothing calls them
   // Of a self-contained program:
   Organisation organisation = Organisation::Megakernel;
+  bool isWhole = false;     // it has no states
   bool takesPixels = false; // lanes render whole pixels where a job allows it
 };
 
@@ -68,6 +71,9 @@ const std::vector<std::string_view> &megakernelCode(bool forGpu);
 /// (runtime/device/organisations/Megakernel.h), before optimisation: for a GPU, or for the CPU.
 LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
+
+/// The same for the GPU of a compilation that has reached it: without states if it needs none.
+LlvmCode gpuKernel(const Compilation &compilation);
 
 /// The functions that such a program exports on the CPU: the size of a lane, and what runs it.
 const std::vector<std::string> &

@@ -89,9 +89,7 @@ static bool reachPtx(Compilation &compilation) {
     return false;
   const CompileOptions &options = compilation.options;
   compilation.text =
-      compilation.input.scene
-          ? toPtx(megakernel(*compilation.ir, options, *compilation.program, /*forGpu=*/true))
-          : modulePtx(*compilation.ir, options);
+      compilation.input.scene ? toPtx(gpuKernel(compilation)) : modulePtx(*compilation.ir, options);
   return true;
 }
 

@@ -32,7 +32,7 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
 static std::uint32_t registersFor(const LlvmCode &code, runtime::Paths paths) {
   if (code.organisation != Organisation::Megakernel)
     return 168;
-  if (code.takesPixels)
+  if (code.isWhole || code.takesPixels)
     return 64;
   if (paths == runtime::Paths::Alike)
     return 128;
@@ -52,8 +52,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
     return false;
   package.frameBytes = compilation.report.frameSize();
   package.stateCount = compilation.report.stateCount();
-  const mlir::OwningOpRef<mlir::ModuleOp> forGpu = mlir::ModuleOp(*compilation.ir).clone();
-  LlvmCode code = megakernel(*forGpu, options, *compilation.program, /*forGpu=*/true);
+  LlvmCode code = gpuKernel(compilation);
   const Organisation organisation = code.organisation;
   package.registers = registersFor(code, compilation.program->paths);
   package.ptx = toPtx(std::move(code), &package.wave);

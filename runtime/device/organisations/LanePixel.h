@@ -8,9 +8,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/engines/Machine.h"
 #include "runtime/device/organisations/SampleSums.h"
-#include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/organisations/Slice.h"
 
 namespace rtsl::device {
@@ -21,7 +19,7 @@ inline bool lanesTakePixels(const RtslJob &job) {
 
 struct LanePixel {
   Pixel pixel{none, 0};
-  uint32_t sample = 0; // that is rendered, or will be the next
+  uint32_t sample = 0; // that is rendered
   PixelSum sum;
 
   static constexpr uint32_t none = 0xffffffffu;
@@ -34,16 +32,16 @@ inline LanePixel lanePixelAt(const RtslJob &job, uint32_t place) {
   return {pixel, job.firstSample, sumBefore(job, pixel.number(job), 0)};
 }
 
-/// The step of the lanes that begin a sample: they end that before, and take another pixel after
-/// the last one. All lanes of a warp call together.
-inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel &own,
-                             bool takesPart, Rays &rays) {
+/// Goes on to the next sample in the lanes for which `goesOn` holds: adds that before, whose color
+/// is `color`, and takes another pixel after the last one. There is none if no pixel is left. All
+/// lanes of a warp call together.
+inline void goToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel &own, bool goesOn,
+                           const float *color) {
   const uint32_t end = job.firstSample + job.sampleCount;
-  bool needsPixel = takesPart;
-  if (takesPart && own.isThere()) {
-    endSample(rays);
+  bool needsPixel = goesOn;
+  if (goesOn && own.isThere()) {
     const uint64_t number = own.pixel.number(job);
-    addSample(job, own.sum, number, own.sample++, rays.ray.state.SampleColor);
+    addSample(job, own.sum, number, own.sample++, color);
     needsPixel = own.sample == end;
     if (needsPixel) {
       putSum(job, own.sum, number, 0, end);
@@ -51,17 +49,11 @@ inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel 
         job.sums.taken[number] = end;
     }
   }
-  if (warp::lanesWhere(needsPixel)) {
-    const uint32_t place = takePlace(job, taken, needsPixel);
-    if (needsPixel)
-      own = place < placesOfSlice(job) ? lanePixelAt(job, place) : LanePixel();
-  }
-  if (!takesPart)
+  if (!warp::lanesWhere(needsPixel))
     return;
-  if (own.isThere())
-    startRays(rays, *job.launch, job.left + own.pixel.x, job.top + own.pixel.y, own.sample);
-  else
-    rays.next = Step::nothing;
+  const uint32_t place = takePlace(job, taken, needsPixel);
+  if (needsPixel)
+    own = place < placesOfSlice(job) ? lanePixelAt(job, place) : LanePixel();
 }
 
 } // namespace rtsl::device

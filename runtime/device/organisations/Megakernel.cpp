@@ -7,6 +7,7 @@
 #include "runtime/device/organisations/Megakernel.h"
 
 #include "runtime/device/organisations/SampleSums.h"
+#include "runtime/device/organisations/WholeSamples.h"
 #include "runtime/device/traverse/AnyHit.h"
 
 using namespace rtsl;
@@ -59,6 +60,13 @@ static uint32_t threadNumber() {
 /// The kernel: one thread per lane, in whole warps.
 __attribute__((nvptx_kernel)) void rtsl_render(const RtslJob job) {
   device::runLane(job, threadNumber());
+}
+/// The same for programs without states; it gets the name of the other one, which they lack.
+__attribute__((nvptx_kernel)) void rtsl_render_whole(const RtslJob job) {
+  if (device::lanesTakePixels(job))
+    device::runWholePixels(job);
+  else
+    device::runWholeSamples(job);
 }
 /// The kernel that adds its samples to the sums afterwards, with any number of threads.
 __attribute__((nvptx_kernel)) void rtsl_sum(const RtslJob job) {

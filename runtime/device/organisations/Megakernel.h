@@ -85,6 +85,20 @@ inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, uint32_t &
     sample = TakenSamples::none;
 }
 
+/// The same if lanes take pixels.
+inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel &own,
+                             bool takesPart, Rays &rays) {
+  if (takesPart && own.isThere())
+    endSample(rays);
+  goToNextSample(job, taken, own, takesPart, rays.ray.state.SampleColor);
+  if (!takesPart)
+    return;
+  if (own.isThere())
+    startRays(rays, *job.launch, job.left + own.pixel.x, job.top + own.pixel.y, own.sample);
+  else
+    rays.next = Step::nothing;
+}
+
 /// Runs states until the lane has to trace a ray, or its sample is over. The code generator
 /// recognises the loop by its mark (keepStatesInLoop in codegen/emit/LlvmModule.cpp).
 inline void runStates(const RtslJob &job, Rays &rays) {
