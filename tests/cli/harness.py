@@ -97,6 +97,17 @@ def numbers_of(line):
     return [float(n) for n in re.findall(r"[-+]?(?:\d[\d.e+-]*|inf|nan)", values)]
 
 
+# Ways to render a scene on the CPU: the pictures have the same bits.
+WAYS = (
+    ["--trace=recurse"],
+    ["--trace=split"],
+    ["--traversal=device"],
+    ["--target=host-megakernel"],
+    ["--keep=all"],
+    ["--threads", "1"],
+)
+
+
 class Case(unittest.TestCase):
     # The level of optimisation of these commands where a test gives none; None: that of users, as
     # in `make deep`. No picture depends on it, which tests/render and the conformance suite check,

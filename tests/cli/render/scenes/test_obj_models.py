@@ -8,8 +8,7 @@ import subprocess
 import unittest
 import zlib
 
-from harness import DIAGNOSED, RTSLC, SECONDS, Case, deep
-from path_case import WAYS
+from harness import DIAGNOSED, RTSLC, SECONDS, WAYS, Case, deep
 
 # Two squares side by side that face the camera, and a material for each.
 OBJ = """mtllib squares.mtl

@@ -7,7 +7,7 @@ import unittest
 
 from footprint_case import PLANE, FootprintCase, MeshCase, add, cross, dot, unit
 
-TABLE = pathlib.Path(__file__).resolve().parents[3] / "language" / "Derivatives.def"
+TABLE = pathlib.Path(__file__).resolve().parents[4] / "language" / "Derivatives.def"
 
 # By row of the table: a function of p, which is between 0.2 and 0.8 in both coordinates. Vectors
 # are weighed into one number. Clamp and its like are on the side that changes.

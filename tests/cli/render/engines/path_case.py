@@ -3,7 +3,7 @@
 import json
 import pathlib
 
-from harness import RTSLC, Case
+from harness import RTSLC, WAYS, Case
 
 # A diffuse surface, without emission and evaluatePDF.
 DIFFUSE = """\
@@ -115,14 +115,6 @@ class Down : rt_Camera {
 
 BALL = {"class": "Sphere", "center": [0, 0, 0], "radius": 2}
 FLOOR = {"class": "Parallelogram", "constructor": [[-1000, 0, -1000], [0, 0, 2000], [2000, 0, 0]]}
-WAYS = (
-    ["--trace=recurse"],
-    ["--trace=split"],
-    ["--traversal=device"],
-    ["--target=host-megakernel"],
-    ["--keep=all"],
-    ["--threads", "1"],
-)
 
 
 class PathCase(Case):
