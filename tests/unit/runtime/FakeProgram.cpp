@@ -1,5 +1,6 @@
 #include "tests/unit/runtime/FakeProgram.h"
 
+#include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Vector.h"
 
 #include <cmath>
@@ -82,7 +83,11 @@ void rtsl_rt_Primitive_computeDerivatives(RtslState *, RtslRef) {}
 void rtsl_rt_Primitive_rt_boundHitError(RtslState *, RtslRef) {}
 void rtsl_rt_Primitive_rt_computeChanges(RtslState *, RtslRef) {}
 void rtsl_rt_Texture_lookup(RtslState *, RtslRef) {}
-void rtsl_rt_RayGeneration_generate(RtslState *, RtslRef) {}
+void rtsl_rt_RayGeneration_generate(RtslState *state, RtslRef) {
+  const float drawn[3] = {drawNumber(*state, 0), 3 * drawNumber(*state, 1), 0.1f};
+  for (int i = 0; i < 3; ++i)
+    state->SampleColor[i] = drawn[i] + float(state->LaunchIndex[0]) + 1e5f * float(i);
+}
 void rtsl_rt_Exception_exception(RtslState *, RtslRef) {}
 void rtsl_rt_Selector_visit(RtslState *state, RtslRef) {
   const float sum = state->RayOrigin[0] + 0.7f * state->RayOrigin[1] + state->RayDirection[2];

@@ -13,7 +13,7 @@ using device::Vec3;
 
 namespace {
 
-class Cases {
+class BoxCases {
 public:
   float unit() { return std::uniform_real_distribution<float>(-1, 1)(random); }
   unsigned below(unsigned n) { return unsigned(random() % n); }
@@ -47,12 +47,12 @@ private:
   std::mt19937 random{3};
 };
 
-bool sameBits(float a, float b) {
+bool haveSameBits(float a, float b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 TEST(ItemList, HasTheRangesOfSingleBoxes) {
-  Cases cases;
+  BoxCases cases;
   unsigned entries = 0;
   for (int i = 0; i < 20000; ++i) {
     const std::vector<RtslBox> boxes = cases.boxes();
@@ -67,8 +67,8 @@ TEST(ItemList, HasTheRangesOfSingleBoxes) {
       ASSERT_EQ(entered.items >> k & 1, unsigned(isEntered)) << i << ' ' << k;
       if (!isEntered)
         continue;
-      ASSERT_TRUE(sameBits(entered.range(k).near, range.near)) << i << ' ' << k;
-      ASSERT_TRUE(sameBits(entered.range(k).far, range.far)) << i << ' ' << k;
+      ASSERT_TRUE(haveSameBits(entered.range(k).near, range.near)) << i << ' ' << k;
+      ASSERT_TRUE(haveSameBits(entered.range(k).far, range.far)) << i << ' ' << k;
       ++entries;
     }
     if (boxes.size() < runtime::ItemList::most) {
