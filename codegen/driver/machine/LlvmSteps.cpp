@@ -15,6 +15,7 @@
 #include "codegen/link/Link.h"
 #include "runtime/program/DeviceBitcode.h"
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -85,7 +86,7 @@ static bool hasTree(const llvm::Module &module) {
 }
 
 /// Whether the states of a program send rays. Without `generate` cameras do.
-static bool sendsRays(const runtime::Program &program, const llvm::Module &module) {
+static bool statesSendRays(const runtime::Program &program, const llvm::Module &module) {
   return program.engine != runtime::Engine::Programs ||
          llvm::any_of(std::array{"rtsl_spawn", "rtsl_spawn_last", "rtsl_spawn_payload",
                                  "rtsl_spawn_last_payload"},
@@ -138,12 +139,13 @@ static std::uint32_t samplesAtOnce(const llvm::Module &module) {
 }
 
 /// A gain if what this saves is much of a sample, and if the lanes of a warp, which then have other
-/// pixels, still do the same. Searching a tree takes the registers that the sums would need.
+/// pixels, still do the same. In programs with states, searching a tree takes the registers that the
+/// sums would need.
 void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program) {
   const llvm::Module &module = *code.module;
   code.takesPixels = code.organisation == Organisation::Megakernel &&
                      program.paths == runtime::Paths::Single && hasShortShaders(module) &&
-                     !(hasTree(module) && sendsRays(program, module));
+                     (code.isWhole || !hasTree(module) || !statesSendRays(program, module));
   codegen::defineConstant(*code.module, "rtsl_takes_pixels", code.takesPixels);
 }
 
