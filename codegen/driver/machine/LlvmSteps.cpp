@@ -139,8 +139,8 @@ static std::uint32_t samplesAtOnce(const llvm::Module &module) {
 }
 
 /// A gain if what this saves is much of a sample, and if the lanes of a warp, which then have other
-/// pixels, still do the same. In programs with states, searching a tree takes the registers that the
-/// sums would need.
+/// pixels, still do the same. In programs with states, searching a tree takes the registers that
+/// the sums would need.
 void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program) {
   const llvm::Module &module = *code.module;
   code.takesPixels = code.organisation == Organisation::Megakernel &&
