@@ -56,6 +56,22 @@ class Lenses(Case):
             )
             self.assert_alike(far, farther, 2)
 
+    def test_up_along_the_line_of_sight(self):
+        """The picture is that of another direction, which the library documents."""
+        for eye, up, other in (
+            ([0, 5, 0], [0, 1, 0], [0, 0, -1]),
+            ([0, -5, 0], [0, 0, 0], [0, 0, -1]),
+            ([0, 0, 5], [0, 0, -2], [0, 1, 0]),
+        ):
+            known, chosen = (
+                self.red(
+                    {"class": "PerspectiveCamera", "constructor": [eye, [0, 0, 0], direction]},
+                    objects=[{**BALL, "primitive": {"class": "Sphere", "center": [0.7, 0.5, 0.6]}}],
+                )
+                for direction in (other, up)
+            )
+            self.assert_alike(known, chosen, 0)
+
 
 if __name__ == "__main__":
     unittest.main()
