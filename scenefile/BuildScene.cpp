@@ -1,7 +1,7 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/scene/MeshValues.h"
+#include "scenefile/DarkLights.h"
 #include "scenefile/ImageObjects.h"
-#include "scenefile/LightAreas.h"
 #include "scenefile/PrimitiveCount.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/files/MeshFiles.h"
@@ -107,8 +107,8 @@ private:
         const std::string name = fmt::format("{} (lights.{})", light.className.text, i);
         const RtslRef reference = add(light, name);
         scene.addLight(reference);
-        if (const std::optional<std::string> why = whyWithoutArea(scene, reference))
-          scene.addWarning({message::lightWithoutArea(name, *why), light.className.place});
+        if (const std::optional<std::string> why = whyDark(scene, reference))
+          scene.addWarning({message::lightIsDark(name, *why), light.className.place});
       });
   }
 

@@ -103,10 +103,10 @@ class Lights(PathCase):
                 self.assertEqual(means[1] > 0, isLit)
                 self.assertAlmostEqual(*means, delta=0.02 * means[1])
 
-    def test_lights_without_an_area_send_out_nothing(self):
-        """And each is named, with what is wrong; those that have an area are not."""
+    def test_lights_without_an_area_or_a_direction_send_out_nothing(self):
+        """And each is named, with what is wrong; those that have both are not."""
         lines = [[0, 1, 0], [1, 1, 0], [3, 1, 0]]
-        dark = [
+        flat = [
             ("it has no triangles", {"class": "MeshLight"}),
             ("all of its triangles are lines or points", {"class": "MeshLight", "vertices": lines}),
             (
@@ -121,7 +121,18 @@ class Lights(PathCase):
             ("its radius is 0", {"class": "DiskLight", "radius": 0}),
             ("its radius is 0", {"class": "SphereLight", "radius": 0}),
         ]
+        dark = [
+            *((f"it has no area: {why}", light) for why, light in flat),
+            ("its `normal` is 0", {"class": "DiskLight", "normal": [0, 0, 0]}),
+            ("its `direction` is 0", {"class": "DistantLight", "direction": [0, 0, 0]}),
+            ("its `direction` is 0", {"class": "SpotLight", "direction": [0, 0, 0]}),
+            ("its `angle` is 0", {"class": "SpotLight", "angle": 0}),
+            ("its `toSun` is 0", {"class": "SunLight", "toSun": [0, 0, 0]}),
+        ]
         lit = [
+            {"class": "DistantLight", "direction": [0, 1e-30, 0]},
+            {"class": "SpotLight"},
+            {"class": "SunLight"},
             {"class": "RectangleLight"},
             {"class": "DiskLight"},
             {"class": "SphereLight"},
@@ -147,8 +158,7 @@ class Lights(PathCase):
             self.assertEqual(
                 [d["message"] for d in found],
                 [
-                    f"the light `{light['class']} (lights.{i})` has no area, and sends out "
-                    f"nothing: {why}"
+                    f"the light `{light['class']} (lights.{i})` sends out nothing: {why}"
                     for i, (why, light) in enumerate(dark)
                 ],
             )

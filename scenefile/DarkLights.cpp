@@ -1,11 +1,14 @@
-#include "scenefile/LightAreas.h"
+#include "scenefile/DarkLights.h"
 
 #include "runtime/scene/Elements.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 namespace rtsl::scene {
 
@@ -109,10 +112,8 @@ std::optional<std::string> whyMesh(const Light &light) {
   return count ? "all of its triangles are lines or points" : "it has no triangles";
 }
 
-} // namespace
-
-std::optional<std::string> whyWithoutArea(const runtime::Scene &scene, RtslRef reference) {
-  const Light light(scene, reference);
+/// Why a light whose light comes from an area has none.
+std::optional<std::string> whyWithoutArea(const Light &light) {
   if (light.is("SphereLight") && light.has("radius", "float") && light.has("radiance", "color"))
     return whyRound(light);
   if (!light.is("AreaLight"))
@@ -124,6 +125,29 @@ std::optional<std::string> whyWithoutArea(const runtime::Scene &scene, RtslRef r
   if (light.is("MeshLight") && light.has("vertices", "vec3[]") && light.has("triangles", "ivec3[]"))
     return whyMesh(light);
   return std::nullopt;
+}
+
+/// Why a light that has a direction shines in none.
+std::optional<std::string> whyWithoutDirection(const Light &light) {
+  constexpr std::pair<const char *, const char *> directions[] = {{"DistantLight", "direction"},
+                                                                  {"SpotLight", "direction"},
+                                                                  {"DiskLight", "normal"},
+                                                                  {"SunLight", "toSun"}};
+  for (const auto &[className, member] : directions)
+    if (light.is(className) && light.has(member, "vec3") && light.value<Vector>(member) == Vector{})
+      return fmt::format("its `{}` is 0", member);
+  if (light.is("SpotLight") && light.has("angle", "float") && light.value<float>("angle") == 0)
+    return "its `angle` is 0";
+  return std::nullopt;
+}
+
+} // namespace
+
+std::optional<std::string> whyDark(const runtime::Scene &scene, RtslRef reference) {
+  const Light light(scene, reference);
+  if (const std::optional<std::string> why = whyWithoutArea(light))
+    return "it has no area: " + *why;
+  return whyWithoutDirection(light);
 }
 
 } // namespace rtsl::scene
