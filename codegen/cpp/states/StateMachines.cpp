@@ -120,7 +120,10 @@ std::optional<Declaration> StateMachines::frameStructure(Machine &machine,
       machine.frameStruct = machine.frameType = context.split.structureOf(*machine.called);
     return std::nullopt;
   }
+  std::set<std::string> &others = frameStructs[machine.definition];
+  taken.insert(others.begin(), others.end());
   machine.frameStruct = unique(capitalised(machine.name) + "Frame", taken, context.namesInFile());
+  others.insert(machine.frameStruct);
   machine.frameType = context.names.of(machine.definition) + "::" + machine.frameStruct;
   Struct made;
   made.name = machine.frameStruct;

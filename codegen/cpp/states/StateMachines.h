@@ -5,6 +5,10 @@
 #include "codegen/cpp/runtime/Dispatch.h"
 #include "codegen/cpp/tree/Declaration.h"
 
+#include <map>
+#include <set>
+#include <string>
+
 namespace rtsl::cpp {
 
 struct FrameField;
@@ -57,6 +61,8 @@ private:
   std::string meaningOf(const typed::Function &method, const FrameField &field);
 
   Context &context;
+  // Of each class: an inherited method and one of its own may have the same name.
+  std::map<const typed::Class *, std::set<std::string>> frameStructs;
 };
 
 } // namespace rtsl::cpp
