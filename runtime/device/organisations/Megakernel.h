@@ -52,21 +52,16 @@ inline bool hasLaneBytes(const RtslJob &job, uint64_t needed) {
 
 /// Starts a sample of the slice. False if it was rendered before.
 inline bool beginSample(const RtslJob &job, uint32_t sample, Rays &rays) {
-  const uint32_t place = quotient(sample, job.bySampleCount);
-  const uint32_t number = job.firstSample + (sample - place * job.sampleCount);
-  const Pixel pixel = pixelAt(job, place);
-  if (job.taken && number < job.taken[pixel.number(job)])
+  PixelSample found;
+  if (!findSample(job, sample, found))
     return false;
-  startRays(rays, *job.launch, job.left + pixel.x, job.top + pixel.y,
-            numberInHalf(number, halvesOf(job.sums)));
+  startRays(rays, *job.launch, job.left + found.pixel.x, job.top + found.pixel.y, found.number);
   return true;
 }
 
 inline void storeSample(const RtslJob &job, uint32_t sample, Rays &rays) {
   endSample(rays);
-  if (job.samples)
-    copyColor(job.samples + uint64_t(sample) * rtsl_color_components(job.launch),
-              rays.ray.state.SampleColor, rtsl_color_components(job.launch));
+  storeColor(job, sample, rays.ray.state.SampleColor);
 }
 
 /// The step of the lanes that begin a sample: they store that before. All lanes of a warp call

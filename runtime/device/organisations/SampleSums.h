@@ -14,6 +14,13 @@
 
 namespace rtsl::device {
 
+/// Stores a sample of the slice, if samples are wanted.
+inline void storeColor(const RtslJob &job, uint32_t sample, const float *color) {
+  const uint32_t components = rtsl_color_components(job.launch);
+  if (job.samples)
+    copyColor(job.samples + uint64_t(sample) * components, color, components);
+}
+
 /// Adds a sample to the list of the first that are not finite; safe for concurrent calls: each
 /// entry keeps the earlier of two samples and passes the other one on to the next entry.
 inline void noteNotFinite(RtslStatus &status, uint64_t sample) {

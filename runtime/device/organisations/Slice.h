@@ -71,6 +71,20 @@ inline uint32_t samplesOfSlice(const RtslJob &job) {
   return placesOfSlice(job) * job.sampleCount;
 }
 
+/// A sample of a pixel, by what the program calls it.
+struct PixelSample {
+  Pixel pixel;
+  uint32_t number;
+};
+
+/// Finds a sample of the slice. False if it was rendered before.
+inline bool findSample(const RtslJob &job, uint32_t sample, PixelSample &found) {
+  const uint32_t place = quotient(sample, job.bySampleCount);
+  const uint32_t number = job.firstSample + (sample - place * job.sampleCount);
+  found = {pixelAt(job, place), numberInHalf(number, halvesOf(job.sums))};
+  return !job.taken || number >= job.taken[found.pixel.number(job)];
+}
+
 /// Whether the slice has stopped: lanes that see it take no samples any more.
 inline bool isToStop(const RtslJob &job) {
   return __atomic_load_n(&job.status->stop, __ATOMIC_RELAXED);

@@ -42,18 +42,12 @@ inline void runWholeSamples(const RtslJob &job) {
     isLeft = isLeft && sample < samplesOfSlice(job);
     if (!warp::lanesWhere(isLeft))
       return;
-    if (!isLeft)
-      continue;
-    const uint32_t place = quotient(sample, job.bySampleCount);
-    const uint32_t number = job.firstSample + (sample - place * job.sampleCount);
-    const Pixel pixel = pixelAt(job, place);
-    if (job.taken && number < job.taken[pixel.number(job)])
+    PixelSample found;
+    if (!isLeft || !findSample(job, sample, found))
       continue;
     float color[RTSL_MAX_COLOR];
-    renderSample(job, pixel, numberInHalf(number, halvesOf(job.sums)), color);
-    const uint32_t components = rtsl_color_components(job.launch);
-    if (job.samples)
-      copyColor(job.samples + uint64_t(sample) * components, color, components);
+    renderSample(job, found.pixel, found.number, color);
+    storeColor(job, sample, color);
   }
 }
 
