@@ -104,17 +104,21 @@ struct ConvertLoad : ConvertOpToLLVMPattern<ir::LoadOp> {
   }
 };
 
+/// `address`, or `slot` instead in a sample that an exception has ended.
+Value slotIfAbandoned(mlir::OpBuilder &builder, Location location, Value slot, Value address) {
+  Value over = callRuntime(builder, location, isAbandonedFunction, {rayState(builder)});
+  Value isOver = LLVM::ICmpOp::create(builder, location, LLVM::ICmpPredicate::ne, over,
+                                      constantLike(builder, location, over.getType(), 0));
+  return LLVM::SelectOp::create(builder, location, isOver, slot, address);
+}
+
 /// Where a store to `address` goes, with elements of `size` bytes: a sample that an exception has
 /// ended no longer writes to output buffers.
 Value whereToStore(mlir::OpBuilder &builder, Location location, Value source, Value address,
                    uint32_t size) {
   if (!ir::isInOutputBuffer(source))
     return address;
-  Value over = callRuntime(builder, location, isAbandonedFunction, {rayState(builder)});
-  Value isOver = LLVM::ICmpOp::create(builder, location, LLVM::ICmpPredicate::ne, over,
-                                      constantLike(builder, location, over.getType(), 0));
-  return LLVM::SelectOp::create(builder, location, isOver, stackSlot(builder, location, size),
-                                address);
+  return slotIfAbandoned(builder, location, stackSlot(builder, location, size), address);
 }
 
 struct ConvertStore : ConvertOpToLLVMPattern<ir::StoreOp> {
@@ -170,15 +174,21 @@ LLVM::AtomicBinOp binaryOf(ir::AtomicKind kind) {
   llvm_unreachable("all kinds have been handled");
 }
 
-/// The order of other memory accesses does not matter: launch indices share nothing else.
+/// The order of other memory accesses does not matter: launch indices share nothing else. A sample
+/// that an exception has ended changes a copy of the element, so that the result is its value.
 struct ConvertAtomic : ConvertOpToLLVMPattern<ir::AtomicOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::AtomicOp op, OpAdaptor adaptor,
                                 ConversionPatternRewriter &rewriter) const override {
     constexpr auto order = LLVM::AtomicOrdering::monotonic;
     Location location = op.getLoc();
-    Value address =
-        whereToStore(rewriter, location, op.getAddress(), adaptor.getAddress(), sizeof(uint32_t));
+    Value copy = stackSlot(rewriter, location, sizeof(uint32_t));
+    Value element = LLVM::LoadOp::create(
+        rewriter, location, op.getType(), adaptor.getAddress(), ir::memoryAlignment,
+        /*isVolatile=*/false, /*isNonTemporal=*/false, /*isInvariant=*/false,
+        /*isInvariantGroup=*/false, LLVM::AtomicOrdering::unordered);
+    LLVM::StoreOp::create(rewriter, location, element, copy, ir::memoryAlignment);
+    Value address = slotIfAbandoned(rewriter, location, copy, adaptor.getAddress());
     if (Value expected = adaptor.getExpected()) {
       Value exchange =
           LLVM::AtomicCmpXchgOp::create(rewriter, location, address, expected, adaptor.getValue(),

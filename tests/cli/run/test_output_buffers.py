@@ -135,6 +135,30 @@ class OutputBuffers(OutputCase):
             self.run_rtslc("run", "scene.json", "-q", "--exceptions", "--out=n=n.csv", *options)
             self.assertEqual((self.folder / "n.csv").read_text(), "102\n", options)
 
+    def test_atomic_functions_have_a_value_after_an_exception(self):
+        """That of the element, which stays: a program that waits for a value goes on."""
+        self.scene(
+            start={"class": "After", "n": [41234]},
+            size=(1, 1),
+            **{"import": ["after.rtsl"], "objects": [], "materials": {}},
+        )
+        self.write(
+            "after.rtsl",
+            """class After : rt_RayGeneration {
+  public inout int n[];
+  void generate() {
+    int far[2]; far[5 * n.length()] = 3;
+    print(atomicAdd(n[0], 100), atomicExchange(n[0], 7), atomicCompSwap(n[0], 41234, 8), n[0]);
+  }
+};""",
+        )
+        for options in ([], ["--trace=recurse"], ["-O0"], ["--target=host-megakernel"]):
+            said, _ = self.run_rtslc(
+                "run", "scene.json", "--json", "--print", "--exceptions", "--out=n=n.csv", *options
+            )
+            self.assertIn("41234 41234 41234 41234", said, options)
+            self.assertEqual((self.folder / "n.csv").read_text(), "41234\n", options)
+
     def test_samples_come_one_after_the_other(self):
         found = self.one(
             "last[rt_LaunchIndex.x] = last[rt_LaunchIndex.x] * 2 + 1;",
