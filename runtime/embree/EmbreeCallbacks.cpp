@@ -19,21 +19,24 @@ const EmbreeContext &contextOf(const Arguments *arguments) {
 
 constexpr float isOver = -std::numeric_limits<float>::infinity(); // RTCRay::tfar
 
-template <typename Ray>
-const Ray &rayOf(const EmbreeContext &context) {
-  return static_cast<const Ray &>(*context.ray);
-}
-
-const device::InstanceRay *enteredInstance(const EmbreeContext &context) {
-  return context.space->isWorld ? nullptr : &rayOf<device::InstanceRay>(context);
-}
-
-/// Does the search end at a hit that was committed? `occluder`: what was hit.
-bool endsAtHit(const EmbreeContext &context, const Occluder &occluder) {
-  if (!context.endsIfHidden || !device::isPointHidden(*context.state))
-    return false;
-  context.occluder = occluder;
-  return true;
+/// Embree's ray. Products with factors of 1 are exact, and with other powers of two nearly.
+void fill(RTCRay &ray, const EmbreeContext &context) {
+  const device::TriangleRay &from = *context.ray;
+  const float epsilon = context.state->Epsilon;
+  const bool isScaled = context.toEmbree != 1;
+  const float fromEmbree = isScaled ? 1 / context.toEmbree : 1;
+  ray.org_x = from.origin.x;
+  ray.org_y = from.origin.y;
+  ray.org_z = from.origin.z;
+  ray.dir_x = isScaled ? from.direction.x * fromEmbree : from.direction.x;
+  ray.dir_y = isScaled ? from.direction.y * fromEmbree : from.direction.y;
+  ray.dir_z = isScaled ? from.direction.z * fromEmbree : from.direction.z;
+  ray.tnear = device::maximum(epsilon * context.toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
+  ray.tfar = context.end(context.limit());
+  ray.time = 0;
+  ray.mask = ~0u;
+  ray.id = 0;
+  ray.flags = 0;
 }
 
 /// Where Embree's search ends, now that something was tested: nothing beyond a hit matters.
@@ -41,54 +44,9 @@ void setEnd(const EmbreeContext &context, RTCRay &ray, bool ends) {
   ray.tfar = ends ? isOver : context.end(context.limit());
 }
 
-/// Passes an item to the visitor of the ray. True if the search is over.
-bool visitItem(const EmbreeContext &context, const RtslLeafItem &item) {
-  const EmbreeVisitor &visitor = *context.visitor;
-  return visitor.visit(visitor.self, item, enteredInstance(context));
-}
-
-[[gnu::cold, gnu::noinline]] bool visitBlock(const EmbreeContext &context,
-                                             const TriangleBlock &block) {
-  const device::InstanceRay *entered = enteredInstance(context);
-  for (unsigned i = 0; i < TriangleBlock::lanes && block.instance[i] != RTSL_NO_HIT; ++i)
-    if (visitItem(context, {entered ? entered->instance : block.instance[i], block.triangle[i]}))
-      return true;
-  return false;
-}
-
-/// Has it been tested before the search?
-bool isTested(const EmbreeContext &context, const Occluder &item) {
-  return __builtin_expect(context.tested == item, 0);
-}
-
-template <typename Ray>
-void intersectBlock(const RTCIntersectFunctionNArguments *arguments) {
-  const EmbreeContext &context = contextOf(arguments);
-  const TriangleBlock &block = context.space->blocks[arguments->primID];
-  RTCRay &ray = reinterpret_cast<RTCRayHit *>(arguments->rayhit)->ray;
-  const Occluder item = {arguments->primID, false};
-  if (context.visitor) {
-    setEnd(context, ray, visitBlock(context, block));
-  } else if (!isTested(context, item) &&
-             testBlock(*context.state, rayOf<Ray>(context), block, false)) {
-    context.found = item;
-    setEnd(context, ray, endsAtHit(context, item));
-  }
-}
-
-template <typename Ray>
-void occludedBlock(const RTCOccludedFunctionNArguments *arguments) {
-  const EmbreeContext &context = contextOf(arguments);
-  if (!testBlock(*context.state, rayOf<Ray>(context), context.space->blocks[arguments->primID],
-                 true))
-    return;
-  reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
-  context.occluder = {arguments->primID, false};
-}
-
 template <typename Ray>
 RtslLeafItem itemOf(const EmbreeContext &context, const EmbreePrimitive &primitive) {
-  return {device::instanceOf(rayOf<Ray>(context), primitive.instance), primitive.number};
+  return {device::instanceOf(context.rayAs<Ray>(), primitive.instance), primitive.number};
 }
 
 /// `test(instance, item, intersect)` tests an RTSL primitive.
@@ -100,7 +58,7 @@ template <typename Ray, typename Test>
   const RtslLaunch &launch = context.space->scene->launch;
   const RtslInstance &instance = launch.instances[item.instance];
   if (!primitive.intersect)
-    return device::testTriangle(*context.state, rayOf<Ray>(context), launch.meshes[instance.mesh],
+    return device::testTriangle(*context.state, context.rayAs<Ray>(), launch.meshes[instance.mesh],
                                 item.instance, item.primitive);
   return test(instance, item, primitive.intersect);
 }
@@ -109,7 +67,7 @@ template <typename Ray>
 bool testPrimitive(const EmbreeContext &context, unsigned number) {
   return testPrimitive<Ray>(context, number,
                             [&](const RtslInstance &instance, RtslLeafItem item, auto intersect) {
-                              return device::testPrimitive(*context.state, rayOf<Ray>(context),
+                              return device::testPrimitive(*context.state, context.rayAs<Ray>(),
                                                            instance, item, intersect);
                             });
 }
@@ -127,8 +85,8 @@ template <typename Ray, typename Test>
 [[gnu::always_inline]] inline bool searchPrimitive(const EmbreeContext &context, unsigned number,
                                                    Test test) {
   if (context.visitor)
-    return visitItem(context, itemOf<Ray>(context, context.space->primitives[number]));
-  return test() && endsAtHit(context, {}); // no block or instance
+    return context.visitItem(itemOf<Ray>(context, context.space->primitives[number]));
+  return test() && context.endsAtHit({}); // no block or instance
 }
 
 template <typename Ray>
@@ -145,27 +103,31 @@ void occludedPrimitive(const RTCOccludedFunctionNArguments *arguments) {
     reinterpret_cast<RTCRay *>(arguments->ray)->tfar = isOver;
 }
 
-/// Tests all that is in the space, for a ray that Embree cannot trace. True if the search is over.
+/// Tests all primitives of the space, for a ray that Embree cannot trace. True if the search is
+/// over.
 [[gnu::cold, gnu::noinline]] bool testAll(const EmbreeContext &context,
                                           const device::InstanceRay &ray, bool anyHit) {
   for (unsigned i = 0; i < context.space->primitives.size(); ++i) {
     if (context.visitor) {
       const EmbreePrimitive &primitive = context.space->primitives[i];
-      if (visitItem(context, itemOf<device::InstanceRay>(context, primitive)))
+      if (context.visitItem(itemOf<device::InstanceRay>(context, primitive)))
         return true;
     } else if (testPrimitive<device::InstanceRay>(context, i) && anyHit) {
       return true;
     }
   }
-  for (const TriangleBlock &block : context.space->blocks) {
-    if (context.visitor) {
-      if (visitBlock(context, block))
-        return true;
-    } else if (testBlock(*context.state, ray, block, anyHit) && anyHit) {
-      return true;
-    }
-  }
   return false;
+}
+
+/// Searches Embree's tree of an instance that has a space of its own. True if the search is over.
+bool searchInside(EmbreeContext &context, const device::InstanceRay &ray, bool anyHit) {
+  if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
+    if (!EmbreeScene::canFollow(ray.origin, ray.direction))
+      return testAll(context, ray, anyHit);
+    ++rayCounters().rescaledRays;
+    context.toEmbree = device::powerOfTwo(device::exponentOf(device::largest(ray.direction)));
+  }
+  return Implementation::searchTree(context, anyHit);
 }
 
 /// Searches an instance that has a space of its own, where the ray is in its box (reachBox). True
@@ -192,32 +154,9 @@ bool searchInstance(const EmbreeContext &outer, unsigned number, device::Range i
   context.seesAll = true; // what is inside
   context.endsIfHidden = outer.endsIfHidden;
   context.toEmbree = 1;
-  int exponent = 0;
-  if (!EmbreeScene::needsNoScaling(ray.origin, ray.direction)) {
-    if (!EmbreeScene::canFollow(ray.origin, ray.direction))
-      return testAll(context, ray, anyHit);
-    ++rayCounters().rescaledRays;
-    exponent = device::exponentOf(device::largest(ray.direction));
-  }
-  context.toEmbree = device::powerOfTwo(exponent);
-  const auto fill = [&](RTCRay &inner) {
-    Implementation::fill(inner, ray, state.Epsilon, context.toEmbree, device::powerOfTwo(-exponent),
-                         context.end(outer.limit()));
-  };
-  const RTCScene tree = one.inside->treeFor(ray.origin);
-  if constexpr (anyHit) {
-    RTCRay inner;
-    fill(inner);
-    rtcOccluded1(tree, &context.embree, &inner);
-    return inner.tfar == isOver;
-  } else {
-    RTCRayHit inner;
-    fill(inner.ray);
-    inner.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    inner.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(tree, &context.embree, &inner);
-    return inner.ray.tfar == isOver;
-  }
+  if (searchTriangles<device::InstanceRay>(context, anyHit))
+    return true;
+  return one.inside->hasTree() && searchInside(context, ray, anyHit);
 }
 
 bool reachBox(const EmbreeContext &context, unsigned number, device::Range &inBox) {
@@ -235,7 +174,7 @@ bool searchInstance(const EmbreeContext &context, unsigned number) {
 /// Searches one for the nearest hit, and records if it has that so far. True if the search is over.
 bool searchForNearest(const EmbreeContext &context, unsigned number, device::Range inBox) {
   const Occluder item = {number, true};
-  if (isTested(context, item))
+  if (context.isTested(item))
     return false;
   const float before = context.state->nearest;
   if (searchInstance<false>(context, number, inBox)) {
@@ -282,6 +221,23 @@ void EmbreeScene::Implementation::searchInInstance(const EmbreeContext &context,
   searchInstance<false>(context, number);
 }
 
+bool EmbreeScene::Implementation::searchTree(const EmbreeContext &context, bool anyHit) {
+  const device::TriangleRay &ray = *context.ray;
+  const RTCScene tree = context.space->treeFor(ray.origin);
+  if (anyHit) {
+    RTCRay searched;
+    fill(searched, context);
+    rtcOccluded1(tree, &context.embree, &searched);
+    return searched.tfar == isOver;
+  }
+  RTCRayHit searched;
+  fill(searched.ray, context);
+  searched.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  searched.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(tree, &context.embree, &searched);
+  return searched.ray.tfar == isOver;
+}
+
 bool EmbreeScene::Implementation::searchList(const EmbreeContext &context, bool anyHit) {
   const EmbreeSpace &world = *context.space;
   const auto primitives = unsigned(world.primitives.size());
@@ -305,13 +261,7 @@ bool EmbreeScene::Implementation::searchList(const EmbreeContext &context, bool 
 }
 
 template <typename Ray>
-static constexpr SearchCallbacks forBlocks{intersectBlock<Ray>, occludedBlock<Ray>};
-template <typename Ray>
 static constexpr SearchCallbacks forPrimitives{intersectPrimitive<Ray>, occludedPrimitive<Ray>};
-
-SearchCallbacks blockCallbacks(bool isWorld) {
-  return isWorld ? forBlocks<device::TriangleRay> : forBlocks<device::InstanceRay>;
-}
 
 SearchCallbacks primitiveCallbacks(bool isWorld) {
   return isWorld ? forPrimitives<device::TriangleRay> : forPrimitives<device::InstanceRay>;

@@ -14,7 +14,6 @@ struct SearchCallbacks {
 
 /// The callbacks of items of a space (EmbreeSpace.h), which is the world or one that rays are
 /// transformed to.
-SearchCallbacks blockCallbacks(bool isWorld);
 SearchCallbacks primitiveCallbacks(bool isWorld);
 /// The callbacks of instances of other spaces, in the world.
 SearchCallbacks instanceCallbacks();

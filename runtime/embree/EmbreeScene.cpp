@@ -157,7 +157,7 @@ std::uint32_t EmbreeScene::traverse(RtslState &state, std::uint32_t how) const {
     return traverseEasy(state, how);
   ++rayCounters().rescaledRays;
   const int exponent = device::exponentOf(device::largest(device::load(state.RayDirection)));
-  return self->query(state, how, device::powerOfTwo(exponent), device::powerOfTwo(-exponent));
+  return self->query(state, how, device::powerOfTwo(exponent));
 }
 
 void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
@@ -178,12 +178,8 @@ void EmbreeScene::visit(RtslState &state, const device::TriangleRay &ray,
   context.toEmbree = device::powerOfTwo(exponent);
   if (!self->world.list.isEmpty() && Implementation::searchList(context, false))
     return;
-  RTCRayHit rayHit;
-  Implementation::fill(rayHit.ray, ray, state.Epsilon, context.toEmbree,
-                       device::powerOfTwo(-exponent), context.end(context.limit()));
-  rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(self->world.treeFor(device::load(state.RayOrigin)), &context.embree, &rayHit);
+  if (!searchTriangles<device::TriangleRay>(context, false) && self->world.hasTree())
+    Implementation::searchTree(context, false);
 }
 
 } // namespace rtsl::runtime

@@ -1,16 +1,17 @@
-//===- EmbreeScene.h - a scene in Embree, and rays through it -------------===//
+//===- EmbreeScene.h - a scene for the host, and rays through it ----------===//
 //
-// Embree finds the boxes that a ray meets; their contents are tested by the same functions as in
-// our own tree, so that both find the same hits, bit for bit. Embree's own triangles are not
-// suitable: near edges, between coincident triangles and for needles its test depends on its own
-// rounding. So triangles are user geometry, eight in a block (TriangleBlock.h): hardly any slower.
-// RTSL primitives are user geometry as well, and so are instances with transforms of meshes and of
-// objects with several primitives: these have a tree of their own, which the ray in object space is
-// traced through from a callback. Where there are few of both, they are tested without a tree
-// (ItemList.h).
+// Trees find the boxes that a ray meets; their contents are tested by the same functions as in the
+// tree of the device traversal, so that both find the same hits, bit for bit. Triangles that do not
+// move are in a tree of our own, eight in a block (runtime/accel/BlockTree.h). Embree's triangles
+// are not suitable: near edges, between coincident triangles and for needles its test depends on
+// its own rounding; and as Embree's user geometry blocks are slower to reach. RTSL primitives are
+// user geometry of Embree, and so are instances with transforms of meshes and of objects with
+// several primitives: these have trees of their own, which the ray in object space is traced
+// through from a callback. Where there are few of both, they are tested without a tree
+// (ItemList.h), and Embree has none.
 //
 // Embree's box test has rounding errors that depend on the distance of a ray's origin. Boxes are
-// enlarged for origins up to some distance; for others there is another tree over the same blocks,
+// enlarged for origins up to some distance; for others there is another tree over the same items,
 // built when the first such ray is traced.
 //
 // Some distributions build Embree with assertions: a ray that is not finite, or whose direction is

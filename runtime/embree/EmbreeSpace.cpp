@@ -43,24 +43,6 @@ void setBounds(const RTCBoundsFunctionArguments *arguments, const float lower[3]
   *arguments->bounds_o = {low[0], low[1], low[2], 0, high[0], high[1], high[2], 0};
 }
 
-RtslBox boxOf(const TriangleBlock &block) {
-  RtslBox box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = box.upper[axis] = block.vertices[0][axis][0];
-    for (const auto &vertex : block.vertices)
-      for (float x : vertex[axis]) {
-        box.lower[axis] = std::min(box.lower[axis], x);
-        box.upper[axis] = std::max(box.upper[axis], x);
-      }
-  }
-  return box;
-}
-
-void boundBlock(const RTCBoundsFunctionArguments *arguments) {
-  const RtslBox box = boxOf(levelOf(arguments).owner->blocks[arguments->primID]);
-  setBounds(arguments, box.lower, box.upper);
-}
-
 RtslBox boxOf(const EmbreeSpace &space, const EmbreePrimitive &primitive) {
   const RtslLaunch &launch = space.scene->launch;
   const RtslInstance &instance = launch.instances[primitive.instance];
@@ -149,40 +131,33 @@ void buildLevel(EmbreeLevel &level) {
                           space.follows ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
   if (space.follows)
     rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_DYNAMIC);
-  attach(level, space.blocks.size(), boundBlock, blockCallbacks(space.isWorld));
-  if (space.list.isEmpty()) {
-    attach(level, space.primitives.size(), boundPrimitive, primitiveCallbacks(space.isWorld));
-    attach(level, space.instances.size(), boundInstance, instanceCallbacks());
-  }
+  attach(level, space.primitives.size(), boundPrimitive, primitiveCallbacks(space.isWorld));
+  attach(level, space.instances.size(), boundInstance, instanceCallbacks());
   rtcCommitScene(level.scene);
   checkEmbree(*space.scene);
 }
 
-/// Levels for origins up to 4 times the extent of half of the items in the space, then 64 times as
-/// far each. An infinite plane must not enlarge all boxes.
-void addLevels(EmbreeSpace &self) {
+/// The boxes of everything in the space but triangles in blocks.
+std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
+  std::vector<RtslBox> boxes;
+  boxes.reserve(space.primitives.size() + space.instances.size());
+  addBoxes(space, boxes);
+  return boxes;
+}
+
+/// Levels for origins up to 4 times the extent of half of these boxes, then 64 times as far each.
+/// An infinite plane must not enlarge all boxes.
+void addLevels(EmbreeSpace &self, const std::vector<RtslBox> &boxes) {
   std::vector<float> reaches;
-  for (const TriangleBlock &block : self.blocks)
-    reaches.push_back(std::fabs(block.vertices[0][0][0]) + std::fabs(block.vertices[0][1][0]) +
-                      std::fabs(block.vertices[0][2][0]));
-  const auto addBox = [&](const float lower[3], const float upper[3]) {
+  for (const RtslBox &box : boxes) {
     float reach = 0;
     for (int i = 0; i < 3; ++i)
-      reach += std::max(std::fabs(lower[i]), std::fabs(upper[i]));
+      reach += std::max(std::fabs(box.lower[i]), std::fabs(box.upper[i]));
     reaches.push_back(reach);
-  };
-  for (const EmbreePrimitive &primitive : self.primitives) {
-    const RtslBox box = boxOf(self, primitive);
-    addBox(box.lower, box.upper);
   }
-  for (const EmbreeInstance &one : self.instances)
-    addBox(one.lower, one.upper);
-  float reach = 1;
-  if (!reaches.empty()) {
-    auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
-    std::nth_element(reaches.begin(), middle, reaches.end());
-    reach = std::max(*middle, std::numeric_limits<float>::min());
-  }
+  auto middle = reaches.begin() + std::ptrdiff_t(reaches.size() / 2);
+  std::nth_element(reaches.begin(), middle, reaches.end());
+  const float reach = std::max(*middle, std::numeric_limits<float>::min());
   constexpr float largest = 4e18f;
   for (float origin = 4 * reach;; origin *= 64) {
     auto level = std::make_unique<EmbreeLevel>();
@@ -194,19 +169,9 @@ void addLevels(EmbreeSpace &self) {
   }
 }
 
-/// The boxes of everything in the space.
-std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
-  std::vector<RtslBox> boxes;
-  boxes.reserve(space.blocks.size() + space.primitives.size() + space.instances.size());
-  for (const TriangleBlock &block : space.blocks)
-    boxes.push_back(boxOf(block));
-  addBoxes(space, boxes);
-  return boxes;
-}
-
+/// Of triangles, and of the boxes of everything else.
 void setBounds(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
-  std::fill_n(space.bounds.lower, 3, device::infinity);
-  std::fill_n(space.bounds.upper, 3, -device::infinity);
+  space.bounds = space.triangles.bounds();
   for (const RtslBox &box : boxes)
     for (int axis = 0; axis < 3; ++axis) {
       space.bounds.lower[axis] = std::min(space.bounds.lower[axis], box.lower[axis]);
@@ -214,27 +179,31 @@ void setBounds(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
     }
 }
 
-/// Lists the items of the world, where they are.
-void listItems(EmbreeSpace &space) {
-  if (!space.isWorld || space.primitives.size() + space.instances.size() > ItemList::most)
+/// Lists the items of the world, where they are, if there are few.
+void listItems(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
+  if (space.isWorld && boxes.size() <= ItemList::most)
+    space.list = ItemList(boxes);
+}
+
+/// Embree's tree for origins that are not far away, if there is anything in it.
+void buildTree(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
+  if (boxes.empty() || !space.list.isEmpty())
     return;
-  std::vector<RtslBox> boxes;
-  addBoxes(space, boxes);
-  space.list = ItemList(boxes);
+  addLevels(space, boxes);
+  buildLevel(*space.levels[0]);
+  space.firstLevel = space.levels[0]->scene;
+  space.firstLevelOrigin = space.levels[0]->largestOrigin;
+  space.secondLevelOrigin = space.levels.size() > 1 ? space.levels[1]->largestOrigin : 0;
 }
 
 } // namespace
 
 void buildSpace(EmbreeSpace &space, unsigned threads) {
-  space.blocks = makeTriangleBlocks(space.meshes, threads);
-  if (!space.isWorld)
-    setBounds(space, boxesOf(space));
-  listItems(space);
-  addLevels(space);
-  buildLevel(*space.levels[0]);
-  space.firstLevel = space.levels[0]->scene;
-  space.firstLevelOrigin = space.levels[0]->largestOrigin;
-  space.secondLevelOrigin = space.levels.size() > 1 ? space.levels[1]->largestOrigin : 0;
+  space.triangles = BlockTree(space.meshes, threads);
+  const std::vector<RtslBox> boxes = boxesOf(space);
+  setBounds(space, boxes);
+  listItems(space, boxes);
+  buildTree(space, boxes);
 }
 
 RTCScene EmbreeSpace::treeForFar(float origin) const {
@@ -276,10 +245,11 @@ void updateInstances(EmbreeSpace &space) {
 /// Copies the vertices of all triangles to their blocks again. True if some are elsewhere.
 bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   const RtslLaunch &launch = space.scene->launch;
+  LargeArray<TriangleBlock> &blocks = space.triangles.blocks;
   std::atomic<bool> isChanged{false};
-  forRangesInParallel(threads, space.blocks.size(), 1024, [&](std::size_t first, std::size_t end) {
+  forRangesInParallel(threads, blocks.size(), 1024, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
-      TriangleBlock &block = space.blocks[i];
+      TriangleBlock &block = blocks[i];
       const TriangleBlock before = block;
       for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
         const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
@@ -293,6 +263,15 @@ bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
     }
   });
   return isChanged;
+}
+
+/// The tree of triangles follows its blocks. True if it was built anew.
+bool updateTriangles(EmbreeSpace &space, unsigned threads) {
+  space.triangles.refit(threads);
+  if (space.triangles.degradation() <= largestDegradation)
+    return false;
+  space.triangles = BlockTree(space.meshes, threads);
+  return true;
 }
 
 /// Trees for distant origins are built when they are needed again.
@@ -309,26 +288,24 @@ void releaseDistantLevels(EmbreeSpace &space) {
   }
 }
 
-/// To be called after updateBlocks. The first change builds a tree that can follow the next ones.
-/// True if the tree was built anew.
-bool updateTree(EmbreeSpace &space, unsigned threads) {
-  const std::vector<RtslBox> boxes = boxesOf(space);
+/// Embree's tree follows these boxes. The first change builds a tree that can follow the next ones.
+void updateTree(EmbreeSpace &space, const std::vector<RtslBox> &boxes) {
+  listItems(space, boxes);
+  if (!space.hasTree())
+    return;
   if (!space.follows || space.boxesWhenBuilt.degradation(boxes) > largestDegradation) {
     space.follows = true;
     releaseLevels(space);
-    buildSpace(space, threads);
-    space.boxesWhenBuilt = BoxOrder(boxesOf(space));
-    return true;
+    buildTree(space, boxes);
+    space.boxesWhenBuilt = BoxOrder(boxes);
+    return;
   }
-  setBounds(space, boxes);
-  listItems(space);
   releaseDistantLevels(space);
   EmbreeLevel &level = *space.levels[0];
   for (const RTCGeometry geometry : level.geometries)
     rtcCommitGeometry(geometry);
   rtcCommitScene(level.scene);
   checkEmbree(*space.scene);
-  return false;
 }
 
 /// Makes a space that of another scene, whose launch is the current one.
@@ -353,23 +330,26 @@ void useScene(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
 
 bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   updateInstances(space);
-  updateBlocks(space, mesh, threads);
-  return updateTree(space, threads);
+  const bool isNew = updateBlocks(space, mesh, threads) && updateTriangles(space, threads);
+  const std::vector<RtslBox> boxes = boxesOf(space);
+  setBounds(space, boxes);
+  updateTree(space, boxes);
+  return isNew;
 }
 
 void followSpace(EmbreeSpace &space, std::uint32_t mesh, const Scene &scene,
                  const Program::Slots &slots, unsigned threads) {
   useScene(space, mesh, scene, slots);
   updateInstances(space);
-  const bool isChanged = updateBlocks(space, mesh, threads);
-  std::vector<RtslBox> boxes;
-  addBoxes(space, boxes);
+  if (updateBlocks(space, mesh, threads))
+    updateTriangles(space, threads);
+  const std::vector<RtslBox> boxes = boxesOf(space);
+  setBounds(space, boxes);
   const auto isSame = [](const RtslBox &a, const RtslBox &b) {
     return std::memcmp(&a, &b, sizeof a) == 0;
   };
-  if (isChanged ||
-      !std::equal(boxes.begin(), boxes.end(), space.boxes.begin(), space.boxes.end(), isSame))
-    updateTree(space, threads);
+  if (!std::equal(boxes.begin(), boxes.end(), space.boxes.begin(), space.boxes.end(), isSame))
+    updateTree(space, boxes);
 }
 
 } // namespace rtsl::runtime

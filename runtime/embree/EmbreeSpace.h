@@ -6,8 +6,8 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/accel/BlockTree.h"
 #include "runtime/accel/Refit.h"
-#include "runtime/accel/TriangleBlocks.h"
 #include "runtime/embree/EmbreeScene.h"
 #include "runtime/embree/ItemList.h"
 
@@ -62,17 +62,17 @@ struct EmbreeLevel {
 struct EmbreeSpace {
   const EmbreeScene::Implementation *scene = nullptr;
   bool isWorld = true;
-  LargeArray<TriangleBlock> blocks;
+  BlockTree triangles;
   std::vector<EmbreePrimitive> primitives;
   std::vector<EmbreeInstance> instances; // of the world
   // the boxes of primitives, then those of instances, if the world has few: they are not in trees
   ItemList list;
   RtslBox bounds;              // of all that is tested in the space
-  std::vector<MeshUse> meshes; // in `blocks`
+  std::vector<MeshUse> meshes; // in `triangles`
   BoxOrder boxesWhenBuilt;     // once something has moved
   bool follows = false;        // since then
   std::uint64_t moves = 0;     // Scene::movesOfMesh, of a mesh's space
-  std::vector<RtslBox> boxes;  // EmbreeScene::rememberBoxes: of all but `blocks`
+  std::vector<RtslBox> boxes;  // EmbreeScene::rememberBoxes: of all but `triangles`
   // by largestOrigin; the first one is built
   mutable std::vector<std::unique_ptr<EmbreeLevel>> levels;
   float firstLevelOrigin = 0; // of levels[0]
@@ -82,8 +82,8 @@ struct EmbreeSpace {
   float secondLevelOrigin = 0;
   mutable std::atomic<RTCScene> secondLevel{nullptr};
 
-  /// Is all that the world has in its list?
-  bool isTreeEmpty() const { return !list.isEmpty() && blocks.size() == 0; }
+  /// Has Embree a tree? Nothing else is searched there.
+  bool hasTree() const { return !levels.empty(); }
 
   /// The tree for rays from this origin.
   RTCScene treeFor(device::Vec3 origin) const {
@@ -103,7 +103,8 @@ decltype(EmbreePrimitive::intersect) intersectOf(const Scene &scene, const Progr
 /// Throws the error that Embree has reported, if any.
 void checkEmbree(const EmbreeScene::Implementation &scene);
 
-/// Makes the blocks of the meshes, and the tree for origins that are not far away.
+/// Builds the tree of triangles, and Embree's for origins that are not far away if anything else is
+/// not in the list.
 void buildSpace(EmbreeSpace &space, unsigned threads);
 
 /// Frees all trees.
@@ -112,7 +113,7 @@ void releaseLevels(EmbreeSpace &space);
 /// Adds the boxes of everything in the space but triangles in blocks.
 void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes);
 
-/// Follows what has moved. `mesh`: that of a space of its own. True if the tree was built anew.
+/// Follows what has moved. `mesh`: that of a space of its own. True if blocks have other numbers.
 bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads);
 
 /// Makes a space that of another scene, whose launch is the current one, and updates the trees if

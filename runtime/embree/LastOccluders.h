@@ -19,7 +19,7 @@ namespace rtsl::runtime {
 struct Occluder {
   static constexpr std::uint32_t none = ~0u;
 
-  std::uint32_t number = none; // in EmbreeSpace::blocks or instances
+  std::uint32_t number = none; // the place of the block, or a number in EmbreeSpace::instances
   bool isInstance = false;
 
   bool operator==(const Occluder &other) const {

@@ -177,8 +177,9 @@ public:
 
   /// Subtrees of up to `smallest` boxes are left out. What other threads run meanwhile has no
   /// effect on the tree.
-  TopDownBuilder(std::vector<NumberedBox> &boxes, std::size_t smallest, unsigned threads)
-      : boxes(boxes), smallest(smallest), threads(threads) {}
+  TopDownBuilder(std::vector<NumberedBox> &boxes, std::size_t mostInLeaf, std::size_t smallest,
+                 unsigned threads)
+      : boxes(boxes), mostInLeaf(mostInLeaf), smallest(smallest), threads(threads) {}
 
   /// Builds the node of these boxes, one or more; returns its index.
   std::uint32_t node(Iterator begin, Iterator end, unsigned depth) {
@@ -214,8 +215,8 @@ public:
 private:
   bool isLeaf(Iterator begin, Iterator end, const Bounds &all) const {
     const std::size_t count = std::size_t(end - begin);
-    return count == 1 || (count <= RTSL_MOST_LEAF_ITEMS &&
-                          !(bestSplit(begin, end, all, threads).cost < float(count)));
+    return count == 1 ||
+           (count <= mostInLeaf && !(bestSplit(begin, end, all, threads).cost < float(count)));
   }
 
   /// Partitions the boxes into left and right, both not empty.
@@ -247,7 +248,7 @@ private:
   }
 
   std::vector<NumberedBox> &boxes;
-  const std::size_t smallest;
+  const std::size_t mostInLeaf, smallest;
   const unsigned threads;
 };
 
@@ -268,20 +269,22 @@ void insert(BinaryTree &tree, std::uint32_t place, const TopDownBuilder::Nodes &
 
 } // namespace
 
-BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads) {
+BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads,
+                           std::uint32_t mostInLeaf) {
   BinaryTree tree;
+  tree.mostInLeaf = mostInLeaf;
   tree.boxes = std::move(boxes);
   if (tree.boxes.empty())
     return tree;
   // The upper part by all threads together, then each subtree by one of them.
-  TopDownBuilder top(tree.boxes, largestForOneThread(tree.boxes.size()), threads);
+  TopDownBuilder top(tree.boxes, mostInLeaf, largestForOneThread(tree.boxes.size()), threads);
   top.node(tree.boxes.begin(), tree.boxes.end(), 0);
   tree.nodes = std::move(top.nodes);
   std::vector<TopDownBuilder::Nodes> subtrees(top.later.size());
   forEachInParallel(threads, subtrees.size(), [&](std::size_t i) {
     const BinaryTree::Node &root = tree.nodes[top.later[i].node];
     const Iterator first = tree.boxes.begin() + root.first;
-    TopDownBuilder builder(tree.boxes, 0, 1);
+    TopDownBuilder builder(tree.boxes, mostInLeaf, 0, 1);
     builder.node(first, first + root.count, top.later[i].depth);
     subtrees[i] = std::move(builder.nodes);
   });

@@ -26,17 +26,19 @@ struct BinaryTree {
   struct Node {
     Bounds bounds;
     std::uint32_t first, count; // of `boxes`: all below the node
-    std::uint32_t children[2];  // of `nodes`; both 0: a leaf, of at most RTSL_MOST_LEAF_ITEMS boxes
+    std::uint32_t children[2];  // of `nodes`; both 0: a leaf
 
     bool isLeaf() const { return children[1] == 0; }
   };
   std::vector<Node> nodes;        // the root first; empty without boxes
   std::vector<NumberedBox> boxes; // in the order of the leaves
+  std::uint32_t mostInLeaf = RTSL_MOST_LEAF_ITEMS;
 };
 
-/// No path from the root is longer than device::maxBvhDepth. `threads` 0: one per core; the tree
-/// does not depend on their number.
-BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads);
+/// No path from the root is longer than device::maxBvhDepth, and no leaf has more than `mostInLeaf`
+/// boxes. `threads` 0: one per core; the tree does not depend on their number.
+BinaryTree buildBinaryTree(std::vector<NumberedBox> boxes, unsigned threads,
+                           std::uint32_t mostInLeaf = RTSL_MOST_LEAF_ITEMS);
 
 /// In a tree of so many boxes, subtrees of up to this size are left to one thread each, whatever
 /// the number of threads.

@@ -66,7 +66,7 @@ private:
     if (node.isLeaf())
       return costsOfLeaf(area, node.count);
     const Costs left = chooseBelow(node.children[0]), right = chooseBelow(node.children[1]);
-    return choose(choices[number], area, node.count, left, right);
+    return choose(choices[number], area, node.count, left, right, tree.mostInLeaf);
   }
 
   const BinaryTree &tree;

@@ -37,9 +37,10 @@ inline Costs costsOfLeaf(float area, uint32_t items) {
   return costs;
 }
 
-/// Chooses for a node with two children. `area` is that of its box.
+/// Chooses for a node with two children. `area` is that of its box; no more than `mostInLeaf` items
+/// become one leaf.
 inline Costs choose(Choice &choice, float area, uint32_t items, const Costs &left,
-                    const Costs &right) {
+                    const Costs &right, uint32_t mostInLeaf = RTSL_MOST_LEAF_ITEMS) {
   float split[width + 1]; // into exactly j
 #ifdef __clang__
 #pragma clang loop unroll(full)
@@ -59,7 +60,7 @@ inline Costs choose(Choice &choice, float area, uint32_t items, const Costs &lef
     split[j] = least;
   }
   const float asLeaf = area * float(items) * costOfItem, asNode = area * costOfNode + split[width];
-  choice.isNode = items > RTSL_MOST_LEAF_ITEMS || asNode < asLeaf;
+  choice.isNode = items > mostInLeaf || asNode < asLeaf;
   choice.items = uint8_t(items < mostCounted ? items : mostCounted);
   Costs costs;
   costs.of[0] = 0;
