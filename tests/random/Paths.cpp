@@ -14,11 +14,6 @@
 
 namespace rtsl::random {
 
-const char *name(Failure failure) {
-  static const char *const names[] = {"fine", "rejected", "fault", "crash", "hang", "mismatch"};
-  return names[static_cast<std::size_t>(failure)];
-}
-
 namespace {
 
 using Compile = std::function<std::shared_ptr<const runtime::Program>(

@@ -1,6 +1,7 @@
 //===- Paths.h - the ways to run a program, which all agree ---------------===//
 #pragma once
 
+#include "Findings.h"
 #include "PrintedCpp.h"
 #include "Program.h"
 
@@ -10,24 +11,6 @@
 
 namespace rtsl::random {
 
-/// What went wrong with a program.
-enum class Failure : std::uint8_t {
-  None,
-  Rejected, // the front end or the linker does not take it, though it is valid
-  Fault,    // the compiler found a fault of its own
-  Crash,    // a signal
-  Hang,
-  Mismatch, // two paths disagree
-};
-const char *name(Failure failure);
-
-struct Finding {
-  Failure failure = Failure::None;
-  std::string detail;
-  bool hit = false;    // some ray met something, so that a material ran
-  std::string refused; // why a path could not take the program yet, though it is valid
-};
-
 /// How programs are run.
 struct PathOptions {
   std::vector<std::string> wanted; // names; empty: the path that differs most
@@ -36,7 +19,8 @@ struct PathOptions {
 };
 
 /// Runs the programs, compiled together, on every wanted path that can run them, and compares with
-/// the first path. One finding a program; a Rejected or Fault of the whole stands at all of them.
+/// the first path. One finding a program; a Rejected or Fault of the whole stands at all of them,
+/// but those that an earlier path has failed.
 std::vector<Finding> compare(const std::vector<const Program *> &programs,
                              const PathOptions &options);
 

@@ -148,17 +148,7 @@ Results runSeeds(std::uint32_t first, std::uint32_t count, const RunOptions &opt
   auto settle = [&](Worker &worker) {
     const std::vector<std::uint32_t> seeds = worker.seeds;
     std::vector<Finding> findings = finish(worker, options.secondsLimit);
-    bool isOfAll = findings.size() != seeds.size();
-    if (!isOfAll && seeds.size() > 1) {
-      auto isRejected = [](const Finding &finding) {
-        return finding.failure == Failure::Rejected || finding.failure == Failure::Fault;
-      };
-      isOfAll = std::any_of(findings.begin(), findings.end(), isRejected) &&
-                std::all_of(findings.begin(), findings.end(), [&](const Finding &finding) {
-                  return isRejected(finding) || !finding.refused.empty();
-                });
-    }
-    if (isOfAll && seeds.size() > 1) {
+    if (areOfBatch(findings, seeds.size())) {
       const auto half = seeds.begin() + static_cast<std::ptrdiff_t>(seeds.size() / 2);
       waiting.emplace_front(seeds.begin(), half);
       waiting.emplace_front(half, seeds.end());
