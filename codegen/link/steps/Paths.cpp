@@ -1,4 +1,4 @@
-//===- Paths.cpp - whether the rays of a program stay coherent ------------===//
+//===- Paths.cpp - what is known of the rays of a program -----------------===//
 //
 // The lanes of a GPU begin with similar rays. Where shaders choose the next ray at random, rays of
 // neighbouring lanes soon diverge; otherwise they stay coherent for long. How the megakernel
@@ -24,6 +24,17 @@ std::string methodFor(mlir::Operation *trace) {
     return "shade";
   const auto payload = llvm::cast<ir::PtrType>(withPayload.getPayload().getType()).getPointee();
   return ("closestHit." + llvm::cast<ir::StructType>(payload).getName()).str();
+}
+
+/// Whether a method of a class with such a root contains an operation for which `holds` holds,
+/// itself or in functions that it calls.
+bool anyMethod(const LinkContext &context, llvm::function_ref<bool(mlir::Operation *)> holds,
+               llvm::function_ref<bool(llvm::StringRef)> isSuchRoot) {
+  Contains contains(context.symbols, holds);
+  return llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(), [&](FuncOp function) {
+    const llvm::StringRef root = readerOf(context.symbols, function).root;
+    return !root.empty() && isSuchRoot(root) && contains(function);
+  });
 }
 
 } // namespace
@@ -63,10 +74,18 @@ runtime::Paths findPaths(const LinkContext &context) {
 }
 
 bool raysLeaveHits(const LinkContext &context) {
-  Contains sends(context.symbols, ir::sendsRays);
-  return llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(), [&](FuncOp function) {
-    const llvm::StringRef root = readerOf(context.symbols, function).root;
-    return !root.empty() && root != "rt_RayGeneration" && sends(function);
+  return anyMethod(context, ir::sendsRays,
+                   [](llvm::StringRef root) { return root != "rt_RayGeneration"; });
+}
+
+bool raysReadLaunch(const LinkContext &context) {
+  const auto readsLaunch = [](mlir::Operation *op) {
+    auto state = llvm::dyn_cast<ir::StateOp>(op);
+    return state && (state.getName() == "LaunchIndex" || state.getName() == "LaunchSize") &&
+           isRead(state);
+  };
+  return anyMethod(context, readsLaunch, [](llvm::StringRef root) {
+    return root != "rt_RayGeneration" && root != "rt_Camera";
   });
 }
 

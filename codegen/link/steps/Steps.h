@@ -182,6 +182,9 @@ bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 runtime::Paths findPaths(const LinkContext &context);
 /// Whether any method but `generate` sends rays, also to lamps. Runs after slots are resolved.
 bool raysLeaveHits(const LinkContext &context);
+/// Whether any method but `generate` and those of cameras reads LaunchIndex or LaunchSize. Runs
+/// after slots are resolved.
+bool raysReadLaunch(const LinkContext &context);
 
 /// Defines the dispatch function of every slot.
 void resolveSlots(LinkContext &context);

@@ -33,6 +33,11 @@ inline void takeFromSample(RtslState &state, const RtslState &other) {
   }
 }
 
+/// Do methods read the launch index and size that run for rays which shaders send?
+inline bool doRaysReadLaunch(const RtslLaunch &launch) {
+  return rtsl_needs(&launch) & RTSL_NEEDS_LAUNCH && rtsl_rays_read_launch();
+}
+
 /// What a ray inherits from the ray that sent it.
 inline void inherit(RtslState &state, const RtslState &parent) {
   state.launch = parent.launch;
@@ -40,7 +45,7 @@ inline void inherit(RtslState &state, const RtslState &parent) {
   if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = parent.TimeSeed;
   state.Time = parent.Time; // rays with a payload pass it on, whether it is read or not
-  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
+  for (int i = 0; i < 3 && doRaysReadLaunch(*parent.launch); ++i) {
     state.LaunchIndex[i] = parent.LaunchIndex[i];
     state.LaunchSize[i] = parent.LaunchSize[i];
   }

@@ -34,7 +34,7 @@ inline ShadowRay shadowRayFrom(const RtslState &shading, Vec3 point) {
   ray.time = shading.Time;
   if (needs & RTSL_NEEDS_TIME)
     ray.timeSeed = shading.TimeSeed;
-  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
+  for (int i = 0; i < 3 && doRaysReadLaunch(*shading.launch); ++i) {
     ray.launchIndex[i] = shading.LaunchIndex[i];
     ray.launchSize[i] = shading.LaunchSize[i];
   }
@@ -58,7 +58,7 @@ inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   if (needs & RTSL_NEEDS_TIME)
     state.TimeSeed = ray.timeSeed;
   state.Time = ray.time;
-  for (int i = 0; i < 3 && needs & RTSL_NEEDS_LAUNCH; ++i) {
+  for (int i = 0; i < 3 && doRaysReadLaunch(*ray.launch); ++i) {
     state.LaunchIndex[i] = ray.launchIndex[i];
     state.LaunchSize[i] = ray.launchSize[i];
   }

@@ -102,6 +102,9 @@ uint32_t rtsl_generates(const RtslLaunch *launch);
 uint32_t rtsl_is_fast(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
+/// Whether any method but those of the camera and `generate` reads LaunchIndex or LaunchSize.
+/// Otherwise rays that shaders send do not have them.
+uint32_t rtsl_rays_read_launch(void);
 /// RTSL_SCHEDULE_*: how the lanes of a warp choose the next step.
 #define RTSL_SCHEDULE_MAJORITY 0u
 #define RTSL_SCHEDULE_PRIORITIZED 1u

@@ -63,6 +63,27 @@ class Sky : rt_Miss {
 };
 """
 
+# Which pixel it is: read at any depth, by materials, a light and the background.
+LAUNCH = """
+class Mirror : rt_Material {
+  float column() { return float(rt_LaunchIndex.x) / float(rt_LaunchSize.x); }
+  void shade() {
+    color light = color(column());
+    illuminance (rt_HitPoint) light += rt_LightColor;
+    rt_SampleColor = light + 0.5 * trace(rt_HitPoint, rt_ShadingNormal);
+  }
+};
+class Row : rt_Light {
+  void illumination() {
+    rt_LightDirection = vec3(0.0, 1.0, 1.0);
+    rt_LightColor = color(float(rt_LaunchIndex.y) / float(rt_LaunchSize.y));
+  }
+};
+class Columns : rt_Miss {
+  void miss() { rt_SampleColor = color(float(rt_LaunchIndex.x)); }
+};
+"""
+
 
 class State(Case):
     def pictures_are_one(self, scene, *options, ways=tuple(WAYS), turn=None):
@@ -125,6 +146,33 @@ class State(Case):
 
     def test_environment_maps_have_the_coordinates_that_miss_writes(self):
         self.pictures_are_one(self.scene(sets=True))
+
+    def test_methods_for_any_ray_read_the_launch(self):
+        self.write("eye.rtsl", CAMERA)
+        self.write("shaders.rtsl", SHADERS)
+        self.write("launch.rtsl", LAUNCH)
+        balls = [[-0.8, 0, 0], [0.8, 0.3, 0.2]]
+        for reader in ("Mirror", "Row", "Columns"):
+            scene = {
+                "rtsl": 1,
+                "import": ["eye.rtsl", "shaders.rtsl", "launch.rtsl", "std.materials"],
+                "camera": {"class": "Eye"},
+                "objects": [
+                    {
+                        "primitive": {"class": "Ball", "center": center},
+                        "material": {"class": "Mirror" if reader == "Mirror" else "Conductor"},
+                    }
+                    for center in balls
+                ],
+                "render": {"engine": "classic", "size": [16, 16], "spp": 1, "depth": 3},
+            }
+            if reader == "Row":
+                scene["lights"] = [{"class": "Row"}]
+            if reader == "Columns":
+                scene["background"] = {"class": "Columns"}
+            self.write("scene.json", json.dumps(scene))
+            with self.subTest(reader=reader):
+                self.pictures_are_one("scene.json")
 
     def test_examples(self):
         """The ways that differ in how state is stored, in every example; the others in turn, two in

@@ -1,4 +1,4 @@
-//===- PathsTest.cpp - which rays leave hits, and how they are chosen -----===//
+//===- PathsTest.cpp - which rays leave hits, and what they have ----------===//
 #include "Linked.h"
 
 namespace rtsl {
@@ -67,6 +67,19 @@ TEST(Paths, RaysAtRandom) {
       linked(meeting("trace(rt_HitPoint, vec3(rand(), rand(), 1.0), 0.0, 1e30, seen);"));
   EXPECT_TRUE(program.raysLeaveHits);
   EXPECT_EQ(program.paths, runtime::Paths::Random);
+}
+
+TEST(Paths, OnlyGenerateReadsTheLaunch) {
+  std::string source = meeting("seen.light = color(rt_HitDistance);");
+  source.replace(source.find("seen.light;\n"), 12, "seen.light * float(rt_LaunchSize.x);\n");
+  EXPECT_FALSE(linked(source).raysReadLaunch);
+}
+
+TEST(Paths, ShadersOfHitsReadTheLaunch) {
+  EXPECT_TRUE(linked(meeting("seen.light = color(float(rt_LaunchIndex.x));")).raysReadLaunch);
+  EXPECT_TRUE(linked(meeting("seen.light = color(width());} float width() {"
+                             " return float(rt_LaunchSize.x);"))
+                  .raysReadLaunch);
 }
 
 } // namespace
