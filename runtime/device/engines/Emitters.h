@@ -19,6 +19,7 @@
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Sampler.h"
+#include "runtime/device/ray/Search.h"
 #include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
@@ -27,21 +28,14 @@ namespace rtsl::device {
 /// The number of the first of `count` ascending chances that exceeds `choice`, which is below 1.
 template <typename ChanceOf>
 uint32_t chosenOf(uint32_t count, float choice, ChanceOf chanceOf) {
-  uint32_t first = 0, last = count - 1;
-  while (first < last) {
-    const uint32_t middle = first + (last - first) / 2;
-    if (chanceOf(middle) > choice)
-      last = middle;
-    else
-      first = middle + 1;
-  }
-  return first;
+  return indexInTable(count, [&](uint32_t i) { return !(chanceOf(i) > choice); });
 }
 
-/// The probability of one of them.
+/// The probability of one of them. Without a jump, because the number is random.
 template <typename ChanceOf>
 float probabilityOf(uint32_t number, ChanceOf chanceOf) {
-  return number ? chanceOf(number) - chanceOf(number - 1) : chanceOf(0);
+  const float before = chanceOf(number - (number ? 1u : 0u));
+  return chanceOf(number) - (number ? before : 0.0f);
 }
 
 inline auto chancesOfEmitters(const RtslLaunch &launch) {
@@ -179,18 +173,13 @@ inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
 /// The same for any hit; 0 if it is not on an emitter.
 inline float emitterDensity(const RtslState &hit) {
   const RtslLaunch &launch = *hit.launch;
-  uint32_t first = 0, last = rtsl_emitter_count(&launch);
-  while (first < last) {
-    const uint32_t middle = first + (last - first) / 2;
-    if (rtsl_emitters(&launch)[middle].instance < hit.instance)
-      first = middle + 1;
-    else
-      last = middle;
-  }
-  if (first == rtsl_emitter_count(&launch) ||
-      rtsl_emitters(&launch)[first].instance != hit.instance)
+  const uint32_t count = rtsl_emitter_count(&launch);
+  if (count == 0)
     return 0;
-  return densityOfEmitter(hit, first);
+  const RtslEmitter *emitters = rtsl_emitters(&launch);
+  const uint32_t emitter =
+      indexInTable(count, [&](uint32_t i) { return emitters[i].instance < hit.instance; });
+  return emitters[emitter].instance == hit.instance ? densityOfEmitter(hit, emitter) : 0;
 }
 
 /// Sets rt_PDF of a hit, in programs that choose points on emitters.
