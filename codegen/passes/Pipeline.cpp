@@ -4,6 +4,7 @@
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/passes/BindMembers.h"
 #include "codegen/passes/ForgetArguments.h"
+#include "codegen/passes/ForwardPayloads.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/PropagateConstants.h"
 #include "codegen/passes/ShareCalls.h"
@@ -88,6 +89,7 @@ void registerPasses() {
   mlir::registerPass(createHoistVariablesPass);
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass(createForgetArgumentsPass);
+  mlir::registerPass(createForwardPayloadsPass);
   mlir::registerPass([] { return createInlineFunctionsPass(); });
   mlir::registerPass(createShareCallsPass);
   mlir::registerPass(createShareExpressionsPass);

@@ -129,9 +129,9 @@ struct Equal {
   mlir::Operation *before; // where the one that remains stands
 };
 
-class Sharing {
+class SharedCalls {
 public:
-  Sharing(FuncOp function, EffectsOfFunctions &effects)
+  SharedCalls(FuncOp function, EffectsOfFunctions &effects)
       : function(function), effects(effects), dominance(function) {}
 
   void run() {
@@ -368,7 +368,7 @@ struct ShareCalls : mlir::PassWrapper<ShareCalls, mlir::OperationPass<mlir::Modu
     EffectsOfFunctions effects(getOperation());
     for (auto function : getOperation().getOps<FuncOp>())
       if (!function.isExternal() && !ir::attr::constructor.isOn(function))
-        Sharing(function, effects).run();
+        SharedCalls(function, effects).run();
   }
 };
 

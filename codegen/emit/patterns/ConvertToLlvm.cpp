@@ -11,6 +11,7 @@
 #include "codegen/ir/Slots.h"
 #include "codegen/ir/dialect/RtslDialect.h"
 #include "codegen/ir/dialect/RtslOps.h"
+#include "codegen/passes/ForwardPayloads.h"
 #include "codegen/passes/ShareExpressions.h"
 #include "runtime/device/ray/State.h"
 
@@ -354,6 +355,7 @@ void registerLlvmDialects(mlir::DialectRegistry &registry) {
 }
 
 void buildLlvmPipeline(mlir::OpPassManager &module) {
+  module.nest<mlir::func::FuncOp>().addPass(createForwardPayloadsPass());
   module.addPass(createConvertToLlvmPass());
   module.addPass(createShareExpressionsPass());
 }
