@@ -5,7 +5,13 @@
 
 #include <embree3/rtcore.h>
 
+#include <limits>
+
 namespace handwritten {
+
+/// The end of rays that see everything, and the distance of what is not hit. No infinity, because
+/// with -ffast-math the compiler takes for granted that there is none.
+constexpr float farthest = std::numeric_limits<float>::max();
 
 inline RTCRay embreeRay(vec3 origin, vec3 direction, float start, float end) {
   RTCRay ray;

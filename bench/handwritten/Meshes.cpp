@@ -29,7 +29,6 @@ namespace {
 
 /// Where shadow rays begin to see. The scene is some ten units large, so rounding is near 1e-6.
 constexpr float epsilon = 1e-4f;
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// An instance of a mesh: four columns of three. The linear part is a rotation and a scale.
 struct Place {
@@ -160,7 +159,7 @@ vec3 sample(const Scene &scene, const Picture &picture, std::uint32_t x, std::ui
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit found;
-  found.ray = embreeRay(camera.eye, direction, 0, infinity);
+  found.ray = embreeRay(camera.eye, direction, 0, farthest);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene.embree, &context, &found);

@@ -8,11 +8,9 @@
 #include "runtime/device/ray/Random.h"
 
 #include <cmath>
-#include <limits>
 
 namespace handwritten {
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float pi = 3.1415927f;
 constexpr unsigned sureBounces = 3; // no path is ended at random before
 
@@ -58,7 +56,7 @@ inline RTCRayHit findHit(const PathScene &scene, vec3 from, vec3 direction, floa
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit found;
-  found.ray = embreeRay(from, direction, start, infinity);
+  found.ray = embreeRay(from, direction, start, farthest);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene.embree, &context, &found);

@@ -12,7 +12,6 @@
 #include "runtime/device/ray/Random.h"
 
 #include <cmath>
-#include <limits>
 
 namespace handwritten {
 
@@ -21,7 +20,6 @@ namespace {
 using rtsl::device::childKey;
 using rtsl::device::randomNumber;
 
-constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Where spawned rays begin to see. The scene is some ten units large, so rounding is near 1e-6.
 constexpr float epsilon = 1e-4f;
 
@@ -115,7 +113,7 @@ vec3 radiance(const Scene &scene, const Picture &picture, const Ray &ray) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit found;
-  found.ray = embreeRay(ray.origin, ray.direction, ray.start, infinity);
+  found.ray = embreeRay(ray.origin, ray.direction, ray.start, farthest);
   found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene.embree(), &context, &found);

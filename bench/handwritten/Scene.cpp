@@ -1,16 +1,14 @@
 //===- Scene.cpp - examples/glass as numbers and an Embree scene ----------===//
 #include "Scene.h"
+#include "EmbreeRays.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
 namespace handwritten {
 
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
 
 vec3 origin(const RTCRay &ray) {
   return {ray.org_x, ray.org_y, ray.org_z};
@@ -36,8 +34,8 @@ inline bool intersect(const Floor &floor, const RTCRay &ray, FloorHit &hit) {
          hit.coordinates.y <= 1;
 }
 
-/// The first t between the ray's ends, or infinity. Directions are unit. The discriminant is taken
-/// at the point of the ray nearest to the centre (Haines et al., "Precision Improvements for
+/// The first t between the ends of the ray, or `farthest`. Directions are unit. The discriminant is
+/// taken at the point of the ray nearest to the centre (Haines et al., "Precision Improvements for
 /// Ray/Sphere Intersection", Ray Tracing Gems, 2019).
 inline float intersect(const Sphere &sphere, const RTCRay &ray) {
   const vec3 f = origin(ray) - sphere.center;
@@ -46,7 +44,7 @@ inline float intersect(const Sphere &sphere, const RTCRay &ray) {
   const float squared = sphere.radius * sphere.radius;
   const float discriminant = squared - glm::dot(nearest, nearest);
   if (discriminant < 0)
-    return infinity;
+    return farthest;
   const float c = glm::dot(f, f) - squared;
   const float root = std::sqrt(discriminant);
   const float q = b < 0 ? b - root : b + root;
@@ -54,7 +52,7 @@ inline float intersect(const Sphere &sphere, const RTCRay &ray) {
   const float near = std::min(t0, q), far = std::max(t0, q);
   if (near > ray.tnear && near < ray.tfar)
     return near;
-  return far > ray.tnear && far < ray.tfar ? far : infinity;
+  return far > ray.tnear && far < ray.tfar ? far : farthest;
 }
 
 void floorBounds(const RTCBoundsFunctionArguments *arguments) {
@@ -86,7 +84,7 @@ void floorOccluded(const RTCOccludedFunctionNArguments *arguments) {
   RTCRay &ray = *reinterpret_cast<RTCRay *>(arguments->ray);
   FloorHit hit;
   if (intersect(*static_cast<const Floor *>(arguments->geometryUserPtr), ray, hit))
-    ray.tfar = -infinity;
+    ray.tfar = -farthest;
 }
 
 void sphereBounds(const RTCBoundsFunctionArguments *arguments) {
@@ -103,7 +101,7 @@ void sphereIntersect(const RTCIntersectFunctionNArguments *arguments) {
   RTCRayHit &rayHit = *reinterpret_cast<RTCRayHit *>(arguments->rayhit);
   const Sphere *spheres = static_cast<const Sphere *>(arguments->geometryUserPtr);
   const float t = intersect(spheres[arguments->primID], rayHit.ray);
-  if (t == infinity)
+  if (t == farthest)
     return;
   rayHit.ray.tfar = t;
   rayHit.hit.geomID = arguments->geomID;
@@ -115,8 +113,8 @@ void sphereOccluded(const RTCOccludedFunctionNArguments *arguments) {
     return;
   RTCRay &ray = *reinterpret_cast<RTCRay *>(arguments->ray);
   const Sphere *spheres = static_cast<const Sphere *>(arguments->geometryUserPtr);
-  if (intersect(spheres[arguments->primID], ray) != infinity)
-    ray.tfar = -infinity;
+  if (intersect(spheres[arguments->primID], ray) != farthest)
+    ray.tfar = -farthest;
 }
 
 } // namespace
