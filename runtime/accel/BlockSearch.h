@@ -109,7 +109,7 @@ template <typename Limit, typename Test>
     const BlockNode *node;
   };
   Open stack[device::maxBvhDepth + 1]; // the last one is written, but never kept
-  std::size_t top = 0;
+  Open *top = stack;
   const BoxRay boxRay(ray, tMin);
   float end = limit() * device::cullSlack;
   std::uint32_t endBits = Entered::upperBits(end);
@@ -119,9 +119,9 @@ template <typename Limit, typename Test>
   for (;;) {
     const Entered::Nearest nearest = open.children.nearest();
     if (nearest.distance() > endBits) {
-      if (top == 0)
+      if (top == stack)
         return false;
-      open = stack[--top];
+      open = *--top;
       continue;
     }
     const std::uint32_t child = open.node->children[nearest.slot()];
@@ -133,7 +133,7 @@ template <typename Limit, typename Test>
       endBits = Entered::upperBits(end);
       continue;
     }
-    stack[top] = open;
+    *top = open;
     top += !open.children.isEmpty();
     tree.prefetch(open.node->children[open.children.nearest().slot()]); // what may be visited next
     open.node = &tree.node(child);
