@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace rtsl::random;
-
+namespace rtsl::random {
 namespace {
 
 std::vector<Finding> failing(const std::vector<Failure> &failures) {
@@ -30,3 +29,4 @@ TEST(Random, WhatIsKnownOfEachProgramIsItsOwn) {
 }
 
 } // namespace
+} // namespace rtsl::random
