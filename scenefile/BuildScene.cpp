@@ -1,12 +1,13 @@
 //===- BuildScene.cpp - from a description to objects of a program --------===//
 #include "runtime/scene/MeshValues.h"
-#include "scenefile/DarkLights.h"
 #include "scenefile/ImageObjects.h"
 #include "scenefile/PrimitiveCount.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/files/MeshFiles.h"
 #include "scenefile/graph/VariablePlaces.h"
 #include "scenefile/graph/Variables.h"
+#include "scenefile/mistakes/DarkLights.h"
+#include "scenefile/mistakes/InvisibleObjects.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
@@ -44,7 +45,7 @@ public:
   void build() {
     attempt([&] {
       if (description.camera)
-        scene.setCamera(add(*description.camera, "camera"));
+        scene.setCamera(addCamera(*description.camera));
       if (!description.passes.empty())
         addPasses();
       else if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
@@ -80,7 +81,7 @@ public:
     AddedPart part;
     attempt([&] {
       if (description.camera)
-        part.camera = add(*description.camera, "camera");
+        part.camera = addCamera(*description.camera);
     });
     added = &part.instances;
     addContents();
@@ -110,6 +111,14 @@ private:
         if (const std::optional<std::string> why = whyDark(scene, reference))
           scene.addWarning({message::lightIsDark(name, *why), light.className.place});
       });
+  }
+
+  RtslRef addCamera(const ObjectDescription &object) {
+    const RtslRef camera = add(object, "camera");
+    if (const std::optional<std::string> why = whyInvisible(scene, camera))
+      scene.addWarning(
+          {message::cameraSeesNothing(object.className.text, *why), object.className.place});
+    return camera;
   }
 
   void finish() {
@@ -477,7 +486,8 @@ private:
             ? fmt::format("{} (objects.{})", geometry.primitive->className.text, index)
             : std::string();
     RtslRef material = 0, primitive = 0;
-    std::uint32_t number = 0; // of the mesh, or of primitives
+    std::uint32_t number = 0;       // of the mesh, or of primitives
+    std::optional<std::string> why; // it is invisible
     bool isFirst = true;
     for (const InstanceDescription &instance : geometry.placements) {
       bool isWhole = true;
@@ -489,7 +499,10 @@ private:
               requireRoot(material, "rt_Material", "a material", geometry.material.shownName());
             });
         if (geometry.primitive) {
+          const std::size_t before = inPlaces.size();
           primitive = addOnce(*geometry.primitive, name);
+          if (inPlaces.size() != before) // it is not that of another instance
+            why = whyInvisible(scene, primitive);
           number = primitivesOf(geometry, scene, primitive);
         }
       }
@@ -498,8 +511,13 @@ private:
       if (!isWhole || !geometry.hasShape)
         return;
       isFirst = false;
+      const std::size_t warnings = scene.warnings().size();
       try {
         place(instance, primitive, material, number);
+        if (why && scene.warnings().size() == warnings) // its box has an area
+          scene.addWarning(
+              {message::primitiveIsInvisible(name, *why), geometry.primitive->className.place});
+        why.reset();
       } catch (Error &error) {
         if (!error.place)
           error.place = geometry.place;
