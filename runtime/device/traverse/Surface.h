@@ -289,9 +289,10 @@ void describePrimitiveChanges(RtslState &state, const RtslInstance &instance, co
   const Vec3 x = load(state.dUVWdx), y = load(state.dUVWdy);
   {
     const InObjectSpace space(state, instance);
-    store(state.dUVWdx, x * (1 / distance));
-    store(state.dUVWdy, y * (1 / distance));
     state.HitDistance = infinity;
+    const ModerateRay moderate(state);
+    store(state.dUVWdx, x * (1 / distance) * moderate.factor());
+    store(state.dUVWdy, y * (1 / distance) * moderate.factor());
     slots.rt_Primitive_rt_computeChanges(&state, instance.primitive);
   }
   state.HitDistance = distance;

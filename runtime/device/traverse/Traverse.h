@@ -9,6 +9,7 @@
 #include "runtime/device/ray/Vector.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/traverse/Candidate.h"
+#include "runtime/device/traverse/ModerateRay.h"
 #include "runtime/device/traverse/Selector.h"
 #include "runtime/device/traverse/Triangle.h"
 
@@ -220,6 +221,7 @@ bool testInRange(RtslState &state, const Ray &ray, const RtslInstance &instance,
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance, ray);
+    const ModerateRay moderate(state);
     intersect(&state, instance.primitive);
   }
   const bool hasHit = state.HitDistance < end;
