@@ -22,9 +22,10 @@ constexpr std::array lists = {"accessors", "animations", "buffers",   "bufferVie
                               "nodes",     "samplers",   "scenes",    "textures"};
 
 constexpr std::array extensions = {
-    "KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",   "KHR_materials_sheen",     "KHR_materials_transmission",
-    "KHR_materials_unlit", "KHR_mesh_quantization",   "KHR_texture_transform"};
+    "KHR_lights_punctual",        "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_sheen",     "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit",     "KHR_mesh_quantization",
+    "KHR_texture_transform"};
 
 bool isKnown(const std::string &extension) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();

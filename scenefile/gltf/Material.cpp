@@ -111,6 +111,12 @@ private:
   void setExtensions(JsonValue &material) {
     if (const JsonValue *ior = extension(json, "KHR_materials_ior"))
       setIndex(material, *ior);
+    if (const JsonValue *specular = extension(json, "KHR_materials_specular")) {
+      set(material, "specular", factor(*specular, "specularFactor", 1, 1));
+      setMap(material, "specularMap", specular->find("specularTexture"), Use::Alpha);
+      setSpecularColor(material, *specular);
+      setMap(material, "specularColorMap", specular->find("specularColorTexture"), Use::Color);
+    }
     if (const JsonValue *glass = extension(json, "KHR_materials_transmission")) {
       set(material, "transmission", factor(*glass, "transmissionFactor", 0, 1));
       setMap(material, "transmissionMap", glass->find("transmissionTexture"), Use::Red);
@@ -139,6 +145,18 @@ private:
       warnings.push_back(
           {message::refractiveIndexClamped(of("ior"), wanted, index), found->place()});
     set(material, "index", number(ior, index));
+  }
+
+  /// The color may be above 1.
+  void setSpecularColor(JsonValue &material, const JsonValue &specular) {
+    const JsonValue *found = specular.find("specularColorFactor");
+    if (!found)
+      return;
+    const std::vector<double> values = readNumbers(*found, 3, of("specularColorFactor"));
+    for (double value : values)
+      if (value < 0)
+        throw Error(message::belowZero(of("specularColorFactor"), value), found->place());
+    set(material, "specularColor", numbers(*found, values));
   }
 
   void setEmission(JsonValue &material) {

@@ -146,6 +146,17 @@ TEST_F(Gltf, MaterialsArePrincipled) {
             "filter=nearest))");
   EXPECT_EQ(warnings, "");
   EXPECT_EQ(material("{}"), "Principled baseColor=[1 1 1] metallic=1 roughness=1");
+  EXPECT_EQ(material(R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0.3,
+"specularTexture": {"index": 0}, "specularColorFactor": [1, 0.5, 4], "specularColorTexture": {"index": 0}}}})",
+                     images),
+            "Principled baseColor=[1 1 1] metallic=1 roughness=1 specular=0.3 "
+            "specularMap=(ImageChannel channel=3 image=(file=a b.png colorSpace=srgb "
+            "wrap=[clamp mirror] filter=nearest)) specularColor=[1 0.5 4] "
+            "specularColorMap=(ImageTexture image=(file=a b.png colorSpace=srgb "
+            "wrap=[clamp mirror] filter=nearest))");
+  EXPECT_EQ(material(R"({"extensions": {"KHR_materials_specular": {}}})"),
+            "Principled baseColor=[1 1 1] metallic=1 roughness=1 specular=1");
+  EXPECT_EQ(warnings, "");
   EXPECT_EQ(material(R"({"extensions": {"KHR_materials_unlit": {}}})"),
             "Emitter radiance=[1 1 1] isTwoSided=true");
   EXPECT_EQ(material(R"({"extensions": {"KHR_materials_ior": {"ior": 3}}})"),

@@ -64,6 +64,8 @@ class ClosedForms(PathCase):
             {"class": "Velvet"},
             {"class": "Ward"},
             {"class": "Principled", "baseColor": 1},
+            {"class": "Principled", "baseColor": 1, "specularColor": [5, 0.5, 100]},
+            {"class": "Principled", "baseColor": 1, "specularColor": 25, "transmission": 0.5},
             {"class": "OrenNayar", "reflectance": 1},
         ]
         for material in lossless + lossy:
@@ -79,6 +81,27 @@ class ClosedForms(PathCase):
                 else:
                     for component in self.mean():
                         self.assertTrue(0.6 < component < 1.01, component)
+
+    def test_colors_of_what_is_reflected_straight_on(self):
+        """By a surface of index 1.5, which reflects 0.04 there without a color."""
+        material = {
+            "class": "Principled",
+            "baseColor": 0,
+            "roughness": 0.1,
+            "specular": 0.5,
+            "specularColor": [2, 0.5, 50],
+        }
+        image = {"class": "Solid", "value": [1, 1, 0.25]}
+        for maps, blue in (({}, 1), ({"specularColorMap": image}, 0.5)):
+            self.scene(
+                [(FLOOR, {**material, **maps})],
+                camera="Down",
+                background=1.0,
+                spp=16,
+                **{"import": ["std", "shaders.rtsl"]},
+            )
+            for component, expected in zip(self.mean(), (0.04, 0.01, 0.5 * blue)):
+                self.assertAlmostEqual(component, expected, delta=0.03 * expected)
 
 
 if __name__ == "__main__":
