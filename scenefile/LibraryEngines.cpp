@@ -26,13 +26,13 @@ const char *const radianceOfBackground = "radiance";
 
 ObjectDescription objectOf(const char *className, const Place &place) {
   ObjectDescription object;
-  object.className = {className, place};
+  object.className = {className, place, true};
   object.place = place;
   return object;
 }
 
 void import(SceneDescription &scene, const std::string &module, const Place &place) {
-  scene.imports.push_back({{module, place}, ""});
+  scene.imports.push_back({{module, place}, "", false});
 }
 
 /// Makes a background color an object that rays with a payload can meet.

@@ -75,7 +75,7 @@ public:
     for (auto &[key, model] : models)
       addMembers(model);
     for (const std::string &module : modules)
-      scene.imports.push_back({{module, root.place()}, ""});
+      scene.imports.push_back({{module, root.place()}, "", false});
   }
 
 private:

@@ -41,7 +41,7 @@ void forEachObject(const JsonValue &value, const ObjectVisitor &visit) {
       std::vector<std::pair<LocatedName, const JsonValue *>> members;
       for (const auto &[key, member] : value.members)
         members.push_back({{key.text, member.place()}, &member});
-      visit({className->string, className->place()}, members);
+      visit(nameOfClass(*className), members);
     }
   }
   forEachValue(value, [&](const JsonValue &inner) { forEachObject(inner, visit); });
@@ -120,6 +120,10 @@ bool isNothing(const JsonValue &value) {
 
 } // namespace
 
+LocatedName nameOfClass(const JsonValue &className) {
+  return {className.string, className.place(), className.isOfLibrary};
+}
+
 const ObjectDescription *findObject(const SceneDescription &description, const std::string &name) {
   for (const auto *section :
        {&description.images, &description.helpers, &description.textures, &description.materials})
@@ -138,7 +142,7 @@ ObjectDescription objectInPlace(const JsonValue &json, const std::string &what) 
   if (!className || className->kind != Kind::String)
     throw Error(message::classMissing(what), json.place());
   ObjectDescription object;
-  object.className = {className->string, className->place()};
+  object.className = nameOfClass(*className);
   object.place = json.place();
   for (const auto &[key, member] : json.members) {
     if (key.text == "constructor")

@@ -206,7 +206,7 @@ private:
       return object;
     }
     const JsonValue &className = expect(require(value, "class", what), Kind::String, "`class`");
-    object.className = {className.string, className.place()};
+    object.className = nameOfClass(className);
     if (className.string.empty())
       throw Error(message::classNameEmpty(), className.place());
     for (const auto &[key, member] : value.members) {

@@ -39,7 +39,12 @@ namespace rtsl::scene {
 struct LocatedName {
   std::string text;
   Place place;
+  bool isOfLibrary =
+      false; // the name of a class that is not the scene's, but for it (LibraryNames.h)
 };
+
+/// What a string names that is a class.
+LocatedName nameOfClass(const JsonValue &className);
 
 /// {"class": ..., "constructor": ..., members...}. Values stay JSON until the classes are known.
 struct ObjectDescription {
@@ -168,8 +173,9 @@ struct PassDescription {
 runtime::RenderOptions renderOptions(const RenderSettings &settings);
 
 struct ImportDescription {
-  LocatedName name; // as written: "std.cameras" or "glass.rtsl"
-  std::string path; // resolved; empty for a module name such as std.cameras
+  LocatedName name;      // as written: "std.cameras" or "glass.rtsl"
+  std::string path;      // resolved; empty for a module name such as std.cameras
+  bool isOfScene = true; // written there; otherwise of a class that stands for a part of the scene
 };
 
 /// What errors that are known already are about: building a scene reports no others of what uses
@@ -212,7 +218,7 @@ struct SceneDescription {
   std::vector<LocatedName> editable;
   std::vector<Warning> warnings;
   Refusals refused;
-  std::shared_ptr<const JsonValue> root;                      // owns all of the above JSON but for
+  std::shared_ptr<JsonValue> root;                            // owns all of the above JSON but for
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
   std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
   std::shared_ptr<KeptFiles> keptFiles; // of scenes before this one, for it; null: none

@@ -82,7 +82,9 @@ using Modules = std::set<std::string>;
 /// An object of a class of the standard library, such as "materials.Principled".
 inline JsonValue libraryObject(const JsonValue &source, const std::string &name, Modules &modules) {
   modules.insert("std." + name);
-  return objectOf(source, name.substr(name.find('.') + 1));
+  JsonValue made = objectOf(source, name.substr(name.find('.') + 1));
+  made.find("class")->isOfLibrary = true;
+  return made;
 }
 
 } // namespace rtsl::scene::gltf

@@ -39,6 +39,7 @@ struct JsonValue {
   /// Of a number of a value with key frames: what it is in each of them.
   std::shared_ptr<const std::vector<JsonValue>> keys;
   bool fromOverride = false; // came from --set
+  bool isOfLibrary = false;  // as in LocatedName
   bool isIncluded = false;   // from another file than the scene's: paths in it are relative to that
 
   Place place() const { return {*file, line, column, length}; }

@@ -1,8 +1,10 @@
 """Modules of the standard library: which files an import reads, and what is said of modules that do
 not exist."""
 
+import base64
 import json
 import pathlib
+import struct
 import unittest
 
 from harness import RTSLC, Case
@@ -10,6 +12,9 @@ from harness import RTSLC, Case
 LIBRARY = (pathlib.Path(RTSLC).parent.parent / "share/rtslc/library").resolve()
 
 SPHERE = {"primitive": {"class": "Sphere", "center": [0, 0, -3]}, "material": {"class": "Grey"}}
+# A triangle in front of the camera.
+CORNERS = struct.pack("<9f", -1, -1, -3, 1, -1, -3, 0, 1, -3)
+URI = "data:application/octet-stream;base64," + base64.b64encode(CORNERS).decode()
 GREY = "class Grey : rt_Material;\nvoid shade() { rt_SampleColor = color(0.5); }\n"
 
 
@@ -67,6 +72,54 @@ class Library(Case):
         self.write("main.rtsl", "import std.primitives;\nclass Sphere { int i() { return 1; } };\n")
         messages = self.diagnose("check", "main.rtsl")
         self.assertEqual([each["code"] for each in messages], ["E0207"], messages)
+
+    def test_names_of_classes_that_a_scene_does_not_name(self):
+        """Engines, background colors and models use classes of the library: the picture must not
+        change if the author's classes have their names, or those of classes that they need."""
+        model = {
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.8, 1]}}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+            "accessors": [
+                {
+                    "bufferView": 0,
+                    "componentType": 5126,
+                    "count": 3,
+                    "type": "VEC3",
+                    "min": [-1, -1, -3],
+                    "max": [1, 1, -3],
+                }
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": 36}],
+            "buffers": [{"byteLength": 36, "uri": URI}],
+        }
+        self.write("model.gltf", json.dumps(model))
+        own = "".join(
+            f"class {name} {{ public float mine = 1.0; float twice() {{ return 2.0 * mine; }} }};\n"
+            for name in ("UniformSky", "PathTracer", "Principled", "Scatterer", "Emission")
+        )
+        for engine in ("path", "normals"):
+            for text, picture in (
+                (GREY, "a.exr"),
+                (GREY.replace(";", " {", 1) + "};\n" + own, "b.exr"),
+            ):
+                self.scene(
+                    background=[0.1, 0.2, 0.3],
+                    objects=[{"model": "model.gltf"}],
+                    render={"size": [8, 6], "spp": 1, "engine": engine},
+                )
+                self.write("Grey.rtsl", text)
+                self.run_rtslc("render", "scene.json", "-o", picture)
+            self.assert_same_bits("a.exr", "b.exr")
+        scene = json.loads((self.folder / "scene.json").read_text())
+        scene["import"].append("std.backgrounds")
+        scene["render"]["engine"] = "path"
+        self.write("scene.json", json.dumps(scene))
+        messages = self.diagnose("check", "scene.json")
+        self.assertEqual({each["code"] for each in messages}, {"E0207"}, messages)
 
     def test_the_author_s_names_do_not_reach_the_library(self):
         """Functions with the names of built-in ones, and names that an engine has: the picture must

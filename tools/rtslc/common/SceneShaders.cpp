@@ -6,6 +6,7 @@
 #include "frontend/preprocessor/FileSearch.h"
 #include "runtime/scene/Scene.h"
 #include "scenefile/LaunchSizes.h"
+#include "scenefile/LibraryNames.h"
 #include "scenefile/SceneParts.h"
 #include "scenefile/gltf/File.h"
 #include "sema/typed/TypeProperties.h"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -239,6 +241,51 @@ static void warnWithoutSampling(const std::vector<scene::LocatedName> &mentions,
   }
 }
 
+/// Does an import make a class of the library available, such as `std.backgrounds.UniformSky`?
+static bool offers(const std::string &module, const std::string &part) {
+  return part == module || part.rfind(module + ".", 0) == 0;
+}
+
+/// Classes of the author's that have names of the library, whose modules neither the author's files
+/// nor the scene imports.
+static std::vector<std::string> namesTaken(Shaders &shaders,
+                                           const scene::SceneDescription &description) {
+  std::set<std::string> ours, imported;
+  for (const scene::ImportDescription &import : description.imports)
+    if (import.isOfScene && import.path.empty())
+      imported.insert(import.name.text);
+  for (const ast::TranslationUnit *unit : shaders.authorsUnits()) {
+    for (const ast::ClassDecl &one : unit->classes)
+      ours.insert(one.name.text);
+    for (const ast::ImportDecl &import : unit->imports)
+      if (!import.isFile)
+        imported.insert(import.path);
+  }
+  std::vector<std::string> taken;
+  for (const std::string &part : findModule("std").parts)
+    if (ours.count(lastPart(part)) &&
+        std::none_of(imported.begin(), imported.end(),
+                     [&](const std::string &module) { return offers(module, part); }))
+      taken.push_back(lastPart(part));
+  return taken;
+}
+
+/// Gives classes of the library that stand for parts of the scene other names where the author's
+/// have theirs.
+static void renameLibraryClasses(scene::SceneDescription &description, Shaders &shaders,
+                                 std::vector<std::string> alreadyTaken) {
+  if (std::all_of(description.imports.begin(), description.imports.end(),
+                  [](const scene::ImportDescription &import) { return import.isOfScene; }))
+    return;
+  std::vector<std::string> taken = namesTaken(shaders, description);
+  shaders.renameInLibrary(taken);
+  taken.insert(taken.end(), alreadyTaken.begin(), alreadyTaken.end());
+  std::map<std::string, std::string> names;
+  for (const std::string &name : taken)
+    names[name] = SourceLoader::renamed(name);
+  scene::renameLibraryClasses(description, names);
+}
+
 std::unique_ptr<typed::Module>
 loadShaders(scene::SceneDescription &description, const CommonOptions &options, Messages &messages,
             std::vector<std::string> *filesRead, const std::vector<std::string> &takenNames,
@@ -247,14 +294,15 @@ loadShaders(scene::SceneDescription &description, const CommonOptions &options, 
   preprocessor.includeFolders.push_back(folderOf(description.file));
   Shaders shaders(messages, preprocessor);
   shaders.renameInLibrary(takenNames);
+  for (const scene::ImportDescription &import : description.imports)
+    if (!import.path.empty())
+      shaders.add(import.path, messages.rangeOf(import.name.place));
+  renameLibraryClasses(description, shaders, takenNames);
   std::vector<scene::LocatedName> mentions = scene::classMentions(description);
   mentions.insert(mentions.end(), otherMentions.begin(), otherMentions.end());
   for (const scene::LocatedName &mention : mentions)
     shaders.mention(mention.text);
   // What is used of a module is known when all files have been read.
-  for (const scene::ImportDescription &import : description.imports)
-    if (!import.path.empty())
-      shaders.add(import.path, messages.rangeOf(import.name.place));
   for (const scene::ImportDescription &import : description.imports)
     if (import.path.empty())
       shaders.addModule(import.name.text, messages.rangeOf(import.name.place));
