@@ -177,6 +177,50 @@ class Lit : rt_Material {
             words = channels((self.folder / "b.exr").read_bytes())["R"]
             self.assertEqual(struct.pack("3I", *words), struct.pack("3f", *[light] * 3))
 
+    def test_shaders_that_return_after_an_exception_print(self):
+        said = """
+    if (y == 2u) print("back", p.depth);
+    rt_SampleColor = color(y == 0u ? table[x] : 0.125 * p.depth);
+    if (x == 3u) print("last", y);
+"""
+        shaders = SHADERS.replace(
+            "\n    rt_SampleColor = color(y == 0u ? table[x] : 0.125 * p.depth);\n", said
+        )
+        shaders = shaders.replace("    if (x == 1u || y == 2u)\n", "    if (false)\n")
+        shaders = shaders.replace(
+            "    p.depth = next.depth", '    print("up", next.depth);\n    p.depth = next.depth'
+        )
+        shaders = shaders.replace("exception() {", 'exception() { print("code", rt_ExceptionCode);')
+        self.write("shaders.rtsl", shaders)
+        mirrored = [f"up {n}" for n in range(6)] + ["back 6", "code 1"]
+        pixels = {
+            (3, 0): ["last 0", "code 3"],
+            (0, 1): ["code 2"],
+            (3, 1): ["last 1"],
+            (0, 2): mirrored,
+            (1, 2): mirrored,
+            (2, 2): mirrored,
+            (3, 2): ["back 0", "last 2"],
+        }
+        expected = [
+            f"pixel {x},{y} sample {sample}: {line}"
+            for (x, y), lines in pixels.items()
+            for sample in range(2)
+            for line in lines
+        ]
+        ways = (
+            [],
+            ["-O", "0", "--trace", "split", "--threads", "1"],
+            ["--trace", "split"],
+            ["--target", "host-megakernel"],
+            ["--target", "host-megakernel", "--organisation", "wavefront"],
+            ["--target", "host-megakernel", "--organisation", "persistent"],
+        )
+        for way in ways:
+            with self.subTest(way=way):
+                found = self.render("answered.json", "a.exr", "--print", *way)
+                self.assertEqual(found["printed"], expected)
+
     def test_what_is_no_exception_has_its_value(self):
         self.assertNotIn("exceptions", self.render("scene.json", "a.exr"))
         for way in (["--trace", "split"], ["--target", "host-megakernel"]):
