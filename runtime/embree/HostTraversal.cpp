@@ -107,6 +107,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;
   }
+  const device::ModerateSearch moderate(state, how);
   if (!embree)
     return searchOwnTree(state, how);
   if (!EmbreeScene::canFollow(state)) {

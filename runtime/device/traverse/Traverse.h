@@ -221,7 +221,7 @@ bool testInRange(RtslState &state, const Ray &ray, const RtslInstance &instance,
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance, ray);
-    const ModerateRay moderate(state);
+    const ModerateRay moderate(state, !scalesWholeSearch(*state.launch));
     intersect(&state, instance.primitive);
   }
   const bool hasHit = state.HitDistance < end;
@@ -446,9 +446,11 @@ uint32_t findHit(RtslState &state, uint32_t how, const Slots &slots, const Tree 
 /// rtsl_traverse with the tree of the launch.
 template <typename Slots>
 uint32_t traverseDevice(RtslState &state, uint32_t how, const Slots &slots) {
+  if (!isGoodRay(state))
+    return RTSL_BAD_RAY;
+  const ModerateSearch moderate(state, how);
   // A ray that ends at its first hit gains more from an early one.
-  return isGoodRay(state) ? findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)})
-                          : RTSL_BAD_RAY;
+  return findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)});
 }
 
 } // namespace rtsl::device
