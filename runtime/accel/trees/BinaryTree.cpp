@@ -4,14 +4,15 @@
 #include "runtime/device/trees/Bounds.h"
 #include "support/Parallel.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace rtsl::runtime {
 
-using device::build::emptyBox;
-using device::build::extend;
 using device::build::halfArea;
 
 namespace {
@@ -72,25 +73,44 @@ struct Centres {
   }
 };
 
+/// A box as two vectors of x, y, z, and a number that does not matter.
+struct Extent {
+  __m128 lower = _mm_set1_ps(std::numeric_limits<float>::infinity());
+  __m128 upper = _mm_set1_ps(-std::numeric_limits<float>::infinity());
+
+  Extent() = default;
+  /// What follows the box in memory is read, too.
+  explicit Extent(const NumberedBox &box) {
+    static_assert(offsetof(NumberedBox, number) == sizeof(Bounds) && sizeof(Bounds) == 24);
+    lower = _mm_loadu_ps(box.bounds.lower);
+    upper = _mm_loadu_ps(box.bounds.upper);
+  }
+  void add(const Extent &other) {
+    lower = _mm_min_ps(lower, other.lower);
+    upper = _mm_max_ps(upper, other.upper);
+  }
+  Bounds bounds() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
+};
+
 /// Boxes by the bins of their centres, along each axis.
 struct Bins {
-  Bounds bounds[3][binCount];
+  Extent extents[3][binCount];
   std::size_t counts[3][binCount] = {};
 
-  Bins() { std::fill_n(&bounds[0][0], 3 * binCount, emptyBox()); }
   void add(const NumberedBox &box, const Centres &all, const float scale[3]) {
+    const Extent extent(box);
     for (int axis = 0; axis < 3; ++axis) {
       if (scale[axis] == 0)
         continue;
       const unsigned bin = binOf(centre(box, axis), all.first[axis], scale[axis]);
-      extend(bounds[axis][bin], box.bounds);
+      extents[axis][bin].add(extent);
       ++counts[axis][bin];
     }
   }
   void add(const Bins &other) {
     for (int axis = 0; axis < 3; ++axis)
       for (unsigned bin = 0; bin < binCount; ++bin) {
-        extend(bounds[axis][bin], other.bounds[axis][bin]);
+        extents[axis][bin].add(other.extents[axis][bin]);
         counts[axis][bin] += other.counts[axis][bin];
       }
   }
@@ -119,21 +139,23 @@ Sum collectAll(Iterator begin, Iterator end, unsigned threads, Collect collect) 
 /// The cheapest of the divisions between two bins of an axis, if it is below that of `best`.
 void chooseBin(const Bins &bins, int axis, float rootArea, Split &best) {
   float costRight[binCount];
-  Bounds sweep = emptyBox();
+  Extent sweep;
   std::size_t count = 0;
   for (unsigned i = binCount; i-- > 1;) {
-    extend(sweep, bins.bounds[axis][i]);
+    sweep.add(bins.extents[axis][i]);
     count += bins.counts[axis][i];
-    costRight[i] = count ? float(count) * halfArea(sweep) : std::numeric_limits<float>::infinity();
+    costRight[i] =
+        count ? float(count) * halfArea(sweep.bounds()) : std::numeric_limits<float>::infinity();
   }
-  sweep = emptyBox();
+  sweep = {};
   count = 0;
   for (unsigned i = 1; i < binCount; ++i) {
-    extend(sweep, bins.bounds[axis][i - 1]);
+    sweep.add(bins.extents[axis][i - 1]);
     count += bins.counts[axis][i - 1];
     if (count == 0)
       continue;
-    const float cost = costOfNode + (float(count) * halfArea(sweep) + costRight[i]) / rootArea;
+    const float cost =
+        costOfNode + (float(count) * halfArea(sweep.bounds()) + costRight[i]) / rootArea;
     if (cost < best.cost) {
       best.cost = cost;
       best.axis = axis;
@@ -190,15 +212,11 @@ public:
       later.push_back({index, depth});
       return index;
     }
-    struct All : Bounds {
-      All() : Bounds(emptyBox()) {}
-      void add(const Bounds &box) { extend(*this, box); }
-    };
     const Bounds all =
-        collectAll<All>(begin, end, threads, [](Iterator first, Iterator last, All &sum) {
+        collectAll<Extent>(begin, end, threads, [](Iterator first, Iterator last, Extent &sum) {
           for (; first != last; ++first)
-            sum.add(first->bounds);
-        });
+            sum.add(Extent(*first));
+        }).bounds();
     nodes[index].bounds = all;
     if (isLeaf(begin, end, all))
       return index;
@@ -222,6 +240,8 @@ private:
   /// Partitions the boxes into left and right, both not empty.
   Iterator divide(Iterator begin, Iterator end, const Bounds &all, unsigned depth) const {
     const std::size_t count = std::size_t(end - begin);
+    if (count == 2)
+      return begin + 1;
     // Halving needs ceil(log2(count)) levels: from here on the depth permits only even splits.
     const bool mustHalve = depth + ceilLog2(count) + 1 >= unsigned(device::maxBvhDepth);
     if (!mustHalve) {
