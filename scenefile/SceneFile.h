@@ -39,8 +39,7 @@ namespace rtsl::scene {
 struct LocatedName {
   std::string text;
   Place place;
-  bool isOfLibrary =
-      false; // the name of a class that is not the scene's, but for it (LibraryNames.h)
+  bool isOfLibrary = false; // a class that the scene does not name itself (LibraryNames.h)
 };
 
 /// What a string names that is a class.
