@@ -69,7 +69,8 @@ public:
   [[gnu::always_inline]] BoxRay(const device::TriangleRay &ray, float tMin)
       : ray(ray), sides{sideAlong(0, ray.inverse.x), sideAlong(1, ray.inverse.y),
                         sideAlong(2, ray.inverse.z)},
-        tMin(_mm256_set1_ps(tMin * (1.0f - 2 * device::rangeShare))) {}
+        // not below 0, as distances in boxes, so that their bits are in order (Entered)
+        tMin(_mm256_set1_ps(tMin > 0 ? tMin * (1.0f - 2 * device::rangeShare) : 0.0f)) {}
 
   /// The children of the node that it enters before tMax.
   [[gnu::always_inline]] Entered enter(const BlockNode &node, float tMax) const {

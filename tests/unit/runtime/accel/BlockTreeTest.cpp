@@ -60,12 +60,13 @@ struct Found {
   std::size_t tests = 0;
 };
 
-Found searchTree(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray) {
-  Found found{makeState(launch, ray.o, ray.d)};
+Found searchTree(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray,
+                 float epsilon = 0) {
+  Found found{makeState(launch, ray.o, ray.d, epsilon)};
   device::beginSearch(found.state);
   const TriangleRay triangleRay = device::makeTriangleRay(ray.o, ray.d);
   searchBlocks(
-      tree, triangleRay, 0, [&] { return found.state.nearest; },
+      tree, triangleRay, epsilon, [&] { return found.state.nearest; },
       [&](std::uint32_t place) {
         ++found.tests;
         testBlock(found.state, triangleRay, tree.block(place), false);
@@ -75,8 +76,8 @@ Found searchTree(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray
   return found;
 }
 
-Found testAll(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray) {
-  Found found{makeState(launch, ray.o, ray.d)};
+Found testAll(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray, float epsilon = 0) {
+  Found found{makeState(launch, ray.o, ray.d, epsilon)};
   device::beginSearch(found.state);
   const TriangleRay triangleRay = device::makeTriangleRay(ray.o, ray.d);
   for (const TriangleBlock &block : tree.blocks)
@@ -92,8 +93,9 @@ int expectSameHits(Soup &soup, const BlockTree &tree, int rays, float scale) {
     Ray ray = randomRay(soup.random, scale);
     if (i % 4 == 0) // from the surface of a triangle
       ray.o = device::load(&soup.positions[9 * (soup.random() % soup.mesh.triangleCount)]);
-    const Found all = testAll(soup.launch, tree, ray);
-    expectSame(all.state, searchTree(soup.launch, tree, ray).state, i);
+    const float epsilon = i % 5 == 0 ? -scale : i % 5 == 1 ? -0.0f : i % 5 == 2 ? scale : 0;
+    const Found all = testAll(soup.launch, tree, ray, epsilon);
+    expectSame(all.state, searchTree(soup.launch, tree, ray, epsilon).state, i);
     hits += all.state.instance != RTSL_NO_HIT;
   }
   return hits;
