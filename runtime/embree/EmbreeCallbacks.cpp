@@ -19,18 +19,17 @@ const EmbreeContext &contextOf(const Arguments *arguments) {
 
 constexpr float isOver = -std::numeric_limits<float>::infinity(); // RTCRay::tfar
 
-/// Embree's ray. Products with factors of 1 are exact, and with other powers of two nearly.
+/// Embree's ray, whose direction is scaled by a power of two.
 void fill(RTCRay &ray, const EmbreeContext &context) {
   const device::TriangleRay &from = *context.ray;
   const float epsilon = context.state->Epsilon;
-  const bool isScaled = context.toEmbree != 1;
-  const float fromEmbree = isScaled ? 1 / context.toEmbree : 1;
+  const device::Vec3 direction = from.direction * (1 / context.toEmbree);
   ray.org_x = from.origin.x;
   ray.org_y = from.origin.y;
   ray.org_z = from.origin.z;
-  ray.dir_x = isScaled ? from.direction.x * fromEmbree : from.direction.x;
-  ray.dir_y = isScaled ? from.direction.y * fromEmbree : from.direction.y;
-  ray.dir_z = isScaled ? from.direction.z * fromEmbree : from.direction.z;
+  ray.dir_x = direction.x;
+  ray.dir_y = direction.y;
+  ray.dir_z = direction.z;
   ray.tnear = device::maximum(epsilon * context.toEmbree, 0.0f) * (1.0f - 2 * device::rangeShare);
   ray.tfar = context.end(context.limit());
   ray.time = 0;

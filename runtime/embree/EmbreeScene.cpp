@@ -116,13 +116,9 @@ void EmbreeScene::update(const Scene &scene, unsigned threads) {
 }
 
 void EmbreeScene::rememberBoxes() {
-  const auto remember = [](EmbreeSpace &space) {
-    space.boxes.clear();
-    addBoxes(space, space.boxes);
-  };
-  remember(self->world);
+  self->world.boxes = boxesOf(self->world);
   for (const auto &[number, space] : self->spaces)
-    remember(*space);
+    space->boxes = boxesOf(*space);
 }
 
 bool EmbreeScene::follow(const Scene &scene, const Program::Slots &slots, unsigned threads) {

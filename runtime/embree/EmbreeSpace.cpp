@@ -83,11 +83,14 @@ void EmbreeInstance::update(const RtslLaunch &launch) {
     std::fill_n(translation, 3, std::numeric_limits<float>::quiet_NaN());
 }
 
-void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes) {
+std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
+  std::vector<RtslBox> boxes;
+  boxes.reserve(space.primitives.size() + space.instances.size());
   for (const EmbreePrimitive &primitive : space.primitives)
     boxes.push_back(boxOf(space, primitive));
   for (const EmbreeInstance &one : space.instances)
     boxes.push_back(boxOf(one));
+  return boxes;
 }
 
 //===----------------------------------------------------------------------===//
@@ -135,14 +138,6 @@ void buildLevel(EmbreeLevel &level) {
   attach(level, space.instances.size(), boundInstance, instanceCallbacks());
   rtcCommitScene(level.scene);
   checkEmbree(*space.scene);
-}
-
-/// The boxes of everything in the space but triangles in blocks.
-std::vector<RtslBox> boxesOf(const EmbreeSpace &space) {
-  std::vector<RtslBox> boxes;
-  boxes.reserve(space.primitives.size() + space.instances.size());
-  addBoxes(space, boxes);
-  return boxes;
 }
 
 /// Levels for origins up to 4 times the extent of half of these boxes, then 64 times as far each.

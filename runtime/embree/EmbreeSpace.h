@@ -110,8 +110,8 @@ void buildSpace(EmbreeSpace &space, unsigned threads);
 /// Frees all trees.
 void releaseLevels(EmbreeSpace &space);
 
-/// Adds the boxes of everything in the space but triangles in blocks.
-void addBoxes(const EmbreeSpace &space, std::vector<RtslBox> &boxes);
+/// The boxes of everything in the space but triangles in blocks.
+std::vector<RtslBox> boxesOf(const EmbreeSpace &space);
 
 /// Follows what has moved. `mesh`: that of a space of its own. True if blocks have other numbers.
 bool updateSpace(EmbreeSpace &space, std::uint32_t mesh, unsigned threads);

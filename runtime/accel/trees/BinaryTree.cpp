@@ -1,5 +1,6 @@
 #include "runtime/accel/trees/BinaryTree.h"
 
+#include "runtime/accel/trees/Extent.h"
 #include "runtime/device/traverse/Bvh.h"
 #include "runtime/device/trees/Bounds.h"
 #include "support/Parallel.h"
@@ -73,24 +74,11 @@ struct Centres {
   }
 };
 
-/// A box as two vectors of x, y, z, and a number that does not matter.
-struct Extent {
-  __m128 lower = _mm_set1_ps(std::numeric_limits<float>::infinity());
-  __m128 upper = _mm_set1_ps(-std::numeric_limits<float>::infinity());
-
-  Extent() = default;
-  /// What follows the box in memory is read, too.
-  explicit Extent(const NumberedBox &box) {
-    static_assert(offsetof(NumberedBox, number) == sizeof(Bounds) && sizeof(Bounds) == 24);
-    lower = _mm_loadu_ps(box.bounds.lower);
-    upper = _mm_loadu_ps(box.bounds.upper);
-  }
-  void add(const Extent &other) {
-    lower = _mm_min_ps(lower, other.lower);
-    upper = _mm_max_ps(upper, other.upper);
-  }
-  Bounds bounds() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
-};
+/// What follows the box in memory is read, too.
+Extent extentOf(const NumberedBox &box) {
+  static_assert(offsetof(NumberedBox, number) == sizeof(Bounds) && sizeof(Bounds) == 24);
+  return {_mm_loadu_ps(box.bounds.lower), _mm_loadu_ps(box.bounds.upper)};
+}
 
 /// Boxes by the bins of their centres, along each axis.
 struct Bins {
@@ -98,7 +86,7 @@ struct Bins {
   std::size_t counts[3][binCount] = {};
 
   void add(const NumberedBox &box, const Centres &all, const float scale[3]) {
-    const Extent extent(box);
+    const Extent extent = extentOf(box);
     for (int axis = 0; axis < 3; ++axis) {
       if (scale[axis] == 0)
         continue;
@@ -215,7 +203,7 @@ public:
     const Bounds all =
         collectAll<Extent>(begin, end, threads, [](Iterator first, Iterator last, Extent &sum) {
           for (; first != last; ++first)
-            sum.add(Extent(*first));
+            sum.add(extentOf(*first));
         }).bounds();
     nodes[index].bounds = all;
     if (isLeaf(begin, end, all))

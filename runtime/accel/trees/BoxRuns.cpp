@@ -9,6 +9,7 @@
 //===----------------------------------------------------------------------===//
 #include "runtime/accel/trees/BoxRuns.h"
 
+#include "runtime/accel/trees/Extent.h"
 #include "support/Parallel.h"
 
 #include <immintrin.h>
@@ -36,32 +37,6 @@ Vector upperOf(const TriangleBox &box) {
 Vector middleOf(const TriangleBox &box) {
   return _mm_add_ps(lowerOf(box), upperOf(box));
 }
-
-struct Extent {
-  Vector lower = _mm_set1_ps(std::numeric_limits<float>::infinity());
-  Vector upper = _mm_set1_ps(-std::numeric_limits<float>::infinity());
-
-  void add(Vector low, Vector high) {
-    lower = _mm_min_ps(lower, low);
-    upper = _mm_max_ps(upper, high);
-  }
-  void add(const Extent &other) { add(other.lower, other.upper); }
-
-  /// Half of the surface; of an empty one 0.
-  double area() const {
-    alignas(16) float side[4];
-    _mm_store_ps(side, _mm_max_ps(_mm_sub_ps(upper, lower), _mm_setzero_ps()));
-    return double(side[0]) * side[1] + double(side[1]) * side[2] + double(side[2]) * side[0];
-  }
-
-  /// A factor for each axis, by which distances from `lower` become numbers below `cells`; 0 for an
-  /// axis along which the boxes cannot be distinguished.
-  Vector scaleTo(float cells) const {
-    const Vector side = _mm_sub_ps(upper, lower);
-    const Vector scale = _mm_div_ps(_mm_set1_ps(cells * 0.9999f), side);
-    return _mm_and_ps(scale, _mm_cmpgt_ps(side, _mm_set1_ps(1e-30f)));
-  }
-};
 
 //===----------------------------------------------------------------------===//
 // Groups into runs
