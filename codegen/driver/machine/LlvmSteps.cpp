@@ -214,12 +214,28 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
   return makeKernel(ir, options, program, forGpu, /*isWhole=*/false);
 }
 
-LlvmCode gpuKernel(const Compilation &compilation) {
-  const bool isWhole = bool(compilation.whole);
+/// More registers are better than more warps if rays wait for others and the lanes of a warp stay
+/// together, and if a kernel has only one step or its shared memory leaves room for only a few
+/// warps. docs/gpu.md has the figures.
+static std::uint32_t registersFor(const LlvmCode &code, runtime::Paths paths) {
+  if (code.organisation != Organisation::Megakernel)
+    return 168;
+  if (code.isWhole || code.takesPixels)
+    return 64;
+  if (paths == runtime::Paths::Alike)
+    return 128;
+  return paths == runtime::Paths::Single && !hasList(code) ? 80 : 72;
+}
+
+LlvmCode gpuKernel(Compilation &compilation) {
   // Translation consumes a module, and the program for the host needs the one with states.
+  const bool isWhole = bool(compilation.whole);
   const mlir::OwningOpRef<mlir::ModuleOp> ir =
-      mlir::ModuleOp(isWhole ? *compilation.whole : *compilation.ir).clone();
-  return makeKernel(*ir, compilation.options, *compilation.program, /*forGpu=*/true, isWhole);
+      isWhole ? std::move(compilation.whole) : mlir::ModuleOp(*compilation.ir).clone();
+  LlvmCode code =
+      makeKernel(*ir, compilation.options, *compilation.program, /*forGpu=*/true, isWhole);
+  code.registers = registersFor(code, compilation.program->paths);
+  return code;
 }
 
 void beginRecords(LlvmCode &code, const runtime::Program &program) {

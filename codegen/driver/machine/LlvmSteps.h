@@ -46,8 +46,9 @@ struct LlvmCode {
   std::vector<std::string> kept; // functions that are kept although nothing calls them
   // Of a self-contained program:
   Organisation organisation = Organisation::Megakernel;
-  bool isWhole = false;     // it has no states
-  bool takesPixels = false; // lanes render whole pixels where a job allows it
+  bool isWhole = false;        // it has no states
+  bool takesPixels = false;    // lanes render whole pixels where a job allows it
+  std::uint32_t registers = 0; // that a thread of a kernel may have, on a GPU
 };
 
 /// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
@@ -73,7 +74,8 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
                     const runtime::Program &program, bool forGpu);
 
 /// The same for the GPU of a compilation that has reached it: without states if it needs none.
-LlvmCode gpuKernel(const Compilation &compilation);
+/// Consumes `whole`.
+LlvmCode gpuKernel(Compilation &compilation);
 
 /// The functions that such a program exports on the CPU: the size of a lane, and what runs it.
 const std::vector<std::string> &

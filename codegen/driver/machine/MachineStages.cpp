@@ -14,6 +14,8 @@
 #include "mlir/IR/Verifier.h"
 #include "llvm/IR/Module.h"
 
+#include <fmt/format.h>
+
 namespace rtsl::driver {
 
 static void prepare(mlir::MLIRContext &context) {
@@ -82,14 +84,23 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   return toPtx(std::move(code));
 }
 
+/// The PTX of a scene. Its last line is for those who assemble it themselves: a package states the
+/// number beside the PTX.
+static std::string scenePtx(Compilation &compilation) {
+  LlvmCode code = gpuKernel(compilation);
+  const std::uint32_t registers = code.registers;
+  return toPtx(std::move(code)) +
+         fmt::format("// rtslc: a thread may have {} registers (ptxas -maxrregcount={})\n",
+                     registers, registers);
+}
+
 /// PTX. For a scene it is one kernel, `rtsl_render`, that takes an RtslJob
 /// (runtime/device/organisations/Job.h).
 static bool reachPtx(Compilation &compilation) {
   if (!reachGpuMachine(compilation))
     return false;
-  const CompileOptions &options = compilation.options;
-  compilation.text =
-      compilation.input.scene ? toPtx(gpuKernel(compilation)) : modulePtx(*compilation.ir, options);
+  compilation.text = compilation.input.scene ? scenePtx(compilation)
+                                             : modulePtx(*compilation.ir, compilation.options);
   return true;
 }
 

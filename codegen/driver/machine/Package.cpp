@@ -26,19 +26,6 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
           static_cast<std::uint32_t>(image.stackBytes)};
 }
 
-/// How many registers a thread of a kernel may have; docs/gpu.md has the figures. More registers
-/// are better than more warps if rays wait for others and the lanes of a warp stay together, and if
-/// a kernel has only one step or its shared memory leaves room for only a few warps.
-static std::uint32_t registersFor(const LlvmCode &code, runtime::Paths paths) {
-  if (code.organisation != Organisation::Megakernel)
-    return 168;
-  if (code.isWhole || code.takesPixels)
-    return 64;
-  if (paths == runtime::Paths::Alike)
-    return 128;
-  return paths == runtime::Paths::Single && !hasList(code) ? 80 : 72;
-}
-
 bool compilePackage(const typed::Module &module, const LinkRequest &request,
                     const CompileOptions &options, Diagnostics &diagnostics,
                     const MakeObjects &makeObjects, runtime::Package &package) {
@@ -54,7 +41,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   package.stateCount = compilation.report.stateCount();
   LlvmCode code = gpuKernel(compilation);
   const Organisation organisation = code.organisation;
-  package.registers = registersFor(code, compilation.program->paths);
+  package.registers = code.registers;
   package.ptx = toPtx(std::move(code), &package.wave);
   if (organisation != Organisation::Megakernel) {
     package.wave.states = std::uint32_t(compilation.program->stateNames.size());

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import struct
 import subprocess
 import unittest
 
@@ -54,6 +55,19 @@ class Ptx(Case):
             text=True,
         )
         self.assertEqual(done.returncode, 0, done.stderr[:2000])
+
+    def test_the_last_line_is_the_limit_of_a_package(self):
+        for name in ("glass", "metal"):
+            scene = EXAMPLES / name / "scene.json"
+            self.run_rtslc("pack", scene, "-o", "a.rtslpkg")
+            package = (self.folder / "a.rtslpkg").read_bytes()
+            info = struct.unpack_from("<Q", package, 64 + 8)[0]  # docs/packages.md
+            registers = struct.unpack_from("<I", package, info + 4 * 18)[0]
+            self.assertEqual(
+                self.ptx(scene, "-O0").splitlines()[-1],
+                f"// rtslc: a thread may have {registers} registers "
+                f"(ptxas -maxrregcount={registers})",
+            )
 
     def test_the_architecture_is_one_of_those_listed(self):
         _, error = self.run_rtslc(
