@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import re
+import select
 import signal
 import subprocess
 import time
@@ -44,8 +45,11 @@ class Interruptions(Case):
             time.sleep(0.02 if isCaught else 0.001)
         self.fail("no handler")
 
-    def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.2, again=False):
-        """Standard output and error of a rendering that is stopped some time after it began."""
+    def interrupt(self, program, *arguments, by=signal.SIGINT, after=0.2, again=False, says=False):
+        """Standard output and error of a rendering that is stopped some time after it began; with
+        `again` by a second signal as soon as the first one is handled, or, with `says`, as soon as
+        it has said something. (The second one may reach another thread, while the first one is
+        still in the handler, which says it.)"""
         # Python's own handling of SIGINT is not inherited; that of a shell's background jobs would
         # be.
         running = subprocess.Popen(
@@ -60,10 +64,16 @@ class Interruptions(Case):
         time.sleep(after)
         self.assertIsNone(running.poll(), "it was still to run")
         running.send_signal(by)
+        said = ""
+        if says:
+            readable, _, _ = select.select([running.stderr], [], [], SECONDS)
+            self.assertTrue(readable, "it says nothing")
+            said = os.read(running.stderr.fileno(), 4096).decode()
         if again:
             self.wait_for_handler(running, by, isCaught=False)
             running.send_signal(by)
         out, error = running.communicate(timeout=SECONDS)
+        error = said + error
         self.assertEqual(running.returncode, -by if again else 128 + by, error)
         return out, error
 
@@ -130,7 +140,7 @@ class Interruptions(Case):
             (RTSL_RUN, "endless.rtslpkg", "--target=host"),
         ):
             with self.subTest(command=command[0]):
-                _, error = self.interrupt(*command, "-o", "a.exr", *SIZE, again=True)
+                _, error = self.interrupt(*command, "-o", "a.exr", *SIZE, again=True, says=True)
                 self.assertEqual(error, "finishing the sample; press Ctrl-C again to leave\n")
 
     def test_few_samples_are_in_all_pixels(self):
