@@ -269,6 +269,51 @@ void Generator::overrideFunction(ClassPlan &plan, Node &members) {
   members.children.push_back(function(made, made.name, around(plan, made)));
 }
 
+/// Changes components of a vector among the `state` that the method writes, before a ray and after
+/// it. Their numbers are known only when the program runs.
+void Generator::componentsAroundARay(Node &body, const std::vector<Variable> &state) {
+  std::vector<Variable> vectors;
+  for (const Variable &variable : state)
+    if (variable.writable && variable.type->isVector())
+      vectors.push_back(variable);
+  if (vectors.empty() || context.traces == 0 || !chance(60))
+    return;
+  const Variable &vector = pick(vectors);
+  const std::string count = std::to_string(vector.type->count) + "u";
+  const auto component = [&] {
+    return vector.name + (chance(60) ? "[h % " : "[(h >> 8u) % ") + count + "]";
+  };
+  const auto change = [&] {
+    static const char *const operators[] = {" = ", " = ", " += ", " *= "};
+    NodePtr made = makeNode(Role::Statement, component() + operators[below(4)] + "$;",
+                            expression(types.floatType, 2));
+    if (chance(25)) {
+      NodePtr list = makeList();
+      list->children.push_back(std::move(made));
+      made = makeNode(Role::Statement, "if ($) {$}", condition(1), std::move(list));
+    }
+    add(body, std::move(made));
+  };
+  change();
+  if (chance(30))
+    change();
+  if (!payloads.empty() && chance(50)) {
+    add(body, payloadRay());
+  } else if (context.traces != 0) { // what was added before may have sent the last one
+    --context.traces;
+    const Type *vec3 = types.vector(types.floatType, 3);
+    NodePtr origin = converted(vec3, 1);
+    NodePtr ray = makeNode(Role::Statement, "h = hash_color(h, trace($, $));", std::move(origin),
+                           converted(vec3, 1));
+    add(body, std::move(ray));
+  }
+  if (chance(30)) // reads one
+    add(body, makeNode(Role::Statement, "h = hash_float(h, " + component() + ");"));
+  if (chance(70))
+    change();
+  body.children.push_back(hashed(vector));
+}
+
 /// A method of the engine's: some statements, then everything that they made, as one hash, then
 /// `result`, which makes the state that the method writes from it. What it may do is the checker's
 /// table; `rules` is what it does of that. `more` is what it sees beside state.
@@ -317,7 +362,12 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
     NodePtr looked = ofImage(types.vector(types.floatType, 4), 2);
     add(*body, makeNode(Role::Statement, "h = hash_vec4(h, $);", std::move(looked)));
   }
+  const bool areFirst = chance(50);
+  if (areFirst)
+    componentsAroundARay(*body, state);
   statements(*body, some(statementCount), nesting());
+  if (!areFirst)
+    componentsAroundARay(*body, state);
   if (model.abilities.has(Ability::CallSampling))
     for (const char *own : {"sampleBSDF", "BSDF", "evaluatePDF", "emission"})
       if (plan.methods.count(own) && chance(40))

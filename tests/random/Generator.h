@@ -227,6 +227,7 @@ private:
   void addMethod(ClassPlan &plan, Node &members, const std::string &name,
                  std::vector<Variable> more, const std::string &result, unsigned statementCount,
                  Context rules, const std::string &parameters = "");
+  void componentsAroundARay(Node &body, const std::vector<Variable> &state);
   void addPayloadMethod(ClassPlan &plan, Node &members, const std::string &name,
                         const Type *payload, std::vector<Variable> state, Context rules);
   const ClassPlan *makeTexture(const ClassPlan *base, const Targets &targets);
