@@ -20,4 +20,14 @@ void forEachInParallel(unsigned threads, std::size_t count,
 void forRangesInParallel(unsigned threads, std::size_t count, std::size_t atOnce,
                          const std::function<void(std::size_t, std::size_t)> &work);
 
+/// The same for work that takes less time than a call through std::function: calls work(i) for all
+/// i below `count`, and `atOnce` of them one after the other, where `work` can be inlined.
+template <typename Work>
+void forEachInParallel(unsigned threads, std::size_t count, std::size_t atOnce, const Work &work) {
+  forRangesInParallel(threads, count, atOnce, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      work(i);
+  });
+}
+
 } // namespace rtsl

@@ -102,14 +102,7 @@ TriangleBlock makeBlock(const std::vector<MeshUse> &meshes, const LargeArray<Tri
   return block;
 }
 
-/// Calls work(i) for all i below count, on threads.
-template <typename Work>
-void forAll(unsigned threads, std::size_t count, Work work) {
-  forRangesInParallel(threads, count, 1024, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      work(i);
-  });
-}
+constexpr std::size_t blocksAtOnce = 1024; // on a thread
 
 //===----------------------------------------------------------------------===//
 // The tree
@@ -142,12 +135,13 @@ BlockTree::BlockTree(const std::vector<MeshUse> &meshes, unsigned threads) {
     return;
   const std::vector<BoxRun> runs = sortIntoRuns(boxes, threads);
   std::vector<NumberedBox> ofRuns(runs.size());
-  forAll(threads, runs.size(),
-         [&](std::size_t i) { ofRuns[i] = {boxOf(boxes, runs[i]), std::uint32_t(i)}; });
+  forEachInParallel(threads, runs.size(), blocksAtOnce,
+                    [&](std::size_t i) { ofRuns[i] = {boxOf(boxes, runs[i]), std::uint32_t(i)}; });
   const WideTree wide = widen(buildBinaryTree(std::move(ofRuns), threads, 1), threads);
   blocks = LargeArray<TriangleBlock>(runs.size());
-  forAll(threads, runs.size(),
-         [&](std::size_t i) { blocks[i] = makeBlock(meshes, boxes, runs[wide.contents[i]]); });
+  forEachInParallel(threads, runs.size(), blocksAtOnce, [&](std::size_t i) {
+    blocks[i] = makeBlock(meshes, boxes, runs[wide.contents[i]]);
+  });
   nodes = LargeArray<BlockNode>(wide.nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i)
     nodes[i] = blockNode(wide.nodes[i]);
@@ -159,7 +153,8 @@ void BlockTree::refit(unsigned threads) {
   if (isEmpty())
     return;
   std::vector<RtslBox> ofBlocks(blocks.size()), ofNodes(nodes.size());
-  forAll(threads, blocks.size(), [&](std::size_t i) { ofBlocks[i] = boxOf(blocks[i]); });
+  forEachInParallel(threads, blocks.size(), blocksAtOnce,
+                    [&](std::size_t i) { ofBlocks[i] = boxOf(blocks[i]); });
   double area = 0;
   for (std::size_t i = nodes.size(); i-- > 0;) {
     ofNodes[i] = emptyBox();

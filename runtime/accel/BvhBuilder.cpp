@@ -49,21 +49,14 @@ unsigned Bvh::depth() const {
 
 namespace {
 
-/// Calls work(i) for all i below count, on threads.
-template <typename Work>
-void forAll(unsigned threads, std::size_t count, Work work) {
-  forRangesInParallel(threads, count, 1 << 14, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i)
-      work(i);
-  });
-}
+constexpr std::size_t itemsAtOnce = 1 << 14; // on a thread
 
 /// A tree of so many boxes. `boxOf(i)` is called by several threads.
 template <typename BoxOf>
 WideTree goodTree(std::size_t count, unsigned threads, BoxOf boxOf) {
   std::vector<NumberedBox> boxes(count);
-  forAll(threads, count,
-         [&](std::size_t i) { boxes[i] = {boxOf(std::uint32_t(i)), std::uint32_t(i)}; });
+  forEachInParallel(threads, count, itemsAtOnce,
+                    [&](std::size_t i) { boxes[i] = {boxOf(std::uint32_t(i)), std::uint32_t(i)}; });
   return widen(buildBinaryTree(std::move(boxes), threads), threads);
 }
 
@@ -107,8 +100,9 @@ Bvh buildTree(const device::build::Items &items, unsigned threads, TreeKind kind
   bvh.nodes = std::move(tree.nodes);
   bvh.cost = tree.cost;
   bvh.items.resize(items.count);
-  forAll(threads, items.count,
-         [&](std::size_t i) { bvh.items[i] = device::build::treeItem(items, tree.contents[i]); });
+  forEachInParallel(threads, items.count, itemsAtOnce, [&](std::size_t i) {
+    bvh.items[i] = device::build::treeItem(items, tree.contents[i]);
+  });
   return bvh;
 }
 
@@ -122,8 +116,8 @@ Bvh buildBvh(const std::vector<BvhItem> &items, unsigned threads, TreeKind kind)
   bvh.nodes = std::move(tree.nodes);
   bvh.cost = tree.cost;
   bvh.items.resize(items.size());
-  forAll(threads, items.size(),
-         [&](std::size_t i) { bvh.items[i] = treeItem(items[tree.contents[i]]); });
+  forEachInParallel(threads, items.size(), itemsAtOnce,
+                    [&](std::size_t i) { bvh.items[i] = treeItem(items[tree.contents[i]]); });
   return bvh;
 }
 

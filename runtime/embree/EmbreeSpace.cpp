@@ -242,20 +242,18 @@ bool updateBlocks(EmbreeSpace &space, std::uint32_t mesh, unsigned threads) {
   const RtslLaunch &launch = space.scene->launch;
   LargeArray<TriangleBlock> &blocks = space.triangles.blocks;
   std::atomic<bool> isChanged{false};
-  forRangesInParallel(threads, blocks.size(), 1024, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      TriangleBlock &block = blocks[i];
-      const TriangleBlock before = block;
-      for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
-        const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
-        const std::uint32_t instance = block.instance[isEmpty ? 0 : lane];
-        const RtslMesh &of = launch.meshes[space.isWorld ? launch.instances[instance].mesh : mesh];
-        block.setLane(lane, device::triangleVertices(of, block.triangle[lane]),
-                      block.instance[lane], block.triangle[lane]);
-      }
-      if (std::memcmp(&before, &block, sizeof block) != 0)
-        isChanged = true;
+  forEachInParallel(threads, blocks.size(), 1024, [&](std::size_t i) {
+    TriangleBlock &block = blocks[i];
+    const TriangleBlock before = block;
+    for (unsigned lane = 0; lane < TriangleBlock::lanes; ++lane) {
+      const bool isEmpty = block.instance[lane] == RTSL_NO_HIT; // it repeats the first
+      const std::uint32_t instance = block.instance[isEmpty ? 0 : lane];
+      const RtslMesh &of = launch.meshes[space.isWorld ? launch.instances[instance].mesh : mesh];
+      block.setLane(lane, device::triangleVertices(of, block.triangle[lane]), block.instance[lane],
+                    block.triangle[lane]);
     }
+    if (std::memcmp(&before, &block, sizeof block) != 0)
+      isChanged = true;
   });
   return isChanged;
 }

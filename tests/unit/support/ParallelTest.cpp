@@ -36,6 +36,16 @@ TEST(Parallel, RangesHaveAllNumbersOnce) {
   }
 }
 
+TEST(Parallel, SeveralAtOnceAreAllNumbersOnce) {
+  for (const unsigned threads : {0u, 1u})
+    for (const std::size_t count : {0u, 1u, 7u, 8u, 1000u}) {
+      std::vector<std::atomic<int>> calls(count);
+      forEachInParallel(threads, count, 8, [&](std::size_t i) { ++calls[i]; });
+      for (const std::atomic<int> &ofOne : calls)
+        EXPECT_EQ(ofOne, 1);
+    }
+}
+
 TEST(Parallel, RethrowsAnException) {
   for (const unsigned threads : {0u, 1u, 2u}) {
     const auto fail = [&] {
