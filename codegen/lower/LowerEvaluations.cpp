@@ -147,10 +147,40 @@ static bool partsChangeUsed(const typed::Expr &expr, const Writes &writes) {
   return isUsed;
 }
 
+/// The same for state variables and output buffers, of which it uses those that it writes. The
+/// value that it had before the effects counts: `v[i] *= --v.y`.
+static bool partsChangeWritten(const typed::Expr &expr, const Writes &writes,
+                               const SourceTable &source) {
+  std::set<std::string> states;
+  for (const typed::Expr *target : writes.lvalues)
+    if (auto *state = dynCast<typed::StateExpr>(&wholeOf(*target)))
+      states.insert(typed::name(state->variable));
+  auto *assign = dynCast<typed::AssignExpr>(&expr);
+  const bool readsBuffer = outputOf(expr) && !(assign && !assign->compound);
+  bool isChanged = false;
+  for (const typed::Expr *part : writes.parts)
+    forEachExpr(*part, [&](const typed::Expr &inner) {
+      if (&inner == &expr)
+        return;
+      for (const typed::Expr *target : writesOf(inner).lvalues)
+        if (auto *state = dynCast<typed::StateExpr>(&wholeOf(*target)))
+          isChanged |= states.count(typed::name(state->variable)) != 0;
+      isChanged |= readsBuffer && outputOf(inner) && hasSideEffects(inner);
+      const bool isCall = inner.kind == ExprKind::Call || inner.kind == ExprKind::MethodCall;
+      if (!isCall || states.empty())
+        return;
+      const std::optional<std::vector<std::string>> ofCall = source.writes(inner);
+      isChanged |= !ofCall || std::any_of(ofCall->begin(), ofCall->end(), [&](const auto &name) {
+        return states.count(name) != 0;
+      });
+    });
+  return isChanged;
+}
+
 /// Collects the variables that the expression itself, not a subexpression, writes.
 bool FunctionLowering::collectWritten(const typed::Expr &expr, Evaluation &evaluation) {
   const Writes writes = writesOf(expr);
-  if (partsChangeUsed(expr, writes))
+  if (partsChangeUsed(expr, writes) || partsChangeWritten(expr, writes, *module.options.source))
     return false;
   for (const typed::Expr *target : writes.lvalues) {
     if (isInOutputBuffer(*target))

@@ -42,6 +42,7 @@ names = [
     "Chalk",
     "Varnished",
     "Worn",
+    "Waxed",
 ]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {
