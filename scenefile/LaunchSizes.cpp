@@ -1,6 +1,6 @@
 #include "scenefile/LaunchSizes.h"
 
-#include "scenefile/SettingsReader.h"
+#include "scenefile/sections/SettingsReader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
 

@@ -4,14 +4,14 @@
 #include "scenefile/Includes.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Models.h"
-#include "scenefile/SettingsReader.h"
-#include "scenefile/files/MeshPaths.h"
-#include "scenefile/gltf/Mesh.h"
 #include "scenefile/graph/Graph.h"
-#include "scenefile/graph/KeyTimes.h"
-#include "scenefile/graph/TransformReader.h"
 #include "scenefile/json/KeyFrames.h"
 #include "scenefile/json/Reader.h"
+#include "scenefile/sections/GeometryReader.h"
+#include "scenefile/sections/ObjectReader.h"
+#include "scenefile/sections/RenderReader.h"
+#include "scenefile/sections/SettingsReader.h"
+#include "scenefile/sections/ValueFiles.h"
 #include "support/AtomicFile.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
@@ -22,7 +22,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 namespace rtsl::scene {
@@ -59,13 +58,12 @@ public:
     scene.refused.isAny |= !section("variables", [&](const JsonValue &variables) {
       scene.scopes.front()->variables = readVariables(variables);
     });
-    readList("objects",
-             [&](const JsonValue &object) { scene.objects.push_back(readObjectOfList(object)); });
+    readList("objects", [&](const JsonValue &object) {
+      scene.objects.push_back(readObjectOfList(object, scene, errors));
+    });
     readGraph(root,
-              {[&](const JsonValue &node) { return readGeometry(node, "a node"); },
-               [&](const JsonValue &value, const std::string &what) {
-                 return readReference(value, what);
-               }},
+              {[&](const JsonValue &node) { return readGeometry(node, "a node", scene, errors); },
+               readReference},
               scene, errors);
     readList("lights",
              [&](const JsonValue &light) { scene.lights.push_back(readObject(light, "a light")); });
@@ -80,7 +78,7 @@ public:
             [&](const JsonValue &ambient) { scene.ambient = &readColor(ambient, "`ambient`"); });
     errors.attempt([&] {
       if (const JsonValue *render = root.find("render"))
-        readRender(*render);
+        libraryEngine = readRender(*render, root.find("rayGeneration"), scene, errors);
       readPasses();
       if (!isPart)
         requireStart();
@@ -190,40 +188,10 @@ private:
                   value.string.compare(value.string.size() - extension.size(), extension.size(),
                                        extension) == 0;
     if (isFile)
-      import.path = resolve(value);
+      import.path = resolvePath(value, scene.file);
     scene.imports.push_back(std::move(import));
   }
 
-  std::string resolve(const JsonValue &value) const { return resolvePath(value, scene.file); }
-
-  ObjectDescription readObject(const JsonValue &value, const std::string &what) const {
-    expect(value, Kind::Object, what);
-    ObjectDescription object;
-    object.place = value.place();
-    if (isImage(value)) {
-      object.className = {imageClass(value), value.place()};
-      object.image = &value;
-      return object;
-    }
-    const JsonValue &className = expect(require(value, "class", what), Kind::String, "`class`");
-    object.className = nameOfClass(className);
-    if (className.string.empty())
-      throw Error(message::classNameEmpty(), className.place());
-    for (const auto &[key, member] : value.members) {
-      if (key.text == "class")
-        continue;
-      if (key.text == "constructor") {
-        if (member.kind != Kind::Array && member.kind != Kind::Object)
-          throw Error(message::constructorWrongKind(describe(member.kind)), member.place());
-        object.constructor = &member;
-        continue;
-      }
-      object.members.push_back({{key.text, value.place(key)}, &member});
-    }
-    return object;
-  }
-
-  /// The images by name, and all images and buffers in files that are written in place anywhere.
   void readImages() {
     section("images", [&](const JsonValue &value) {
       expect(value, Kind::Object, "`images`");
@@ -236,52 +204,7 @@ private:
           scene.images[key.text] = readObject(member, fmt::format("`{}`", key.text));
         });
     });
-    for (const auto &[key, value] : root.members) {
-      const bool isOfNames = key.text == "images" || key.text == "helpers" ||
-                             key.text == "textures" || key.text == "materials" ||
-                             key.text == "nodes" || key.text == "variables" ||
-                             key.text == "cameras";
-      if (isOfNames)
-        forEachValue(value, [&](const JsonValue &object) { readFilesIn(object); });
-      else if (key.text != "roots" && key.text != "render")
-        readFilesIn(value);
-    }
-    std::set<std::string> classes;
-    for (const auto &image : scene.imageValues)
-      classes.insert(imageClass(*image.first));
-    for (const std::string &className : classes)
-      scene.imports.push_back({{"std.images." + className, root.place()}, ""});
-  }
-
-  void readFilesIn(const JsonValue &value) {
-    if (isImage(value)) {
-      errors.attempt([&] {
-        ImageDescription image =
-            readImage(value, [&](const JsonValue &path) { return resolve(path); });
-        if (!image.part.empty())
-          modelsOf(scene).open(image.files.front(), value.find("file")->place());
-        scene.imageValues.emplace(&value, std::move(image));
-      });
-      return;
-    }
-    if (isBuffer(value)) {
-      errors.attempt([&] {
-        scene.bufferValues.emplace(&value, readBufferDescription(value, [&](const JsonValue &path) {
-          return resolve(path);
-        }));
-      });
-      return;
-    }
-    // The files of a node's mesh are no images, and its variables are values by name.
-    const bool isNode = !value.find("class");
-    const JsonValue *mesh = isNode ? value.find("mesh") : nullptr;
-    const JsonValue *variables = isNode ? value.find("variables") : nullptr;
-    forEachValue(value, [&](const JsonValue &inner) {
-      if (&inner == variables)
-        forEachValue(inner, [&](const JsonValue &variable) { readFilesIn(variable); });
-      else if (&inner != mesh)
-        readFilesIn(inner);
-    });
+    readValueFiles(root, scene, errors);
   }
 
   void readBuffers() {
@@ -342,221 +265,6 @@ private:
     refuse(scene.images, "image");
     refuse(scene.helpers, "helper");
     refuse(scene.textures, "texture");
-  }
-
-  ReferenceDescription readReference(const JsonValue &value, const std::string &what) const {
-    ReferenceDescription reference;
-    if (value.kind == Kind::String) {
-      reference.name = {value.string, value.place()};
-    } else if (value.kind == Kind::Object) {
-      reference.object = std::make_shared<ObjectDescription>(readObject(value, what));
-    } else {
-      throw Error(message::notNameOrObject(what, describe(value.kind)), value.place());
-    }
-    return reference;
-  }
-
-  /// An element of `objects`: one instance. The vertices of a mesh are transformed, unless the
-  /// transform moves.
-  GeometryDescription readObjectOfList(const JsonValue &value) {
-    expect(value, Kind::Object, "an element of `objects`");
-    GeometryDescription geometry = readGeometry(value, "an object");
-    InstanceDescription placement;
-    placement.mask = geometry.mask;
-    placement.hasBackFaces = geometry.hasBackFaces;
-    placement.id = geometry.id.value_or(0);
-    placement.scope = scene.scopes.front().get();
-    errors.attempt([&] {
-      if (const JsonValue *variables = value.find("variables"))
-        placement.scope = addScope(scene, placement.scope, readVariables(*variables));
-    });
-    errors.attempt([&] {
-      if (const JsonValue *transform = value.find("transform"))
-        placement.transform = readTransform(*transform);
-      if (!geometry.primitive && !placement.transform.moves())
-        geometry.transform = std::exchange(placement.transform, {}).still();
-    });
-    geometry.placements.push_back(placement);
-    return geometry;
-  }
-
-  GeometryDescription readGeometry(const JsonValue &value, const std::string &what) {
-    errors.attempt([&] {
-      checkKeys(value,
-                {"name", "primitive", "mesh", "part", "weights", "material", "transform", "mask",
-                 "id", "count", "textureCoordinates", "backFaces", "variables", "attributes"},
-                what);
-    });
-    GeometryDescription geometry;
-    geometry.place = value.place();
-    geometry.hasShape = errors.attempt([&] { readShape(value, what, geometry); });
-    geometry.hasMaterial = errors.attempt(
-        [&] { geometry.material = readReference(require(value, "material", what), "`material`"); });
-    errors.attempt([&] {
-      if (const JsonValue *name = value.find("name")) {
-        expect(*name, Kind::String, "`name`");
-        geometry.name = {name->string, name->place()};
-      }
-      if (const JsonValue *mask = value.find("mask"))
-        geometry.mask = readInteger(*mask, 0, 0xffffffff, "`mask`");
-      if (const JsonValue *id = value.find("id"))
-        geometry.id = readId(*id);
-      readCount(value, geometry);
-    });
-    errors.attempt([&] {
-      if (const JsonValue *backFaces = value.find("backFaces"))
-        readBackFaces(*backFaces, geometry);
-    });
-    errors.attempt([&] {
-      if (const JsonValue *attributes = value.find("attributes")) {
-        geometry.attributes = readAttributes(*attributes);
-        if (geometry.mesh.empty())
-          throw Error(message::attributesWithoutMesh(), attributes->place());
-      }
-    });
-    return geometry;
-  }
-
-  static void readBackFaces(const JsonValue &value, GeometryDescription &geometry) {
-    expect(value, Kind::Boolean, "`backFaces`");
-    if (geometry.mesh.empty())
-      throw Error(message::backFacesWithoutMesh(), value.place());
-    geometry.hasBackFaces = value.boolean;
-  }
-
-  static void readCount(const JsonValue &value, GeometryDescription &geometry) {
-    const JsonValue *count = value.find("count");
-    if (!count)
-      return;
-    if (geometry.mesh.empty() && count->kind == Kind::String)
-      geometry.count = count;
-    else if (geometry.mesh.empty() && readInteger(*count, 1, 0x7fffffff, "`count`"))
-      geometry.count = count;
-    else
-      throw Error(message::countWithoutPrimitive(), count->place());
-  }
-
-  void readShape(const JsonValue &value, const std::string &what,
-                 GeometryDescription &geometry) const {
-    const JsonValue *primitive = value.find("primitive"), *mesh = value.find("mesh");
-    if (!primitive == !mesh)
-      throw Error(primitive ? message::primitiveAndMesh(what) : message::noPrimitiveOrMesh(what),
-                  value.place());
-    if (primitive)
-      geometry.primitive = readObject(*primitive, "`primitive`");
-    if (mesh) {
-      geometry.mesh = readMeshPaths(*mesh, scene.file, geometry.meshTimes);
-      if (const JsonValue *part = value.find("part"))
-        readPart(*part, geometry);
-      if (const JsonValue *weights = value.find("weights"))
-        readWeights(*weights, geometry);
-      if (const JsonValue *coordinates = value.find("textureCoordinates")) {
-        expect(*coordinates, Kind::String, "`textureCoordinates`");
-        if (coordinates->string != "file" && coordinates->string != "barycentric")
-          throw Error(message::unknownTextureCoordinates(coordinates->string),
-                      coordinates->place());
-        geometry.isBarycentric = coordinates->string == "barycentric";
-      }
-    }
-  }
-
-  /// When the shutter opens and closes.
-  void readShutter(const JsonValue &value) {
-    const std::vector<double> times = readNumbers(value, 2, "`shutter`");
-    if (!(0 <= times[0] && times[0] <= times[1] && times[1] <= 1))
-      throw Error(message::badShutter(), value.place());
-    scene.shutter = {float(times[0]), float(times[1])};
-  }
-
-  /// How surfaces that shine are chosen to light a point.
-  void readLightSampler(const JsonValue &value) {
-    expect(value, Kind::String, "`lightSampler`");
-    constexpr std::pair<const char *, runtime::LampChoice> choices[] = {
-        {"auto", runtime::LampChoice::Automatic},
-        {"power", runtime::LampChoice::ByPower},
-        {"tree", runtime::LampChoice::ByTree}};
-    for (const auto &[name, choice] : choices)
-      if (value.string == name) {
-        scene.lampChoice = choice;
-        return;
-      }
-    throw Error(message::noSuchLightSampler(value.string), value.place());
-  }
-
-  void readEditable(const JsonValue &value) {
-    expect(value, Kind::Array, "`editable`");
-    for (const JsonValue &name : value.elements) {
-      expect(name, Kind::String, "a name of `editable`");
-      scene.editable.push_back({name.string, name.place()});
-    }
-  }
-
-  void readPart(const JsonValue &part, GeometryDescription &geometry) const {
-    expect(part, Kind::String, "`part`");
-    for (const MeshPath &key : geometry.mesh)
-      gltf::primitiveOf(modelsOf(scene).open(key.path, key.name.place), part.string, part.place());
-    geometry.part = part.string;
-  }
-
-  /// A number for each morph target of the part; or {"keys": [lists of them], "times": [...]}.
-  void readWeights(const JsonValue &value, GeometryDescription &geometry) const {
-    if (geometry.part.empty() || geometry.mesh.size() != 1)
-      throw Error(message::weightsWithoutPart(), value.place());
-    const MeshPath &file = geometry.mesh.front();
-    const std::size_t targets =
-        gltf::targetCount(gltf::primitiveOf(modelsOf(scene).open(file.path, file.name.place),
-                                            geometry.part, value.place()),
-                          geometry.part);
-    if (value.kind != Kind::Object) {
-      geometry.weights = {readNumbers(value, targets, "`weights`")};
-      return;
-    }
-    checkKeys(value, {"keys", "times"}, "`weights` with keys");
-    geometry.meshTimes = readKeyTimes(value, "`weights`");
-    for (const JsonValue &key : value.find("keys")->elements)
-      geometry.weights.push_back(readNumbers(key, targets, "a key of `weights`"));
-  }
-
-  /// A number or a list of numbers; the program determines how many.
-  static const JsonValue &readColor(const JsonValue &value, const std::string &what) {
-    if (value.kind == Kind::Number) {
-      readNumber(value, what);
-      return value;
-    }
-    if (value.kind != Kind::Array)
-      throw Error(message::notColor(what, describe(value.kind)), value.place());
-    readNumbers(value, value.elements.size(), what);
-    return value;
-  }
-
-  void readRender(const JsonValue &value) {
-    expect(value, Kind::Object, "`render`");
-    errors.attempt([&] {
-      checkKeys(value,
-                {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
-                "`render`");
-    });
-    if (const JsonValue *shutter = value.find("shutter"))
-      errors.attempt([&] { readShutter(*shutter); });
-    if (const JsonValue *sampler = value.find("lightSampler"))
-      errors.attempt([&] { readLightSampler(*sampler); });
-    if (const JsonValue *editable = value.find("editable"))
-      errors.attempt([&] { readEditable(*editable); });
-    if (const JsonValue *engine = value.find("engine"))
-      errors.attempt([&] { readEngine(*engine); });
-    readSettings(value, scene.render, scene, root.find("rayGeneration"), errors);
-  }
-
-  void readEngine(const JsonValue &engine) {
-    expect(engine, Kind::String, "`engine`");
-    const std::vector<std::string> &ofLibrary = libraryEngines();
-    if (std::find(ofLibrary.begin(), ofLibrary.end(), engine.string) != ofLibrary.end())
-      libraryEngine = &engine;
-    else if (engine.string != "classic" && engine.string != "programs")
-      throw Error(message::noSuchEngine(engine.string, fmt::join(ofLibrary, "`, `")),
-                  engine.place());
-    if (engine.string != "classic")
-      scene.render.engine = runtime::Engine::Programs;
   }
 
   const JsonValue &root;

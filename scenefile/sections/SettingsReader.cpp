@@ -1,5 +1,5 @@
 //===- SettingsReader.cpp - size, samples, depth and seed -----------------===//
-#include "scenefile/SettingsReader.h"
+#include "scenefile/sections/SettingsReader.h"
 
 #include "scenefile/files/BufferFiles.h"
 #include "scenefile/json/Reader.h"
