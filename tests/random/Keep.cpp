@@ -9,7 +9,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "Program.h"
-#include "World.h"
+#include "world/World.h"
 
 #include "codegen/driver/Compiler.h"
 #include "frontend/syntax/Parser.h"

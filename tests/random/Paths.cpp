@@ -1,7 +1,7 @@
 //===- Paths.cpp - the ways to run a program, which all agree -------------===//
 #include "Paths.h"
 
-#include "World.h"
+#include "world/World.h"
 
 #include "codegen/driver/Compiler.h"
 #include "frontend/syntax/Parser.h"

@@ -1,4 +1,5 @@
 //===- Geometry.cpp - the instances of a world ----------------------------===//
+#include "Numbers.h"
 #include "World.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 //===- World.h - a small scene that a random program runs in --------------===//
 #pragma once
 
-#include "Program.h"
+#include "tests/random/Program.h"
 
 #include "runtime/accel/BvhBuilder.h"
 #include "runtime/program/ProgramHost.h"
@@ -14,13 +14,6 @@
 #include <vector>
 
 namespace rtsl::random {
-
-/// A hash of two numbers.
-inline std::uint32_t mix(std::uint32_t a, std::uint32_t b) {
-  std::uint32_t h = (a ^ b) * 0x9e3779b1u;
-  h = (h ^ h >> 15) * 0x85ebca6bu;
-  return h ^ h >> 13;
-}
 
 /// The objects of a program with values made from its seed, a few instances, and the launch. What a
 /// ray meets is what the program's own primitives say, tested one by one.
@@ -57,6 +50,7 @@ private:
   /// Objects of sampler2D with small images.
   void addImages();
   void addImage(const runtime::ClassInfo &info, std::uint32_t number);
+  std::size_t wordsOfImages() const;
   void fill(const runtime::MemberInfo &member, std::uint8_t *to, std::uint32_t key);
   void fillElement(const runtime::ValueType &type, const std::optional<Range> &range,
                    std::uint8_t *to, std::uint32_t key);
