@@ -488,7 +488,7 @@ private:
     RtslRef material = 0, primitive = 0;
     std::uint32_t number = 0;       // of the mesh, or of primitives
     std::optional<std::string> why; // it is invisible
-    bool isFirst = true;
+    bool isFirst = true, isTooFar = false;
     for (const InstanceDescription &instance : geometry.placements) {
       bool isWhole = true;
       if (isFirst || instance.scope != variables.scope()) {
@@ -513,11 +513,17 @@ private:
       isFirst = false;
       const std::size_t warnings = scene.warnings().size();
       try {
-        place(instance, primitive, material, number);
+        const std::uint32_t made = place(instance, primitive, material, number);
         if (why && scene.warnings().size() == warnings) // its box has an area
           scene.addWarning(
               {message::primitiveIsInvisible(name, *why), geometry.primitive->className.place});
         why.reset();
+        if (!isTooFar && primitive)
+          if (const auto reach = reachesTooFar(scene, primitive, made)) {
+            isTooFar = true;
+            scene.addWarning({message::primitiveTooFar(name, *reach, farthest),
+                              geometry.primitive->className.place});
+          }
       } catch (Error &error) {
         if (!error.place)
           error.place = geometry.place;
@@ -526,9 +532,9 @@ private:
     }
   }
 
-  /// `primitive` 0: an instance of mesh `number`; otherwise one of `number` primitives.
-  void place(const InstanceDescription &instance, RtslRef primitive, RtslRef material,
-             std::uint32_t number) {
+  /// Returns the instance. `primitive` 0: of mesh `number`; otherwise of `number` primitives.
+  std::uint32_t place(const InstanceDescription &instance, RtslRef primitive, RtslRef material,
+                      std::uint32_t number) {
     runtime::Placement placement = instance;
     placement.selection = selectionOf(instance.selector, instance.childOfSelector);
     if (added) {
@@ -542,6 +548,7 @@ private:
                                    : scene.addMeshInstance(number, material, placement);
     if (added)
       added->push_back({made, *instance.inPart});
+    return made;
   }
 
   /// The error is at `name`, which refers to the object.

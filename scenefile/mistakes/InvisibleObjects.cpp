@@ -56,7 +56,7 @@ Why whyDisk(const Members &disk) {
 
 Why whyHeightField(const Members &field) {
   const auto low = field.value<Vector>("low"), high = field.value<Vector>("high");
-  for (std::size_t axis = 0; axis < 3; ++axis)
+  for (const std::size_t axis : {0, 2}) // without height it is a rectangle
     if (low[axis] == high[axis])
       return fmt::format("`low` and `high` of its box are equal along {}", "xyz"[axis]);
   return std::nullopt;
@@ -79,13 +79,6 @@ Why whyQuadric(const Members &quadric) {
   if (level <= least || level >= largest)
     return fmt::format("in its box the form is between {:g} and {:g}, and `level` is {:g}", least,
                        largest, level);
-  // Its discriminant has products of two coefficients, and of a coefficient and the level.
-  const double size =
-      std::max({std::abs(coefficients[0]), std::abs(coefficients[1]), std::abs(coefficients[2])});
-  const double product = size * std::max(std::max(-least, largest), std::abs(level));
-  if (product > 0x1p126)
-    return fmt::format("its numbers are too large: multiply `coefficients` and `level` by {:.0e}",
-                       1 / size);
   return std::nullopt;
 }
 
@@ -146,6 +139,19 @@ std::optional<std::string> whyInvisible(const runtime::Scene &scene, RtslRef ref
                     [&](const auto &member) { return object.has(member.first, member.second); }))
       return check.why(object);
   return std::nullopt;
+}
+
+std::optional<float> reachesTooFar(const runtime::Scene &scene, RtslRef primitive,
+                                   std::uint32_t instance) {
+  const Members object(scene, primitive);
+  if (std::none_of(checks().begin(), checks().end(),
+                   [&](const Check &check) { return object.is(check.className); }))
+    return std::nullopt;
+  const runtime::Bounds bounds = scene.instanceBounds(instance);
+  float reach = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    reach = std::max({reach, std::abs(bounds.lower[axis]), std::abs(bounds.upper[axis])});
+  return reach > farthest && std::isfinite(reach) ? std::optional(reach) : std::nullopt;
 }
 
 } // namespace rtsl::scene

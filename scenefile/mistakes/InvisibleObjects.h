@@ -14,4 +14,13 @@ namespace rtsl::scene {
 /// (runtime/scene/Geometry.h).
 std::optional<std::string> whyInvisible(const runtime::Scene &scene, RtslRef object);
 
+/// The library's primitives are seen as they are up to this distance from the origin
+/// (tests/cli/render/scenes/test_sizes.py).
+constexpr float farthest = 1e17f;
+
+/// How far an instance of a primitive of the library reaches along an axis, if that is farther.
+/// Nothing for classes of authors, and for boxes without an end.
+std::optional<float> reachesTooFar(const runtime::Scene &scene, RtslRef primitive,
+                                   std::uint32_t instance);
+
 } // namespace rtsl::scene
