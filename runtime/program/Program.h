@@ -190,6 +190,7 @@ struct Program {
   std::uint32_t needs = RTSL_NEEDS_ALL;
   Paths paths = Paths::Random;
   bool raysLeaveHits = true; // shaders of hits send rays; otherwise only `generate` does
+  bool lightPasses = true;   // lights shine through materials with `transmittance`
   /// Methods other than those of the camera and `generate` read LaunchIndex or LaunchSize.
   bool raysReadLaunch = true;
   /// RTSL_HAS_*: what the scenes that it renders may have.

@@ -66,6 +66,10 @@ uint32_t rtsl_features(RtslState *state) {
              : 0; // while a scene is built there is no host, and for methods called alone no launch
 }
 
+uint32_t rtsl_light_passes(const RtslLaunch *launch) {
+  return slotsOf(launch).rt_Material_transmittance != nullptr;
+}
+
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {
   return slotsOf(state).states.run(state, number, object, frame);
 }

@@ -121,6 +121,7 @@ static RootModel materialModel() {
               {"sampleBSDF", sees, {S::LightDirection, S::BSDFValue, S::PDF}, common},
               {"evaluatePDF", sees, {S::PDF}, common},
               {"emission", sees, {S::EmissionColor}, common},
+              {"transmittance", sees, {S::SampleColor}, common},
               {"closestHit", sees, sampling | StateSet{S::SampleColor},
                common | AbilitySet{A::Trace, A::Illuminance, A::CallSampling, A::CallColor},
                Payload::Required},

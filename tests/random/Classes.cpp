@@ -323,6 +323,8 @@ void Generator::addBsdf(ClassPlan &plan, Node &members) {
   add("evaluatePDF", "rt_PDF = toUnit(h); ");
   if (chance(50))
     add("emission", "rt_EmissionColor = toColor(h); ");
+  if (chance(50))
+    add("transmittance", "rt_SampleColor = toColor(h); ");
 }
 
 void Generator::makeClasses() {

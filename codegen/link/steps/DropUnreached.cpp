@@ -138,8 +138,10 @@ private:
           addMethods(slot.base, slot.method, by("for `illuminate` in"));
       } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
-        addMethods("rt_Light", "illumination",
-                   by(isOne ? "for `illuminate` in" : "for `illuminance` in"));
+        const char *does = isOne ? "for `illuminate` in" : "for `illuminance` in";
+        addMethods("rt_Light", "illumination", by(does));
+        if (context.request.engine != runtime::Engine::Programs)
+          addMethods("rt_Material", "transmittance", by(does));
       }
       if (const std::uint32_t needs = needsOf(reader, op))
         addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));

@@ -133,6 +133,13 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   return ir::sendsRays(op) && mayStartAtHits(reader) ? ofRaysFromHits : 0;
 }
 
+bool lightPasses(const LinkContext &context) {
+  return llvm::any_of(context.classes, [&](const LinkedClass &linked) {
+    return linked.isUsed && linked.info->root == "rt_Material" &&
+           findMethod(context, linked, "transmittance");
+  });
+}
+
 std::uint32_t findNeeds(const LinkContext &context) {
   std::uint32_t needs = 0;
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
@@ -187,6 +194,8 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
       needs |= ofLights;
     if (hasLamps && linked.info->root == "rt_Material" && findMethod(context, linked, "emission"))
       needs |= RTSL_NEEDS_NORMALS;
+    if (linked.info->root == "rt_Material" && findMethod(context, linked, "transmittance"))
+      needs |= ofRaysFromHits; // light that passes leaves the hit
     if (isOfScratchChanges(needs))
       needs |= ofScratchChanges;
     if (needs & (RTSL_NEEDS_DERIVATIVES | RTSL_NEEDS_FOOTPRINT))

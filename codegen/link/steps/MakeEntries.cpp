@@ -113,6 +113,8 @@ void makeEntries(LinkContext &context) {
   else if (findNeeds(context) & RTSL_NEEDS_EMITTERS)
     for (const Slot &slot : surfaceSlots)
       makeSlot(context, slot);
+  if (!context.request.isSampled && lightPasses(context))
+    makeSlot(context, {"rt_Material", "transmittance"});
   makePayloadSlots(context);
   makeFeatures(context);
   for (LinkedClass &linked : context.classes) {

@@ -231,6 +231,9 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
 bool isOfScratchChanges(std::uint32_t needs);
 /// Whether an operation uses the address other than to store to it.
 bool isRead(mlir::Value address);
+/// Whether lights shine through materials that have `transmittance`. Runs after unreached methods
+/// have been dropped.
+bool lightPasses(const LinkContext &context);
 /// The outputs that functions of the program read; the runtime computes no others.
 std::uint32_t findNeeds(const LinkContext &context);
 /// ClassInfo::needs of each of the context's classes. `ofProgram`: findNeeds.

@@ -159,7 +159,7 @@ inline bool illuminate(RtslState &state, uint32_t index, Vec3 point, Vec3 axis, 
   Vec3 direction = load(state.LightDirection);
   if (cosAngle > -1.0f && !isInCone(direction, axis, cosAngle))
     return false;
-  return cosAngle == RTSL_NO_SHADOWS || !inShadow(state, point);
+  return cosAngle == RTSL_NO_SHADOWS || isLit(state, point);
 }
 
 /// The start of a sample of a pixel; rows count on from slice to slice. Row 0 is the top of the

@@ -3,10 +3,13 @@
 
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Events.h"
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
+#include "runtime/device/ray/Warp.h"
+#include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
 
@@ -86,8 +89,57 @@ inline uint32_t traverseShadow(ShadowRay ray, Vec3 direction, RayStart start, fl
   return rtsl_traverse(&state, RTSL_FIRST_HIT);
 }
 
-/// Is there anything between `point` and the light that wrote LightDistance to `shading`?
-inline bool inShadow(const RtslState &shading, Vec3 point) {
+/// At most so many surfaces let the light of one ray pass.
+constexpr int mostPassed = 64;
+
+/// The share of a light that arrives.
+struct PassingLight {
+  float share[RTSL_MAX_COLOR];
+};
+
+/// The share of light that surfaces between the ray's origin and `distance` let pass straight on:
+/// the product of what their `transmittance` writes, 0 for materials without it. On a GPU it is a
+/// separate function, and its result a value, as that of lookAtBackground.
+#ifdef __NVPTX__
+__attribute__((noinline))
+#endif
+inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, float distance) {
+  const Together together;
+  const RtslLaunch &launch = *ray.launch;
+  const uint32_t components = rtsl_color_components(&launch);
+  PassingLight light;
+  setColor(light.share, components, 1);
+  RtslState state;
+  startShadowRay(state, ray);
+  Vec3 origin = ray.origin;
+  for (int passed = 0; start.epsilon < distance; ++passed) {
+    setDefaults(state, components);
+    setRay(state, origin, direction, start, distance);
+    if (rtsl_traverse(&state, 0) != RTSL_HIT)
+      return light;
+    describeHit(state);
+    if (passed != mostPassed)
+      rtsl_rt_Material_transmittance(&state, instanceAt(launch, state.instance).material);
+    forEachComponent(components, [&](uint32_t i) { light.share[i] *= state.SampleColor[i]; });
+    if (isBlack(light.share, components))
+      return light;
+    origin = load(state.HitPoint);
+    start = startOf(state, origin, direction);
+    distance -= state.HitDistance;
+    if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT)
+      state.coneAtOrigin = state.ConeWidth;
+  }
+  return light;
+}
+
+/// Do materials let rays to lights pass? Engines that are a ray generation send rays of their own.
+inline bool doesLightPass(const RtslLaunch &launch) {
+  return rtsl_light_passes(&launch) && !rtsl_generates(&launch);
+}
+
+/// Whether light arrives at `point` from the light that wrote LightDistance to `shading`.
+/// Multiplies LightColor by what surfaces between the two let pass.
+inline bool isLit(RtslState &shading, Vec3 point) {
   const Vec3 direction = load(shading.LightDirection);
   const RayStart start = startOf(shading, point, direction);
   // The light's own surface, if it has one, is at the end: stay as far from it as from the start.
@@ -95,11 +147,18 @@ inline bool inShadow(const RtslState &shading, Vec3 point) {
   if (distance < infinity)
     distance -= minimum(start.epsilon, distance * 0x1p-10f);
   if (!(start.epsilon < distance))
-    return false;
-  const uint32_t found = traverseShadow(shadowRayFrom(shading, point), direction, start, distance);
+    return true;
+  const ShadowRay ray = shadowRayFrom(shading, point);
+  const uint32_t found = traverseShadow(ray, direction, start, distance);
   if (found == RTSL_BAD_RAY)
     raise(shading, RTSL_EXCEPTION_BAD_RAY);
-  return found != RTSL_MISS; // no light arrives along a bad ray
+  const RtslLaunch &launch = *shading.launch;
+  if (found != RTSL_HIT || !doesLightPass(launch))
+    return found == RTSL_MISS; // no light arrives along a bad ray
+  const uint32_t components = rtsl_color_components(&launch);
+  const PassingLight light = passSurfaces(ray, direction, start, distance);
+  forEachComponent(components, [&](uint32_t i) { shading.LightColor[i] *= light.share[i]; });
+  return !isBlack(shading.LightColor, components);
 }
 
 } // namespace rtsl::device

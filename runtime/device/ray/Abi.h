@@ -102,6 +102,9 @@ uint32_t rtsl_generates(const RtslLaunch *launch);
 uint32_t rtsl_is_fast(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
+/// Whether the program has materials with `transmittance`, and lights. In the engine `classic` they
+/// let light pass.
+uint32_t rtsl_light_passes(const RtslLaunch *launch);
 /// Whether any method but those of the camera and `generate` reads LaunchIndex or LaunchSize.
 /// Otherwise rays that shaders send do not have them.
 uint32_t rtsl_rays_read_launch(void);

@@ -75,8 +75,9 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
   };
   for (std::uint32_t number = 0; number != 2; ++number) {
     for (RtslRef material : materials)
-      for (Method method : {slots.rt_Material_sampleBSDF, slots.rt_Material_BSDF,
-                            slots.rt_Material_evaluatePDF, slots.rt_Material_emission})
+      for (Method method :
+           {slots.rt_Material_sampleBSDF, slots.rt_Material_BSDF, slots.rt_Material_evaluatePDF,
+            slots.rt_Material_emission, slots.rt_Material_transmittance})
         call(method, material, number);
     for (RtslRef primitive : primitives)
       for (Method method : {slots.rt_Primitive_generateSample, slots.rt_Primitive_samplePDF,

@@ -1,0 +1,190 @@
+"""Lamps of the engine `classic` behind materials that let light pass."""
+
+import struct
+import unittest
+
+from exr_files import channels
+from harness import WAYS, Case
+
+SHADERS = """
+class Below : rt_Camera { // the middle of the floor, from under the panes
+  void generateRay() {
+    rt_RayOrigin = vec3(0.0, 0.2, 2.0);
+    rt_RayDirection = vec3(0.002 * rt_ScreenCoord.x - 0.001, -0.1, -1.0);
+  }
+};
+class Floor : rt_Material { // an author's own, white
+  void shade() {
+    rt_SampleColor = color(0.0);
+    illuminance (rt_HitPoint)
+      rt_SampleColor += rt_LightColor * abs(dot(normalize(rt_LightDirection), rt_ShadingNormal));
+  }
+};
+class Chosen : rt_Material { // the same by `illuminate`
+  void shade() {
+    rt_SampleColor = illuminate(0, rt_HitPoint)
+        ? rt_LightColor * abs(dot(normalize(rt_LightDirection), rt_ShadingNormal)) : color(0.0);
+  }
+};
+class Film : rt_Material { // an author's own, that sends no rays and has a texture
+  public rt_Texture tint;
+  void shade() { rt_SampleColor = color(0.0); }
+  void transmittance() { rt_SampleColor = tint.lookup(); }
+};
+class Halves : rt_Texture {
+  void lookup() { rt_TextureColor = rt_TextureUV.x < 0.5 ? color(0.25) : color(1.0, 0.5, 0.25); }
+};
+// What the engine `path` runs.
+class Matte : Floor {
+  void BSDF() { rt_BSDFValue = color(0.31830989); }
+};
+"""
+
+FLOOR = {"class": "Parallelogram", "constructor": [[-9, 0, 9], [18, 0, 0], [0, 0, -18]]}
+DOWN = {"class": "DistantLight", "irradiance": [1, 1, 1]}
+STRAIGHT = 0.04  # what a surface of index 1.5 reflects straight on
+
+
+def pane(height, name, **members):
+    shape = [[-1, height, 3], [2.2, 0, 0], [0, 0, -6]]
+    return {
+        "primitive": {"class": "Parallelogram", "constructor": shape},
+        "material": {"class": name, **members},
+    }
+
+
+def ball(material, radius=0.5, height=1):
+    return {
+        "primitive": {"class": "Sphere", "center": [0, height, 0], "radius": radius},
+        "material": material,
+    }
+
+
+class LightThatPasses(Case):
+    def setUp(self):
+        super().setUp()
+        self.write("Below.rtsl", SHADERS)
+
+    def scene(self, *objects, floor="Floor", lights=(DOWN,), engine="classic", size=(1, 1)):
+        return {
+            "rtsl": 1,
+            "import": ["std.primitives", "std.materials", "std.lights", "Below.rtsl"],
+            "camera": {"class": "Below"},
+            "textures": {"halves": {"class": "Halves"}},
+            "objects": [{"primitive": FLOOR, "material": {"class": floor}}, *objects],
+            "lights": list(lights),
+            "render": {"engine": engine, "size": size, "spp": 1, "depth": 4},
+        }
+
+    def color(self, *objects, **more):
+        picture, _ = self.render_scene(self.scene(*objects, **more), "-q")
+        layers = channels(picture.read_bytes())
+        return [struct.unpack("<f", struct.pack("<I", layers[c][0]))[0] for c in "RGB"]
+
+    def assert_passes(self, expected, *objects, **more):
+        for value, share in zip(self.color(*objects, **more), expected):
+            self.assertAlmostEqual(value, share, delta=2e-3 * share + 1e-7)
+
+    def test_thin_glass(self):
+        tint = [0.5, 0.8, 1.0]
+        twice = (1 - STRAIGHT) ** 2
+        expected = [twice * t / (1 - (STRAIGHT * t) ** 2) for t in tint]
+        self.assert_passes(expected, pane(1, "ThinGlass", transmission=tint))
+
+    def test_two_panes_and_a_lamp_between_them(self):
+        glass = {"transmission": [0.5, 0.5, 0.5]}
+        one = (1 - STRAIGHT) ** 2 * 0.5 / (1 - (STRAIGHT * 0.5) ** 2)
+        self.assert_passes(
+            [one**2] * 3, pane(1, "ThinGlass", **glass), pane(2, "ThinGlass", **glass)
+        )
+        lamp = {"class": "PointLight", "position": [0, 1.5, 0], "intensity": [2.25] * 3}
+        [bare, *_] = self.color(lights=[lamp])
+        [lit, *_] = self.color(
+            pane(1, "ThinGlass", **glass), pane(2, "ThinGlass", **glass), lights=[lamp]
+        )
+        self.assertAlmostEqual(lit / bare, one, delta=2e-3)
+
+    def test_solid_glass(self):
+        glass = {"class": "Dielectric", "transmission": [0.5, 0.9, 1.0]}
+        surfaces = (1 - STRAIGHT) ** 2
+        expected = [surfaces * t for t in glass["transmission"]]  # of a ball of diameter 1
+        self.assert_passes(expected, ball(glass))
+        self.assert_passes(expected, ball({**glass, "alpha": 0.3}))
+
+    def test_holes(self):
+        leaf = {"class": "Lambert"}
+        self.assert_passes([0.75] * 3, pane(1, "Cutout", material=leaf, opacity=0.25))
+        self.assert_passes([0] * 3, pane(1, "Cutout", material=leaf))
+        behind = pane(2, "Lambert")
+        self.assert_passes([0] * 3, pane(1, "Cutout", material=leaf, opacity=0), behind)
+
+    def test_principled(self):
+        tint = [0.25, 0.5, 1.0]
+        members = {"baseColor": tint, "roughness": 0.4}
+        half = [0.5 * (1 - STRAIGHT) * t for t in tint]
+        self.assert_passes(half, pane(1, "Principled", transmission=0.5, **members))
+        self.assert_passes([0] * 3, pane(1, "Principled", **members))
+
+    def test_materials_of_other_materials(self):
+        glass = {"class": "ThinGlass", "transmission": [0.5] * 3}
+        one = (1 - STRAIGHT) ** 2 * 0.5 / (1 - (STRAIGHT * 0.5) ** 2)
+        self.assert_passes([one] * 3, pane(1, "NormalMap", material=glass))
+        mixed = {"first": glass, "second": {"class": "Lambert"}, "amount": 0.25}
+        self.assert_passes([0.75 * one] * 3, pane(1, "MixMaterial", **mixed))
+        self.assert_passes([1] * 3, pane(1, "MediumBoundary"))
+        sides = {"front": glass, "back": {"class": "Lambert"}}
+        above = pane(1, "TwoSided", **sides)  # its normal points up, away from the floor
+        self.assert_passes([0] * 3, above)
+        below = pane(1, "TwoSided", front=sides["back"], back=glass)
+        self.assert_passes([one] * 3, below)
+
+    def test_an_authors_material(self):
+        halves = {"tint": "halves"}
+        self.assert_passes([0.25] * 3, pane(1, "Film", **halves))
+        self.assert_passes([0.25] * 3, pane(1, "Film", **halves), floor="Chosen")
+
+    def test_others_let_nothing_pass(self):
+        for material in ("Lambert", "Emitter", "Floor", "Gold"):
+            with self.subTest(material):
+                self.assert_passes([0] * 3, pane(1, material))
+
+    def test_64_surfaces_and_no_more(self):
+        panes = [pane(1 + i / 64, "MediumBoundary") for i in range(65)]
+        self.assert_passes([1] * 3, *panes[:64])
+        self.assert_passes([0] * 3, *panes)
+
+    def test_other_engines_leave_it_to_their_rays(self):
+        glass = pane(1, "ThinGlass")
+        self.assert_passes([0] * 3, glass, floor="Matte", engine="path")
+        self.assertGreater(min(self.color(glass, floor="Matte")), 0.9)
+
+    def test_every_way_gives_the_same_bits(self):
+        lamp = {"class": "SphereLight", "center": [2, 4, 1], "radius": 0.5, "radiance": [9, 9, 9]}
+        objects = [
+            ball({"class": "Dielectric", "transmission": [0.5, 0.9, 1.0]}),
+            {**ball({"class": "ThinGlass"}, 0.3), "transform": {"translate": [0.3, 0.4, 0.2]}},
+            pane(1.6, "Film", tint="halves"),
+            pane(1.8, "Cutout", material={"class": "Lambert"}, opacity=0.5),
+            {"mesh": "box.obj", "material": {"class": "Principled", "transmission": 1}},
+        ]
+        corners = [(x, y, z) for x in (-1, -0.3) for y in (0.1, 0.8) for z in (-0.6, 0.3)]
+        faces = ("1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4")
+        self.write(
+            "box.obj",
+            "".join(f"v {x} {y} {z}\n" for x, y, z in corners)
+            + "".join(f"f {face}\n" for face in faces),
+        )
+        scene = self.scene(*objects, lights=[lamp, DOWN], size=(24, 16))
+        scene["camera"] = {
+            "class": "PerspectiveCamera",
+            "constructor": {"eye": [0.5, 1.2, 4], "target": [0, 0.4, 0], "up": [0, 1, 0]},
+        }
+        scene["import"].append("std.cameras")
+        picture, _ = self.render_scene(scene, "-q")
+        for way in WAYS:
+            other, _ = self.render_scene(scene, "-q", *way)
+            self.assert_same_bits(picture, other, way)
+
+
+if __name__ == "__main__":
+    unittest.main()
