@@ -47,15 +47,18 @@ mlir::Value addressOf(mlir::OpBuilder &builder, mlir::Location location, llvm::S
                                    LLVM::LLVMPointerType::get(builder.getContext()), name);
 }
 
+mlir::Value constant(mlir::OpBuilder &builder, mlir::Location location, std::int32_t value) {
+  return LLVM::ConstantOp::create(builder, location, builder.getI32Type(),
+                                  builder.getI32IntegerAttr(value));
+}
+
 /// A table of structs of a size, `TABLE(launch)`, and their number, `COUNT(launch)`. An empty one
 /// is not defined, since nothing reads it.
 void defineCounted(mlir::OpBuilder &builder, mlir::Location location, llvm::StringRef global,
                    llvm::ArrayRef<std::int32_t> words, std::size_t size, llvm::StringRef table,
                    llvm::StringRef count) {
   defineFunction(builder, location, count, builder.getI32Type(), [&] {
-    return LLVM::ConstantOp::create(
-        builder, location, builder.getI32Type(),
-        builder.getI32IntegerAttr(static_cast<int32_t>(words.size() * 4 / size)));
+    return constant(builder, location, static_cast<std::int32_t>(words.size() * 4 / size));
   });
   if (words.empty())
     return;
@@ -80,6 +83,9 @@ void defineSceneTables(mlir::ModuleOp module) {
   if (const auto emitters = ir::attr::emitters.of(module))
     defineCounted(builder, location, emittersName, emitters, sizeof(RtslEmitter), "rtsl_emitters",
                   "rtsl_emitter_count");
+  if (ir::attr::wholeEmitters.isOn(module))
+    defineFunction(builder, location, "rtsl_emitters_have_parts", builder.getI32Type(),
+                   [&] { return constant(builder, location, 0); });
   if (const auto attributes = ir::attr::meshAttributes.of(module))
     defineCounted(builder, location, meshAttributesName, attributes, sizeof(RtslMeshAttribute),
                   "rtsl_mesh_attributes", "rtsl_mesh_attribute_count");

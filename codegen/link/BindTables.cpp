@@ -75,12 +75,20 @@ bool hasEditablePrimitives(mlir::ModuleOp ir, const runtime::SceneFacts &scene) 
   return found;
 }
 
+bool isOnePrimitive(const RtslInstance &instance) {
+  return instance.primitive != 0 && instance.boxCount == 0;
+}
+
 /// Is each instance one primitive, and are they few enough for a list?
 bool isListed(const std::vector<RtslInstance> &instances) {
   return !instances.empty() && instances.size() <= mostListed &&
-         llvm::all_of(instances, [](const RtslInstance &one) {
-           return one.primitive != 0 && one.boxCount == 0;
-         });
+         llvm::all_of(instances, isOnePrimitive);
+}
+
+bool areEmittersWhole(const runtime::SceneFacts &scene) {
+  return llvm::all_of(*scene.emitters, [&](const RtslEmitter &emitter) {
+    return isOnePrimitive(scene.instances[emitter.instance]);
+  });
 }
 
 /// The words of an RtslListedBox for each.
@@ -134,10 +142,13 @@ void bindTables(mlir::ModuleOp ir, const runtime::SceneFacts &scene, const LinkR
   const std::size_t bytes = scene.instances.size() * sizeof(RtslInstance);
   ir::attr::instances.set(ir, builder.getDenseI32ArrayAttr(wordsOf(scene.instances.data(), bytes)));
   // The powers of emitters may depend on whatever is editable.
-  if (scene.emitters && !anyEditable && !request.keep.has(Item::Lights))
+  if (scene.emitters && !anyEditable && !request.keep.has(Item::Lights)) {
     ir::attr::emitters.set(
         ir, builder.getDenseI32ArrayAttr(
                 wordsOf(scene.emitters->data(), scene.emitters->size() * sizeof(RtslEmitter))));
+    if (areEmittersWhole(scene))
+      ir::attr::wholeEmitters.set(ir);
+  }
   if (isListed(scene.instances) && !request.keep.has(Item::Tree)) {
     ir::attr::listedBoxes.set(ir, builder.getDenseI32ArrayAttr(listedBoxes(scene.instances)));
     if (const std::vector<std::int32_t> pairs = listedPairs(scene.instances); !pairs.empty())

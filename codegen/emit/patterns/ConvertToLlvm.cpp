@@ -317,6 +317,7 @@ struct ConvertToLlvm : mlir::PassWrapper<ConvertToLlvm, mlir::OperationPass<mlir
     ir::attr::records.removeFrom(module);
     ir::attr::instances.removeFrom(module);
     ir::attr::emitters.removeFrom(module);
+    ir::attr::wholeEmitters.removeFrom(module);
     ir::attr::listedBoxes.removeFrom(module);
     ir::attr::listedPairs.removeFrom(module);
     ir::attr::noted.removeFrom(module);

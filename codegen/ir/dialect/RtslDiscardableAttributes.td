@@ -343,6 +343,12 @@ def emitters : DiscardableAttribute<"emitters", DenseI32Array, ["builtin.module"
   let readBy = "emit/SceneTables";
 }
 
+def wholeEmitters : DiscardableAttribute<"whole_emitters", Unit, ["builtin.module"]> {
+  let meaning = "each of these emitters is one primitive";
+  let setBy = "link/BindTables";
+  let readBy = "emit/SceneTables";
+}
+
 def meshAttributes : DiscardableAttribute<"mesh_attributes", DenseI32Array, ["builtin.module"]> {
   let meaning =
     "the attributes of meshes that the program of a scene reads: RtslMeshAttribute in "

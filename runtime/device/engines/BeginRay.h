@@ -111,4 +111,18 @@ inline void setDefaults(RtslState &state, uint32_t components) {
   }
 }
 
+/// Traverses state's ray, and sets its defaults. They are set after the search, where stores that a
+/// method repeats are left out, unless `anyHit` may read them.
+inline uint32_t traverseWithDefaults(RtslState &state, uint32_t how) {
+  const uint32_t needs = rtsl_needs(state.launch), components = rtsl_color_components(state.launch);
+  if (needs & RTSL_NEEDS_ANY_HIT)
+    setDefaults(state, components);
+  else if (needs & RTSL_NEEDS_SAMPLING)
+    state.PDF = 0; // which `intersect` may read
+  const uint32_t found = rtsl_traverse(&state, how);
+  if (!(needs & RTSL_NEEDS_ANY_HIT))
+    setDefaults(state, components);
+  return found;
+}
+
 } // namespace rtsl::device

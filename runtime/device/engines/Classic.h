@@ -58,8 +58,7 @@ inline Arrival arriveAt(RtslState &state, uint32_t found) {
 
 /// Traverses state's ray and describes the result.
 inline Arrival arrive(RtslState &state) {
-  setDefaults(state, rtsl_color_components(state.launch));
-  return arriveAt(state, rtsl_traverse(&state, 0));
+  return arriveAt(state, traverseWithDefaults(state, 0));
 }
 
 /// Follows state's ray and writes the color that arrives to SampleColor.

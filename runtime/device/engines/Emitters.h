@@ -45,8 +45,14 @@ inline auto chancesOfEmitters(const RtslLaunch &launch) {
 inline auto chancesOfParts(const RtslLaunch &launch, const RtslEmitter &emitter) {
   return [chances = launch.partChances + emitter.firstPart](uint32_t i) { return chances[i]; };
 }
-/// The number of parts; 0: the instance is one primitive.
+/// Is an emitter a mesh?
+inline bool isMesh(const RtslLaunch &launch, const RtslInstance &emitter) {
+  return rtsl_emitters_have_parts(&launch) && emitter.primitive == 0;
+}
+/// The number of parts of an emitter; 0: it is one primitive.
 inline uint32_t partsOf(const RtslLaunch &launch, const RtslInstance &instance) {
+  if (!rtsl_emitters_have_parts(&launch))
+    return 0;
   return instance.primitive == 0       ? launch.meshes[instance.mesh].triangleCount
          : isCounted(launch, instance) ? instance.boxCount
                                        : 0;
@@ -134,7 +140,7 @@ inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
   float density = (1 - backgroundChance(launch)) *
                   chanceOfPart(launch, emitter, hit.primitive, load(hit.RayOrigin));
-  if (instance.primitive == 0) {
+  if (isMesh(launch, instance)) {
     const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive, hit.Time));
     density *= 2 / squareRoot(dot(twice, twice));
   } else {
@@ -188,7 +194,8 @@ inline void describeEmitter(RtslState &state) {
     state.PDF = emitterDensity(state);
 }
 
-/// Numbers in [0, 1) that choose an emitter and a point on it.
+/// Numbers in [0, 1) that choose an emitter and a point on it; the last three only if emitters have
+/// parts: a primitive draws its own.
 struct EmitterChoice {
   float emitter, part, u, v;
 };
@@ -223,7 +230,7 @@ inline ChosenPart choosePart(const RtslLaunch &launch, const EmitterChoice &choi
 /// space) of a primitive in `state`.
 inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
                             const RtslInstance &instance, uint32_t part, float u, float v) {
-  if (instance.primitive == 0) {
+  if (isMesh(launch, instance)) {
     // Uniform on the triangle (Turk, "Generating Random Points in Triangles", 1990).
     const TriangleVertices p = verticesInWorld(launch, instance, part, state.Time);
     const float root = squareRoot(u);
@@ -260,15 +267,14 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   if (isBehind(side, light.direction))
     return light;
 
-  setDefaults(state, rtsl_color_components(&launch));
   const RayStart start = startOf(left, ray.origin, light.direction);
   if (!(start.epsilon < hiddenBefore))
     return light;
   setRay(state, ray.origin, light.direction, start, 2 - hiddenBefore);
-  if (rtsl_traverse(&state, towardsPoint) != RTSL_HIT || isPointHidden(state) ||
+  if (traverseWithDefaults(state, towardsPoint) != RTSL_HIT || isPointHidden(state) ||
       state.instance != emitter.instance)
     return light;
-  describeHitAtEnd(state);
+  describeHitAtEnd(state, rtsl_emitters_have_parts(&launch) != 0);
   light.distance = state.HitDistance;
   light.density = densityOfEmitter(state, chosen.emitter);
   if (light.density > 0)
@@ -290,9 +296,12 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
       ofBackground == 0 && rtsl_emitter_count(&launch) == 1 && !hasLightTree(launch);
   EmitterChoice choice;
   choice.emitter = isOnly ? 0 : drawNumber(state, state.dimension);
-  choice.part = drawNumber(state, state.dimension + 1);
-  choice.u = drawNumber(state, state.dimension + 2);
-  choice.v = drawNumber(state, state.dimension + 3);
+  choice.part = choice.u = choice.v = 0;
+  if (rtsl_emitters_have_parts(&launch)) {
+    choice.part = drawNumber(state, state.dimension + 1);
+    choice.u = drawNumber(state, state.dimension + 2);
+    choice.v = drawNumber(state, state.dimension + 3);
+  }
   state.dimension += 4;
   if (ofBackground == 0 && rtsl_emitter_count(&launch) == 0)
     return false;

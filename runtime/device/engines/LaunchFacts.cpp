@@ -23,6 +23,9 @@ __attribute__((weak)) const RtslEmitter *rtsl_emitters(const RtslLaunch *launch)
 __attribute__((weak)) uint32_t rtsl_emitter_count(const RtslLaunch *launch) {
   return launch->emitterCount;
 }
+__attribute__((weak)) uint32_t rtsl_emitters_have_parts(const RtslLaunch *) {
+  return 1;
+}
 __attribute__((weak)) const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch) {
   return launch->meshAttributes;
 }

@@ -228,9 +228,8 @@ inline int32_t begin(Rays &rays) {
   CurrentRay &ray = rays.ray;
   RtslState &state = ray.state;
   const bool carries = hasPayload(state, state.rayType);
-  setDefaults(state, rtsl_color_components(state.launch));
   const uint32_t how = carries ? ray.how : 0;
-  const uint32_t found = rtsl_traverse(&state, how);
+  const uint32_t found = traverseWithDefaults(state, how);
   const Arrival arrival = carries ? arriveWithPayloadAt(state, how, found) : arriveAt(state, found);
   beginOn(rays, arrival.object);
   return rtsl_first_state(&state, firstState(&state, carries, arrival.kind), arrival.object);

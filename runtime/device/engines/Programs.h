@@ -65,8 +65,7 @@ inline Arrival arriveWithPayloadAt(RtslState &state, uint32_t how, uint32_t foun
 
 /// Traverses state's ray and describes the result, for the methods for its payload.
 inline Arrival arriveWithPayload(RtslState &state, uint32_t how) {
-  setDefaults(state, rtsl_color_components(state.launch));
-  return arriveWithPayloadAt(state, how, rtsl_traverse(&state, how));
+  return arriveWithPayloadAt(state, how, traverseWithDefaults(state, how));
 }
 
 /// `trace` with a payload. Deeper than the launch allows, the payload is unchanged.

@@ -71,6 +71,9 @@ const RtslInstance *rtsl_instances(const RtslLaunch *launch);
 /// RtslLaunch::emitters and emitterCount. Such a program has a copy of them, too.
 const RtslEmitter *rtsl_emitters(const RtslLaunch *launch);
 uint32_t rtsl_emitter_count(const RtslLaunch *launch);
+/// Whether one of them may be a mesh or an object with several primitives. Known, too, to be 0 in
+/// such a program.
+uint32_t rtsl_emitters_have_parts(const RtslLaunch *launch);
 /// RtslLaunch::meshAttributes and meshAttributeCount. A compiled program has a copy of them.
 const RtslMeshAttribute *rtsl_mesh_attributes(const RtslLaunch *launch);
 uint32_t rtsl_mesh_attribute_count(const RtslLaunch *launch);

@@ -301,9 +301,14 @@ void describePrimitiveChanges(RtslState &state, const RtslInstance &instance, co
 }
 
 /// Everything that a material may read of the hit, after traversal. `ofMaterial` is the set of what
-/// it reads, `slots` has the methods of rt_Primitive, as members with the names of Slots.def.
+/// it reads, `slots` has the methods of rt_Primitive, as members with the names of Slots.def. On
+/// the host it is part of its callers, which know that set.
 template <typename Slots>
-void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
+#ifndef __NVPTX__
+__attribute__((always_inline))
+#endif
+inline void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots,
+                        bool mayBeMesh = true) {
   const RtslLaunch &launch = *state.launch;
   const RtslInstance &instance = instanceAt(launch, state.instance);
   const uint32_t needs = withFootprint(ofMaterial);
@@ -314,7 +319,8 @@ void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
   clearCoordinates(state, needs);
   if (needs & RTSL_NEEDS_TRANSFORMS)
     describeTransforms(state, instance);
-  if (instance.primitive == 0)
+  const bool isMesh = mayBeMesh && instance.primitive == 0;
+  if (isMesh)
     describeMeshHit(state, instance, needs);
   else
     describePrimitiveHit(state, instance, needs, slots);
@@ -323,7 +329,7 @@ void describeHit(RtslState &state, uint32_t ofMaterial, const Slots &slots) {
   if (!(needs & RTSL_NEEDS_FOOTPRINT))
     return;
   describeFootprint(state, instance, needs);
-  if (instance.primitive == 0)
+  if (isMesh)
     describeMeshChanges(state, instance, needs);
   else if (needs & RTSL_NEEDS_ATTRIBUTES)
     describePrimitiveChanges(state, instance, slots);
@@ -335,11 +341,12 @@ inline void describeHit(RtslState &state) {
   describeHit(state, needs, LinkedSlots());
 }
 
-/// The same for a surface that no ray leaves: without the error of the point.
-inline void describeHitAtEnd(RtslState &state) {
+/// The same for a surface that no ray leaves: without the error of the point. `mayBeMesh`: false if
+/// it is known to be a primitive.
+inline void describeHitAtEnd(RtslState &state, bool mayBeMesh) {
   const RtslLaunch &launch = *state.launch;
   uint32_t needs = instanceAt(launch, state.instance).needs & rtsl_needs(&launch);
-  describeHit(state, needs & ~RTSL_NEEDS_HIT_ERRORS, LinkedSlots());
+  describeHit(state, needs & ~RTSL_NEEDS_HIT_ERRORS, LinkedSlots(), mayBeMesh);
 }
 
 } // namespace rtsl::device

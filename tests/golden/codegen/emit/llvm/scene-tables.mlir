@@ -12,11 +12,13 @@
 // LLVM: ret i32 1
 // LLVM: define weak_odr ptr @rtsl_emitters(ptr %{{.*}})
 // LLVM: ret ptr @rtsl.emitters
+// LLVM: define weak_odr i32 @rtsl_emitters_have_parts(ptr %{{.*}})
+// LLVM: ret i32 0
 // LLVM: define weak_odr i32 @rtsl_listed_instances(ptr %{{.*}})
 // LLVM: ret i32 1
 // LLVM: define weak_odr ptr @rtsl_listed_boxes(ptr %{{.*}})
 // LLVM: ret ptr @rtsl.listed_boxes
-module attributes {rtsl.records = array<i32: 0, 0, 0, 0, 1, 1065353216>, rtsl.instances = array<i32: 16, 7>, rtsl.emitters = array<i32: 1, 0, 1065353216, 0, 0>, rtsl.listed_boxes = array<i32: 1, 2, 3, 0, 4, 5, 6, 0>} {
+module attributes {rtsl.records = array<i32: 0, 0, 0, 0, 1, 1065353216>, rtsl.instances = array<i32: 16, 7>, rtsl.emitters = array<i32: 1, 0, 1065353216, 0, 0>, rtsl.whole_emitters, rtsl.listed_boxes = array<i32: 1, 2, 3, 0, 4, 5, 6, 0>} {
   rtsl.class @Ball root "rt_Primitive" {
     rtsl.member_decl @radius : f32 access "public"
   }
