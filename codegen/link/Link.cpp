@@ -100,6 +100,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.paths = linking::findPaths(context);
   program.raysLeaveHits = linking::raysLeaveHits(context);
   program.lightPasses = linking::lightPasses(context);
+  program.hasPrimitives = linking::hasPrimitives(context);
   program.raysReadLaunch = request.keep.has(Item::Outputs) || linking::raysReadLaunch(context);
   linking::makeEntries(context);
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");

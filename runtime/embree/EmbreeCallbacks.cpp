@@ -59,7 +59,8 @@ template <typename Ray, typename Test>
   if (!primitive.intersect)
     return device::testTriangle(*context.state, context.rayAs<Ray>(), launch.meshes[instance.mesh],
                                 item.instance, item.primitive);
-  return test(instance, item, primitive.intersect);
+  return test(instance, item,
+              device::withModerateRay(primitive.intersect, device::scalesWholeSearch(launch)));
 }
 
 template <typename Ray>

@@ -104,7 +104,9 @@ struct EmbreeScene::Implementation {
     if (isFromCamera)
       LastHit::ofThread().learn(number, context.found);
     if (!anyHit)
-      device::findLostAttributes(state, triangleRay, slots->rt_Primitive_intersect);
+      device::findLostAttributes(state, triangleRay,
+                                 device::withModerateRay(slots->rt_Primitive_intersect,
+                                                         device::scalesWholeSearch(*state.launch)));
     if (context.occluder.number != Occluder::none)
       last.learn(number, context.occluder);
     return device::endSearch(state);

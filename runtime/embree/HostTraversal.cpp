@@ -107,7 +107,6 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
     ++rayCounters().badRays;
     return RTSL_BAD_RAY;
   }
-  const device::ModerateSearch moderate(state, how);
   if (!embree)
     return searchOwnTree(state, how);
   if (!EmbreeScene::canFollow(state)) {
@@ -116,6 +115,7 @@ std::uint32_t HostScene::searchOwnTree(RtslState &state, std::uint32_t how) cons
   }
   if (how & RTSL_INVOKE_ANY_HIT || state.rayMask != ~0u || state.rayRoot != 0 || !seenByAll)
     return search(state, how, EmbreeTree{*embree});
+  const device::ModerateSearch moderate(state, how);
   return embree->traverse(state, how);
 }
 

@@ -191,6 +191,7 @@ struct Program {
   Paths paths = Paths::Random;
   bool raysLeaveHits = true; // shaders of hits send rays; otherwise only `generate` does
   bool lightPasses = true;   // lights shine through materials with `transmittance`
+  bool hasPrimitives = true; // of classes, beside triangles
   /// Methods other than those of the camera and `generate` read LaunchIndex or LaunchSize.
   bool raysReadLaunch = true;
   /// RTSL_HAS_*: what the scenes that it renders may have.

@@ -56,6 +56,7 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
                             program.engine == runtime::Engine::Programs);
   codegen::defineConstant(*code.module, "rtsl_rays_leave_hits", program.raysLeaveHits);
   codegen::defineConstant(*code.module, "rtsl_light_passes", program.lightPasses);
+  codegen::defineConstant(*code.module, "rtsl_has_primitives", program.hasPrimitives);
   codegen::defineConstant(*code.module, "rtsl_rays_read_launch", program.raysReadLaunch);
   codegen::defineConstant(*code.module, "rtsl_is_fast",
                           options.floatingPoint == FloatingPoint::Fast);

@@ -78,6 +78,12 @@ bool raysLeaveHits(const LinkContext &context) {
                    [](llvm::StringRef root) { return root != "rt_RayGeneration"; });
 }
 
+bool hasPrimitives(const LinkContext &context) {
+  return llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(), [&](FuncOp function) {
+    return readerOf(context.symbols, function).root == "rt_Primitive";
+  });
+}
+
 bool raysReadLaunch(const LinkContext &context) {
   const auto readsLaunch = [](mlir::Operation *op) {
     auto state = llvm::dyn_cast<ir::StateOp>(op);

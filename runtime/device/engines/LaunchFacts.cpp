@@ -50,6 +50,9 @@ __attribute__((weak)) uint32_t rtsl_generates(const RtslLaunch *launch) {
 __attribute__((weak)) uint32_t rtsl_rays_leave_hits(void) {
   return 1;
 }
+__attribute__((weak)) uint32_t rtsl_has_primitives(void) {
+  return 1;
+}
 __attribute__((weak)) uint32_t rtsl_rays_read_launch(void) {
   return 1;
 }

@@ -122,6 +122,5 @@ extern "C" uint32_t rtsl_traverse(RtslState *state, uint32_t how) {
   if (rtsl_needs(state->launch) & hides || how & RTSL_INVOKE_ANY_HIT || state->rayMask != ~0u ||
       state->rayRoot != 0 || !device::isGoodRay(*state))
     return rtsl_traverse_tree(state, how);
-  const device::ModerateSearch moderate(*state, how);
   return device::findHit(*state, how, device::LinkedSlots(), List());
 }

@@ -83,8 +83,8 @@ struct NearestCandidates {
 template <typename Slots, typename Tree>
 class Search {
 public:
-  Search(RtslState &state, const Slots &slots, const Tree &tree)
-      : state(state), slots(slots), tree(tree),
+  Search(RtslState &state, const ModerateSearch &moderate, const Slots &slots, const Tree &tree)
+      : state(state), moderate(moderate), slots(slots), tree(tree),
         triangleRay(makeTriangleRay(load(state.RayOrigin), load(state.RayDirection))) {
     beginSearch(state);
   }
@@ -121,9 +121,12 @@ public:
     const RtslInstance &instance = instanceAt(*state.launch, state.instance);
     const float end = state.HitDistance;
     state.HitDistance = state.foundDistance;
-    describeHit(state, instance.needs & rtsl_needs(state.launch), slots);
-    state.hitAnswer = RTSL_ACCEPT;
-    slots.rt_Material_anyHit_payload(&state, instance.material);
+    {
+      const ModerateSearch::AsSent asSent(moderate);
+      describeHit(state, instance.needs & rtsl_needs(state.launch), slots);
+      state.hitAnswer = RTSL_ACCEPT;
+      slots.rt_Material_anyHit_payload(&state, instance.material);
+    }
     state.HitDistance = end;
     const uint32_t answer = state.hitAnswer;
     state.hitAnswer = RTSL_ACCEPT; // `anyHit` of the hit that counts runs with a fresh answer
@@ -147,10 +150,13 @@ public:
 
 private:
   auto intersect() const {
-    return [this](RtslState *ray, RtslRef object) { slots.rt_Primitive_intersect(ray, object); };
+    return withModerateRay(
+        [this](RtslState *ray, RtslRef object) { slots.rt_Primitive_intersect(ray, object); },
+        scalesWholeSearch(*state.launch));
   }
 
   RtslState &state;
+  const ModerateSearch &moderate;
   const Slots &slots;
   const Tree &tree;
   TriangleRay triangleRay;
@@ -158,8 +164,9 @@ private:
 
 /// Calls `anyHit` in the order of hits.
 template <typename Slots, typename Tree>
-uint32_t searchInOrder(RtslState &state, const Slots &slots, const Tree &tree) {
-  const Search<Slots, Tree> search(state, slots, tree);
+uint32_t searchInOrder(RtslState &state, const ModerateSearch &moderate, const Slots &slots,
+                       const Tree &tree) {
+  const Search<Slots, Tree> search(state, moderate, slots, tree);
   bool isFirst = true;
   Candidate last = {0, 0, 0};
   for (;;) {
@@ -217,8 +224,9 @@ struct CommittedHit {
 
 /// Calls `anyHit` as hits are found. With `first` the first that accepts ends the search.
 template <typename Slots, typename Tree>
-uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const Tree &tree) {
-  const Search<Slots, Tree> search(state, slots, tree);
+uint32_t searchAsFound(RtslState &state, const ModerateSearch &moderate, bool first,
+                       const Slots &slots, const Tree &tree) {
+  const Search<Slots, Tree> search(state, moderate, slots, tree);
   search.forEach([&] { return state.nearest; },
                  [&](const auto &item, const auto &ray) {
                    if (!search.hasAnyHit(item))
@@ -236,19 +244,21 @@ uint32_t searchAsFound(RtslState &state, bool first, const Slots &slots, const T
   return search.end();
 }
 
-/// rtsl_traverse for a good ray whose hits may be rejected, with any tree. `slots` has the methods
+/// rtsl_traverse for a ray whose hits may be rejected, with any tree. `slots` has the methods
 /// that it needs as members with the names of Slots.def and PayloadSlots.def.
 template <typename Slots, typename Tree>
 uint32_t findHitAsking(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
-  return how & RTSL_IN_ORDER ? searchInOrder(state, slots, tree)
-                             : searchAsFound(state, how & RTSL_FIRST_HIT, slots, tree);
+  const ModerateSearch moderate(state, how);
+  if (!moderate.isGood())
+    return RTSL_BAD_RAY;
+  return how & RTSL_IN_ORDER ? searchInOrder(state, moderate, slots, tree)
+                             : searchAsFound(state, moderate, how & RTSL_FIRST_HIT, slots, tree);
 }
 
-/// The same for any ray, with the tree of the launch.
+/// The same with the tree of the launch.
 template <typename Slots>
 uint32_t traverseAsking(RtslState &state, uint32_t how, const Slots &slots) {
-  return isGoodRay(state) ? findHitAsking(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)})
-                          : RTSL_BAD_RAY;
+  return findHitAsking(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)});
 }
 
 } // namespace rtsl::device

@@ -5,9 +5,9 @@
 // is multiplied by a power of two, and all distances along it are divided by that: both exact, as
 // in makeTriangleRay. Other rays keep their numbers.
 //
-// Where nothing else of the author's reads the ray during a search, and instances have no spaces of
-// their own, that is done once for the search: asked for each primitive, it takes 5 to 20 % of the
-// time of a GPU, where the ray is in registers.
+// Where instances have no spaces of their own, and no selector reads the ray, that is done once for
+// the search: asked for each primitive, it takes 5 to 20 % of the time of a GPU, where the ray is
+// in registers. `anyHit` then sees the ray as it was sent (AsSent).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -30,10 +30,38 @@ inline float moderatingFactor(float largestComponent) {
   return powerOfTwo(-(exponent < -100 ? -100 : exponent > 100 ? 100 : exponent));
 }
 
+/// A ray that can be traced: all components finite, and a direction.
+inline bool isGoodRay(const RtslState &state) {
+  if (state.isEasy)
+    return true;
+  Vec3 direction = load(state.RayDirection);
+  return isFinite(load(state.RayOrigin)) && isFinite(direction) && !isZero(direction) &&
+         state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;
+}
+
 /// Are rays made moderate for a whole search?
 inline bool scalesWholeSearch(const RtslLaunch &launch) {
-  return !(rtsl_needs(&launch) & (RTSL_NEEDS_ANY_HIT | RTSL_HAS_SELECTORS)) &&
+  return rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_SELECTORS) &&
          !hasTransforms(launch);
+}
+
+/// What the direction is multiplied by for a search, 1 for a ray that stays as it is, or 0 for one
+/// that cannot be traced.
+__attribute__((cold, const, noinline)) inline float
+searchFactor(Vec3 origin, Vec3 direction, float epsilon, float distance, bool isTowardsPoint) {
+  if (!isFinite(origin) || !isFinite(direction) || isZero(direction) || epsilon != epsilon ||
+      distance != distance)
+    return 0;
+  const float size = largest(direction);
+  // Towards a point, a search compares its distances with that of the point (isPointHidden).
+  if (isModerate(size) || (isTowardsPoint && size < 1))
+    return 1;
+  const float factor = moderatingFactor(size), inverse = 1 / factor;
+  const Vec3 back = direction * factor * inverse;
+  const bool isExact = back.x == direction.x && back.y == direction.y && back.z == direction.z &&
+                       epsilon * inverse * factor == epsilon &&
+                       distance * inverse * factor == distance;
+  return isExact ? factor : 1;
 }
 
 /// The state's ray while its traversal searches; as it was again when it goes out of scope, with
@@ -43,40 +71,69 @@ class ModerateSearch {
 public:
   /// `how`: of rtsl_traverse.
   ModerateSearch(RtslState &state, uint32_t how) : state(state) {
-    if (!scalesWholeSearch(*state.launch) || state.isEasy)
+    if (!scalesWholeSearch(*state.launch)) {
+      shrink = isGoodRay(state) ? 1 : 0;
       return;
-    const float size = largest(load(state.RayDirection));
-    // Towards a point, a search compares its distances with that of the point (isPointHidden).
-    if (__builtin_expect(isModerate(size), 1) || (how & towardsPoint && size < 1))
+    }
+    if (__builtin_expect(isOrdinary(), 1))
       return;
-    const float factor = moderatingFactor(size);
-    if (!isExact(factor))
-      return;
-    shrink = factor;
-    scale(shrink, 1 / shrink);
+    shrink = searchFactor(load(state.RayOrigin), load(state.RayDirection), state.Epsilon,
+                          state.HitDistance, how & towardsPoint);
+    if (shrink != 1 && shrink != 0)
+      scale(shrink, inverseOf(shrink));
   }
   ModerateSearch(const ModerateSearch &) = delete;
   ~ModerateSearch() {
-    if (__builtin_expect(shrink == 1, 1))
+    if (__builtin_expect(shrink == 1, 1) || shrink == 0)
       return;
-    scale(1 / shrink, shrink);
-    if (state.instance == RTSL_NO_HIT)
-      return;
-    state.nearest *= shrink;
-    if (isBound(state.hitError))
-      state.hitError *= shrink;
+    scaleWithHit(inverseOf(shrink), shrink);
+    if (state.instance != RTSL_NO_HIT)
+      state.nearest *= shrink;
   }
+
+  /// Can the ray be traced: are all its components finite, and is there a direction?
+  bool isGood() const { return shrink != 0; }
+
+  /// While it exists, the ray is as it was sent, and HitDistance and hitError are in its units: for
+  /// methods that run during a search.
+  class AsSent {
+  public:
+    explicit AsSent(const ModerateSearch &search) : search(search) {
+      if (__builtin_expect(search.shrink != 1, 0))
+        search.scaleWithHit(inverseOf(search.shrink), search.shrink);
+    }
+    AsSent(const AsSent &) = delete;
+    ~AsSent() {
+      if (__builtin_expect(search.shrink != 1, 0))
+        search.scaleWithHit(search.shrink, inverseOf(search.shrink));
+    }
+
+  private:
+    const ModerateSearch &search;
+  };
 
 private:
-  [[gnu::always_inline]] bool isExact(float factor) const {
-    const Vec3 direction = load(state.RayDirection), there = direction * factor,
-               back = there * (1 / factor);
-    const float epsilon = state.Epsilon / factor, end = state.HitDistance / factor;
-    return back.x == direction.x && back.y == direction.y && back.z == direction.z &&
-           epsilon * factor == state.Epsilon && end * factor == state.HitDistance;
+  /// Is the ray good and moderate, as nearly all are?
+  [[gnu::always_inline]] bool isOrdinary() const {
+    if (state.isEasy)
+      return true;
+    const Vec3 direction = load(state.RayDirection);
+    const float size = __builtin_fabsf(direction.x) + __builtin_fabsf(direction.y) +
+                       __builtin_fabsf(direction.z); // NaN if a component is
+    return isModerate(size) && isFinite(load(state.RayOrigin)) && state.Epsilon == state.Epsilon &&
+           state.HitDistance == state.HitDistance;
   }
 
-  [[gnu::always_inline]] void scale(float direction, float distances) {
+  /// 1 / factor, without a division: both are powers of two within 2^-100 and 2^100.
+  static float inverseOf(float factor) { return floatOf((254u << 23) - bitsOf(factor)); }
+
+  [[gnu::always_inline]] void scaleWithHit(float direction, float distances) const {
+    scale(direction, distances);
+    if (state.instance != RTSL_NO_HIT && isBound(state.hitError))
+      state.hitError *= distances;
+  }
+
+  [[gnu::always_inline]] void scale(float direction, float distances) const {
     store(state.RayDirection, load(state.RayDirection) * direction);
     if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
       store(state.InverseRayDirection, load(state.InverseRayDirection) * distances);
@@ -85,16 +142,16 @@ private:
   }
 
   RtslState &state;
-  float shrink = 1; // a power of two, which the direction is multiplied by
+  float shrink = 1; // a power of two, which the direction is multiplied by; 0 for a bad ray
 };
 
 /// The state's ray, in the space of the candidate, while `intersect` of that runs; as it was again
 /// when it goes out of scope, with a hit that was found meanwhile in its units.
 class ModerateRay {
 public:
-  /// `isAsked`: false if it is known to be moderate.
-  explicit ModerateRay(RtslState &state, bool isAsked = true) : state(state) {
-    if (!isAsked)
+  /// `isKnown`: to be moderate.
+  explicit ModerateRay(RtslState &state, bool isKnown = false) : state(state) {
+    if (isKnown || (state.isEasy && !hasTransforms(*state.launch)))
       return;
     const float size = largest(load(state.RayDirection));
     if (__builtin_expect(isModerate(size), 1))
@@ -150,5 +207,14 @@ private:
   Vec3 direction, inverse;
   float epsilon, distance, found, nearest;
 };
+
+/// The author's intersect(state, object) with a moderate ray. `isModerate`: it is known to be one.
+template <typename Intersect>
+auto withModerateRay(Intersect intersect, bool isModerate) {
+  return [=](RtslState *state, RtslRef object) {
+    const ModerateRay moderate(*state, isModerate);
+    intersect(state, object);
+  };
+}
 
 } // namespace rtsl::device

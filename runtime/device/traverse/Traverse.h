@@ -15,15 +15,6 @@
 
 namespace rtsl::device {
 
-/// A ray that can be traced: all components finite, and a direction.
-inline bool isGoodRay(const RtslState &state) {
-  if (state.isEasy)
-    return true;
-  Vec3 direction = load(state.RayDirection);
-  return isFinite(load(state.RayOrigin)) && isFinite(direction) && !isZero(direction) &&
-         state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;
-}
-
 /// Is the instance visible to the ray?
 template <typename Slots>
 bool isSeen(RtslState &state, const RtslInstance &instance, const Slots &slots) {
@@ -221,7 +212,6 @@ bool testInRange(RtslState &state, const Ray &ray, const RtslInstance &instance,
   state.dimension = dimensionOf(item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance, ray);
-    const ModerateRay moderate(state, !scalesWholeSearch(*state.launch));
     intersect(&state, instance.primitive);
   }
   const bool hasHit = state.HitDistance < end;
@@ -423,14 +413,17 @@ struct LaunchTree {
   }
 };
 
-/// rtsl_traverse for a good ray, with any tree. `slots` has the methods that it needs as members
+/// rtsl_traverse without `anyHit`, with any tree. `slots` has the methods that it needs as members
 /// with the names of Slots.def.
 template <typename Slots, typename Tree>
 uint32_t findHit(RtslState &state, uint32_t how, const Slots &slots, const Tree &tree) {
+  const ModerateSearch moderate(state, how);
+  if (!moderate.isGood())
+    return RTSL_BAD_RAY;
   TriangleRay ray = makeTriangleRay(load(state.RayOrigin), load(state.RayDirection));
-  const auto intersect = [&](RtslState *ray, RtslRef object) {
-    slots.rt_Primitive_intersect(ray, object);
-  };
+  const auto intersect = withModerateRay(
+      [&](RtslState *ray, RtslRef object) { slots.rt_Primitive_intersect(ray, object); },
+      scalesWholeSearch(*state.launch));
   beginSearch(state);
   tree.forEach(
       state, ray, [&] { return state.nearest; },
@@ -446,9 +439,6 @@ uint32_t findHit(RtslState &state, uint32_t how, const Slots &slots, const Tree 
 /// rtsl_traverse with the tree of the launch.
 template <typename Slots>
 uint32_t traverseDevice(RtslState &state, uint32_t how, const Slots &slots) {
-  if (!isGoodRay(state))
-    return RTSL_BAD_RAY;
-  const ModerateSearch moderate(state, how);
   // A ray that ends at its first hit gains more from an early one.
   return findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)});
 }

@@ -297,7 +297,7 @@ class Explain(Case):
         without = self.ptx()
         self.write_scene(materials={**SCENE["materials"], **self.UNUSED})
         self.assertEqual(self.ptx(), without)
-        self.assertGreater(len(self.ptx("--keep=objects")), len(without) + 1000)
+        self.assertGreater(len(self.ptx("--keep=objects")), len(without) + 500)
         items = self.entries(savings=True)
         self.assertEqual(
             items["objects"]["material blue"][:2], (False, "nothing that is used refers to it")

@@ -145,6 +145,56 @@ class RayLengths(Case):
             )
             self.assert_same_bits("1.exr", f"{power}.exr")
 
+    def test_where_hits_are_rejected(self):
+        """`anyHit` sees the ray as it was sent, and the hit in its units."""
+        shaders = """
+        struct Passed { vec3 places; float factor; int count; };
+        class Sieve : rt_Material {
+          void anyHit(inout Passed passed) {
+            vec3 direction = rt_RayDirection / passed.factor;
+            float distance = rt_HitDistance * passed.factor;
+            vec3 place = rt_RayOrigin + distance * direction;
+            passed.places = 0.5 * passed.places + distance * place + direction + rt_GeometricNormal;
+            passed.count = passed.count + 1;
+            if (passed.count < 4)
+              ignoreIntersection();
+          }
+          void closestHit(inout Passed passed) { passed.places += rt_HitPoint; }
+        };
+        class Probe : rt_RayGeneration {
+          public float factor = 1.0;
+          void generate() {
+            Passed passed = Passed(vec3(0.25), factor, 0);
+            vec3 direction = vec3(rt_ScreenCoord - vec2(0.5), -1.5);
+            trace(vec3(0.1, 0.2, 3.0), factor * direction, 0.0, 8.0 / factor, passed);
+            rt_SampleColor = color(passed.places.x, passed.places.y, passed.places.z);
+          }
+        };
+        """
+        self.write("shaders.rtsl", shaders)
+
+        def render(power, *options):
+            scene = {
+                "rtsl": 1,
+                "import": ["std.primitives", "shaders.rtsl"],
+                "rayGeneration": {"class": "Probe", "factor": 2.0**power},
+                "objects": [
+                    {"primitive": one, "material": {"class": "Sieve"}} for one in PRIMITIVES[:7]
+                ],
+                "render": {"engine": "programs", "size": [24, 16], "spp": 1},
+            }
+            self.write("scene.json", json.dumps(scene))
+            self.run_rtslc("render", "scene.json", "-o", f"{power}.exr", "-q", "-O0", *options)
+
+        render(0)
+        bits = channels((self.folder / "0.exr").read_bytes())["R"]
+        self.assertGreater(len(set(bits)), 100)
+        for power in (67, -67):
+            for way in ((), ("--traversal=device",), ("--target=host-megakernel",)):
+                with self.subTest(power=power, way=way):
+                    render(power, *way)
+                    self.assert_same_bits("0.exr", f"{power}.exr")
+
     def test_towards_far_light(self):
         """Points are lit by places of a surface that shines, by rays as long as it is far away."""
         pictures = []
