@@ -31,12 +31,13 @@ inline float moderatingFactor(float largestComponent) {
 }
 
 /// A ray that can be traced: all components finite, and a direction.
+inline bool isGoodRay(Vec3 origin, Vec3 direction, float epsilon, float distance) {
+  return isFinite(origin) && isFinite(direction) && !isZero(direction) && epsilon == epsilon &&
+         distance == distance;
+}
 inline bool isGoodRay(const RtslState &state) {
-  if (state.isEasy)
-    return true;
-  Vec3 direction = load(state.RayDirection);
-  return isFinite(load(state.RayOrigin)) && isFinite(direction) && !isZero(direction) &&
-         state.Epsilon == state.Epsilon && state.HitDistance == state.HitDistance;
+  return state.isEasy || isGoodRay(load(state.RayOrigin), load(state.RayDirection), state.Epsilon,
+                                   state.HitDistance);
 }
 
 /// Are rays made moderate for a whole search?
@@ -49,8 +50,7 @@ inline bool scalesWholeSearch(const RtslLaunch &launch) {
 /// that cannot be traced.
 __attribute__((cold, const, noinline)) inline float
 searchFactor(Vec3 origin, Vec3 direction, float epsilon, float distance, bool isTowardsPoint) {
-  if (!isFinite(origin) || !isFinite(direction) || isZero(direction) || epsilon != epsilon ||
-      distance != distance)
+  if (!isGoodRay(origin, direction, epsilon, distance))
     return 0;
   const float size = largest(direction);
   // Towards a point, a search compares its distances with that of the point (isPointHidden).

@@ -104,13 +104,24 @@ void World::noteRanges(std::vector<std::uint32_t> &words) const {
         }
 }
 
-std::vector<std::uint32_t> World::run() {
+template <typename Render>
+std::vector<std::uint32_t> World::renderAtEachDepth(Render render) {
   begin();
   std::vector<std::uint32_t> words;
   launch.status = &status;
   for (std::uint32_t depth : {0u, 2u}) {
     launch.maxDepth = depth;
     status = {};
+    render(words);
+    noteExceptions(words);
+  }
+  launch.status = nullptr;
+  sampleObjects(words);
+  return words;
+}
+
+std::vector<std::uint32_t> World::run() {
+  std::vector<std::uint32_t> all = renderAtEachDepth([&](std::vector<std::uint32_t> &words) {
     for (std::uint32_t pixel = 0; pixel != 6; ++pixel) {
       float color[RTSL_MAX_COLOR] = {};
       code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
@@ -119,12 +130,9 @@ std::vector<std::uint32_t> World::run() {
         words.push_back(wordOf(color[i]));
       words.push_back(hashOfPrinted());
     }
-    noteExceptions(words);
-  }
-  launch.status = nullptr;
-  sampleObjects(words);
-  noteRanges(words);
-  return words;
+  });
+  noteRanges(all);
+  return all;
 }
 
 void World::renderByLane(std::vector<float> &pixels) {
@@ -162,12 +170,7 @@ void World::renderBySample(std::vector<float> &pixels) {
 }
 
 std::vector<std::uint32_t> World::render() {
-  begin();
-  std::vector<std::uint32_t> words;
-  launch.status = &status;
-  for (std::uint32_t depth : {0u, 2u}) {
-    launch.maxDepth = depth;
-    status = {};
+  return renderAtEachDepth([&](std::vector<std::uint32_t> &words) {
     std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height *
                               code.colorComponents);
     if (code.megakernel.runLane)
@@ -177,11 +180,7 @@ std::vector<std::uint32_t> World::render() {
     for (float component : pixels)
       words.push_back(wordOf(component));
     words.push_back(hashOfPrinted());
-    noteExceptions(words);
-  }
-  launch.status = nullptr;
-  sampleObjects(words);
-  return words;
+  });
 }
 
 bool World::hitSomething() const {

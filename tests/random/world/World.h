@@ -72,6 +72,9 @@ private:
   bool derivesFrom(const runtime::ClassInfo &info, const std::string &base) const;
 
   void begin();
+  /// What render(words) and the objects give with each limit of the depth.
+  template <typename Render>
+  std::vector<std::uint32_t> renderAtEachDepth(Render render);
   void noteExceptions(std::vector<std::uint32_t> &words);
   void sampleObjects(std::vector<std::uint32_t> &words);
   void noteRanges(std::vector<std::uint32_t> &words) const;
