@@ -195,15 +195,33 @@ std::uint64_t GpuRenderer::sliceBytes() {
 RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
   const auto place = [&](auto &values, auto *&address) {
     const std::size_t bytes = values.size() * sizeof values[0];
-    if (bytes == 0)
-      return;
-    if (!address)
-      address = reinterpret_cast<decltype(values.data())>(
-          allocate(pixelCount() * (bytes / sums.pixels()), "the sums of the pixels"));
-    device.upload(reinterpret_cast<Address>(address), values.data(), bytes);
+    if (bytes > 0 && !address)
+      address =
+          reinterpret_cast<decltype(values.data())>(allocate(bytes, "the sums of the pixels"));
   };
   forEachList(place, sums, sumsOnDevice);
   return sumsOnDevice;
+}
+
+void GpuRenderer::uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) {
+  const auto upload = [&](const auto &values, auto *address) {
+    const std::size_t ofPixel = values.size() / sums.pixels();
+    if (ofPixel > 0)
+      device.upload(reinterpret_cast<Address>(address + first * ofPixel),
+                    values.data() + first * ofPixel, count * ofPixel * sizeof values[0]);
+  };
+  forEachList(upload, sums, sumsOnDevice);
+}
+
+void GpuRenderer::fetchSums(PixelSums &sums, std::size_t first, std::size_t count) {
+  const auto fetch = [&](auto &values, auto *address) {
+    const std::size_t ofPixel = values.size() / sums.pixels();
+    if (ofPixel > 0)
+      device.download(values.data() + first * ofPixel,
+                      reinterpret_cast<Address>(address + first * ofPixel),
+                      count * ofPixel * sizeof values[0]);
+  };
+  forEachList(fetch, sums, sumsOnDevice);
 }
 
 RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {
@@ -218,16 +236,6 @@ RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {
   clear(ownSums.counted, 1);
   clear(ownSums.taken, 1);
   return ownSums;
-}
-
-void GpuRenderer::fetchSums() {
-  const auto fetch = [&](auto &values, auto *&address) {
-    if (values.empty())
-      return;
-    device.download(values.data(), reinterpret_cast<Address>(address),
-                    values.size() * sizeof values[0]);
-  };
-  forEachList(fetch, *sums, sumsOnDevice);
 }
 
 double GpuRenderer::runLanes(const RtslJob &job) {

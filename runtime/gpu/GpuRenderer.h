@@ -63,8 +63,9 @@ private:
   std::uint64_t sliceBytes() override;
   double launchSeconds() const override;
   RtslPixelSums placeSums(PixelSums &sums) override;
+  void uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) override;
+  void fetchSums(PixelSums &sums, std::size_t first, std::size_t count) override;
   RtslPixelSums clearedSums(std::uint64_t pixels) override;
-  void fetchSums() override;
   double runLanes(const RtslJob &job) override;
   double addSamples(const RtslJob &job) override;
   std::uint64_t get(Address number) override;

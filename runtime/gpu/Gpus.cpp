@@ -39,9 +39,9 @@ std::unique_ptr<Backend> Gpus::prepare(const GpuCode &code, FlatScene scene,
     throw Error(message::gpusShareNoBuffers());
   auto backend = std::make_unique<SeveralDevices>(
       devices.size(),
-      [&](std::size_t i, const RenderOptions &ofPart) -> std::unique_ptr<Megakernel> {
+      [&](std::size_t i) -> std::unique_ptr<Megakernel> {
         devices[i]->use();
-        auto renderer = std::make_unique<GpuRenderer>(*devices[i], code, scene, ofPart, kept[i]);
+        auto renderer = std::make_unique<GpuRenderer>(*devices[i], code, scene, options, kept[i]);
         renderers[i] = renderer.get();
         return renderer;
       },

@@ -37,7 +37,10 @@ private:
   std::uint64_t samplesInFlight() const override { return threads.count(); }
   std::uint64_t sliceBytes() override { return std::uint64_t(64) << 20; }
   double launchSeconds() const override { return std::numeric_limits<double>::infinity(); }
+  // The sums are used where they are.
   RtslPixelSums placeSums(PixelSums &sums) override { return sums.pointers(); }
+  void uploadSums(const PixelSums &, std::size_t, std::size_t) override {}
+  void fetchSums(PixelSums &, std::size_t, std::size_t) override {}
   RtslPixelSums clearedSums(std::uint64_t pixels) override;
   double runLanes(const RtslJob &job) override;
   double addSamples(const RtslJob &job) override;

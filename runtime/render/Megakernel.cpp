@@ -51,7 +51,8 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
 Megakernel::Megakernel(FlatScene scene, const RenderOptions &options,
                        std::shared_ptr<DeviceTrees> kept)
     : Backend(options), scene(std::move(scene)), deviceTrees(std::move(kept)),
-      colorComponents(this->scene.launch().colorComponents) {}
+      colorComponents(this->scene.launch().colorComponents),
+      keptRows{{0, windowOf(options).height()}} {}
 
 void Megakernel::prepare() {
   const Clock::time_point start = Clock::now();
@@ -122,20 +123,32 @@ void Megakernel::setWindow(const Window &window) {
   windowPixels = window.pixels();
 }
 
-RenderStatistics Megakernel::renderPart(const Window &part, std::uint32_t samples,
-                                        PixelSums *partSums, float *to, Watch &watch) {
+RenderStatistics Megakernel::renderPart(const Window &part, std::uint32_t samples, float *to,
+                                        Watch &watch) {
   setWindow(part);
   samplesOfPixel = samples;
-  sums = partSums;
-  if (sums)
-    uploadSums();
+  sums = nullptr;
   beginAt(to);
   run(watch);
-  RenderStatistics statistics = finish();
-  if (sums)
-    fetchSums();
-  sums = nullptr;
-  return statistics;
+  return finish();
+}
+
+void Megakernel::keepSums(PixelSums &all, std::vector<Rows> rows) {
+  setWindow(windowOf(options));
+  sums = &all;
+  keptRows = std::move(rows);
+}
+
+void Megakernel::keepRows(std::vector<Rows> rows) {
+  keptRows = std::move(rows);
+  placeOpenPixels();
+}
+
+RenderStatistics Megakernel::renderKept(std::uint32_t samples, Watch &watch) {
+  samplesOfPixel = samples;
+  begin();
+  run(watch);
+  return finish();
 }
 
 /// Makes the trees those of a scene without trees that was copied there.
@@ -175,7 +188,7 @@ void Megakernel::beginAt(float *to) {
   job.pixels = reinterpret_cast<float *>(clearedPixels());
   leastTaken = 0;
   isUneven = false;
-  openPixels = windowPixels;
+  ownPixels = openPixels = windowPixels;
   job.places = nullptr;
   if (samplesAtOnce(openPixels) < samplesOfPixel && options.wantsPicture)
     job.sums = clearedSums(windowPixels); // of a rendering that ends with its picture
@@ -248,12 +261,12 @@ RenderStatistics Megakernel::finish() {
   RenderStatistics statistics = readStatus(status, ofRun, window);
   statistics.kernelSeconds = kernelSeconds;
   if (leastTaken == samplesOfPixel) {
-    statistics.pixels = windowPixels;
+    statistics.pixels = ownPixels;
     statistics.samples = openPixels * samplesOfPixel;
   } else { // pixels have samples of the slice in the order of their numbers
     statistics.samples = openPixels * leastTaken + samplesOfSlice;
     if (leastTaken + job.sampleCount == samplesOfPixel)
-      statistics.pixels = windowPixels - openPixels + samplesOfSlice / job.sampleCount;
+      statistics.pixels = ownPixels - openPixels + samplesOfSlice / job.sampleCount;
   }
   if (!stepCounts.empty()) {
     download(stepCounts.data(), reinterpret_cast<Address>(job.stepCounts),
@@ -269,23 +282,47 @@ RenderStatistics Megakernel::finish() {
 
 void Megakernel::uploadSums() {
   placedSums = placeSums(*sums);
+  for (const Rows &rows : keptRows)
+    uploadRows(rows);
   const SampleCounts counts = countSamples(*sums);
   leastTaken = counts.least;
   isUneven = counts.least < counts.most;
-  openPixels = counts.openPixels;
   placeOpenPixels();
+}
+
+void Megakernel::fetchSums() {
+  for (const Rows &rows : keptRows)
+    fetchRows(rows);
+}
+
+void Megakernel::uploadRows(const Rows &rows) {
+  const std::size_t width = job.width;
+  uploadSums(*sums, rows.y0 * width, rows.height() * width);
+}
+
+void Megakernel::fetchRows(const Rows &rows) {
+  const std::size_t width = job.width;
+  fetchSums(*sums, rows.y0 * width, rows.height() * width);
 }
 
 /// Lists the pixels that take samples, if others do not.
 void Megakernel::placeOpenPixels() {
   job.places = nullptr;
-  if (openPixels == windowPixels || openPixels == 0)
+  ownPixels = 0;
+  for (const Rows &rows : keptRows)
+    ownPixels += std::uint64_t(rows.height()) * job.width;
+  openPixels = ownPixels;
+  if (ownPixels == windowPixels && !sums->isAdaptive())
     return;
   std::vector<std::uint32_t> places;
-  places.reserve(openPixels);
-  for (std::uint32_t place = 0; place < windowPixels; ++place)
-    if (sums->isOpen(device::pixelAt(job, place).number(job)))
-      places.push_back(place);
+  places.reserve(ownPixels);
+  for (const Rows &rows : keptRows)
+    for (std::uint32_t place = rows.y0 * job.width; place < rows.y1 * job.width; ++place)
+      if (sums->isOpen(device::pixelAt(job, place).number(job)))
+        places.push_back(place);
+  openPixels = places.size();
+  if (openPixels == windowPixels || openPixels == 0)
+    return;
   if (!placesAddress)
     placesAddress = allocate(pixelCount() * sizeof places[0], "the pixels that take samples");
   upload(placesAddress, places.data(), places.size() * sizeof places[0]);

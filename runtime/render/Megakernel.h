@@ -10,6 +10,7 @@
 #include "runtime/accel/DeviceTrees.h"
 #include "runtime/accel/FlatScene.h"
 #include "runtime/render/Backend.h"
+#include "runtime/render/Stripes.h"
 #include "runtime/render/passes/PixelSums.h"
 
 #include <cstdint>
@@ -29,13 +30,27 @@ RenderStatistics readStatus(const RtslStatus &status, const RenderOptions &optio
 
 class Megakernel : public Backend {
 public:
-  /// Renders rows of the picture until each pixel has `samplesOfPixel` samples: the share of one of
-  /// several devices (SeveralDevices.h). A part may not have more pixels than the options. It goes
-  /// on with `sums`, those of the part; if null, it writes its pixels to `to`. Throws as
-  /// Backend::render, but not Cancelled.
-  RenderStatistics renderPart(const Window &part, std::uint32_t samplesOfPixel, PixelSums *sums,
-                              float *to, Watch &watch);
-  /// A thread calls it before renderPart(), unless it made the backend.
+  /// Renders rows of the picture, with so many samples of each pixel, and writes the pixels to
+  /// `to`: the share of one of several devices (SeveralDevices.h). Throws as Backend::render, but
+  /// not Cancelled.
+  RenderStatistics renderPart(const Window &part, std::uint32_t samplesOfPixel, float *to,
+                              Watch &watch);
+
+  // The share of one of several devices in a rendering in passes: rows from the top of what is
+  // rendered, each of them whole bands (device::rowsOfBand), whose sums stay on the device.
+  /// Begins with `all`, the sums of all rows, of which uploadSums() takes these.
+  void keepSums(PixelSums &all, std::vector<Rows> rows);
+  /// Keeps other rows from now on. Between passes that are done, after fetchRows() by the device
+  /// that had them, and uploadRows().
+  void keepRows(std::vector<Rows> rows);
+  /// Renders until each pixel of these rows has so many samples. Throws as renderPart.
+  RenderStatistics renderKept(std::uint32_t samplesOfPixel, Watch &watch);
+  void uploadSums() final;
+  void fetchSums() final;
+  void uploadRows(const Rows &rows);
+  void fetchRows(const Rows &rows);
+
+  /// A thread calls it before these, unless it made the backend.
   virtual void enterThread() {}
   /// How many samples it renders before it adds them up.
   std::uint64_t samplesInMemory() const { return mostInMemory; }
@@ -88,8 +103,11 @@ private:
   virtual std::uint64_t sliceBytes() = 0;
   /// A launch takes no samples any more after this time.
   virtual double launchSeconds() const = 0;
-  /// Copies sums to the device, and gives their addresses there.
+  /// Where sums of so many pixels are on the device.
   virtual RtslPixelSums placeSums(PixelSums &sums) = 0;
+  /// Copy those of `count` pixels from `first` on there, and back.
+  virtual void uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) = 0;
+  virtual void fetchSums(PixelSums &sums, std::size_t first, std::size_t count) = 0;
   /// The addresses of sums on the device without samples, and without squares.
   virtual RtslPixelSums clearedSums(std::uint64_t pixels) = 0;
   /// Run all lanes of the job and wait for them: for its samples, and to add these to the sums.
@@ -104,8 +122,6 @@ private:
   void beginAt(float *to);
   void run(Watch &watch) final;
   RenderStatistics finish() final;
-  void uploadSums() final;
-  void fetchSums() override {}
   void setWindow(const Window &window);
   /// `share` gives what is done of the run, for a number of samples of the slice.
   void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
@@ -126,8 +142,10 @@ private:
   std::uint64_t windowPixels = 0; // of the job
   std::uint64_t mostInMemory = 1; // samples of a slice
   RtslPixelSums placedSums{};
-  // Of the sums: pixels that take samples, how many each of them has, and whether some have more.
-  std::uint64_t openPixels = 0;
+  std::vector<Rows> keptRows; // those with sums
+  // Of the run: its pixels, those that take samples, how many each of these has, and whether some
+  // have more.
+  std::uint64_t ownPixels = 0, openPixels = 0;
   std::uint32_t leastTaken = 0;
   bool isUneven = false;
   // Of the last run:

@@ -1,19 +1,20 @@
 #include "runtime/render/SeveralDevices.h"
 
+#include "runtime/device/organisations/Slice.h"
 #include "runtime/render/Watch.h"
+#include "support/Clock.h"
 #include "support/Parallel.h"
 #include "support/WorkerThreads.h"
 
 #include <algorithm>
-#include <optional>
+#include <atomic>
 #include <utility>
 
 namespace rtsl::runtime {
 
 namespace {
 
-/// The rows of a picture are numbered in bands of so many (runtime/device/organisations/Slice.h).
-constexpr std::uint32_t rowsOfBand = 4;
+using device::rowsOfBand;
 
 /// With so many samples of a pixel the lanes of a warp, which begin with consecutive samples, begin
 /// with the same pixel.
@@ -39,18 +40,10 @@ Window RowsLeft::take() {
   return rows;
 }
 
-RenderOptions SeveralDevices::optionsOfPart(const RenderOptions &options, std::size_t devices) {
-  RenderOptions part = options;
-  const Window whole = windowOf(options);
-  part.crop = RowsLeft(whole, devices, whole.pixels()).take();
-  return part;
-}
-
 SeveralDevices::SeveralDevices(std::size_t count, const Make &make, const RenderOptions &options)
-    : Backend(options), devices(count), rowsLeft(windowOf(options), count, 0) {
-  const RenderOptions ofPart = optionsOfPart(options, count);
-  forEachInParallel(unsigned(count), count,
-                    [&](std::size_t i) { devices[i].backend = make(i, ofPart); });
+    : Backend(options), devices(count), rowsLeft(windowOf(options), count, 0),
+      stripes(windowOf(options).height(), count) {
+  forEachInParallel(unsigned(count), count, [&](std::size_t i) { devices[i].backend = make(i); });
   for (const Device &device : devices)
     buildSeconds = std::max(buildSeconds, device.backend->secondsToPrepare());
   trees = devices.front().backend->builtTrees();
@@ -59,39 +52,64 @@ SeveralDevices::SeveralDevices(std::size_t count, const Make &make, const Render
 }
 
 void SeveralDevices::begin() {
+  if (sums)
+    moveStripes();
   met = {};
-  // With sums, which are copied to the devices and back, all that is possible.
   std::uint64_t mostPixels = pixelCount();
-  if (!sums)
-    for (const Device &device : devices)
-      mostPixels = std::min(mostPixels, device.backend->samplesInMemory() /
-                                            std::min(samplesOfPixel, enoughSamples));
+  for (const Device &device : devices)
+    mostPixels = std::min(mostPixels, device.backend->samplesInMemory() /
+                                          std::min(samplesOfPixel, enoughSamples));
   rowsLeft = {windowOf(options), devices.size(), mostPixels};
   for (Device &device : devices)
     device = {std::move(device.backend)};
 }
 
 void SeveralDevices::run(Watch &watch) {
-  runOnThreads(unsigned(devices.size()), 0,
-               [&](unsigned number) { runDevice(devices[number], watch); });
+  std::atomic<std::size_t> next{0}; // if there are fewer threads, one of them runs two devices
+  runOnThreads(unsigned(devices.size()), 0, [&](unsigned) {
+    for (std::size_t i = next++; i < devices.size(); i = next++)
+      runDevice(i, watch);
+  });
   for (const Device &device : devices)
     met.kernelSeconds = std::max(met.kernelSeconds, device.kernelSeconds);
+  mayMove = sums && met.pixels == pixelCount();
 }
 
 /// What the thread of a device does.
-void SeveralDevices::runDevice(Device &device, Watch &watch) {
+void SeveralDevices::runDevice(std::size_t i, Watch &watch) {
+  Device &device = devices[i];
+  double pixels = 0; // of what it renders now
+  RenderOptions ofPart = options;
+  ofPart.cancel = nullptr; // `watch` knows when it ends what was begun
+  ofPart.progress = [&](double share) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    device.pixelsDone = device.pixelsBefore + share * pixels;
+    watch.report(shareDone());
+  };
+  Watch watchOfPart(ofPart, &watch);
+  const Clock::time_point start = Clock::now();
   device.backend->enterThread();
   try {
-    while (!watch.isStopped()) {
-      const Window rows = takeRows();
-      if (rows.pixels() == 0)
-        return;
-      renderRows(device, rows, watch);
-    }
+    if (sums) {
+      for (const Rows &rows : stripes.of(i))
+        pixels += double(rows.height()) * windowOf(options).width();
+      add(device, device.backend->renderKept(samplesOfPixel, watchOfPart));
+    } else
+      while (!watch.isStopped()) {
+        const Window rows = takeRows();
+        if (rows.pixels() == 0)
+          break;
+        pixels = double(rows.pixels());
+        const std::uint64_t first = std::uint64_t(rows.y0 - windowOf(options).y0) * rows.width();
+        add(device,
+            device.backend->renderPart(rows, samplesOfPixel,
+                                       picture.pixels.data() + first * channels(), watchOfPart));
+      }
   } catch (...) {
     watch.stop(); // the other devices
     throw;
   }
+  device.seconds = secondsSince(start);
 }
 
 Window SeveralDevices::takeRows() {
@@ -99,33 +117,51 @@ Window SeveralDevices::takeRows() {
   return rowsLeft.take();
 }
 
-void SeveralDevices::renderRows(Device &device, const Window &rows, Watch &watch) {
-  const double before = device.pixelsDone;
-  RenderOptions ofRows = options;
-  ofRows.progress = [&](double share) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    device.pixelsDone = before + share * double(rows.pixels());
-    watch.report(shareDone());
+void SeveralDevices::uploadSums() {
+  const SampleCounts counts = countSamples(*sums);
+  mayMove = mayMove && counts.least == counts.most;
+  forEachInParallel(unsigned(devices.size()), devices.size(), [&](std::size_t i) {
+    devices[i].backend->enterThread();
+    devices[i].backend->keepSums(*sums, stripes.of(i));
+    devices[i].backend->uploadSums();
+  });
+}
+
+void SeveralDevices::fetchSums() {
+  forEachInParallel(unsigned(devices.size()), devices.size(), [&](std::size_t i) {
+    devices[i].backend->enterThread();
+    devices[i].backend->fetchSums();
+  });
+}
+
+/// Lets devices that took longer than others give stripes to them.
+void SeveralDevices::moveStripes() {
+  constexpr double longEnough = 0.01; // to be measured
+  std::vector<double> seconds;
+  for (const Device &device : devices)
+    seconds.push_back(device.seconds);
+  if (!mayMove || *std::max_element(seconds.begin(), seconds.end()) < longEnough)
+    return;
+  const auto on = [&](std::size_t i) -> Megakernel & {
+    devices[i].backend->enterThread();
+    return *devices[i].backend;
   };
-  Watch watchOfRows(ofRows, &watch);
-  std::optional<PixelSums> sumsOfRows;
-  const std::size_t first = std::size_t(rows.y0 - windowOf(options).y0) * rows.width();
-  if (sums)
-    sumsOfRows = sums->part(first, rows.pixels());
-  RenderStatistics part =
-      device.backend->renderPart(rows, samplesOfPixel, sumsOfRows ? &*sumsOfRows : nullptr,
-                                 picture.pixels.data() + first * channels(), watchOfRows);
-  if (sums)
-    sums->putPart(first, *sumsOfRows);
-  const std::lock_guard<std::mutex> lock(mutex);
-  device.pixelsDone = before + double(rows.pixels());
-  add(device, std::move(part));
+  const std::vector<Stripes::Move> moves = stripes.balance(seconds);
+  for (const Stripes::Move &move : moves) {
+    on(move.from).fetchRows(move.rows);
+    on(move.to).uploadRows(move.rows);
+  }
+  if (!moves.empty())
+    for (std::size_t i = 0; i < devices.size(); ++i)
+      on(i).keepRows(stripes.of(i));
 }
 
 /// Adds what a device has rendered and met.
 void SeveralDevices::add(Device &device, RenderStatistics &&part) {
+  const std::lock_guard<std::mutex> lock(mutex);
   device.kernelSeconds += part.kernelSeconds;
   device.samples += part.samples;
+  device.pixelsDone = device.pixelsBefore += double(part.pixels);
   met.samples += part.samples;
   met.pixels += part.pixels;
   met.samplesNotFinite += part.samplesNotFinite;

@@ -2,13 +2,16 @@
 //
 // Each device has the scene, its program, and a thread of the host. The devices take rows of the
 // picture, so many at once that all of them end at nearly the same time: a share of what is left,
-// and less and less. A pixel is rendered by one device, which adds its samples in their order, so
-// the picture has the bits of one device.
+// and less and less. In a rendering in passes each device keeps its rows, whose sums stay there
+// until the picture is wanted, and stripes of rows move from slow devices to others between passes.
+// A pixel is rendered by one device at a time, which adds its samples in their order, so the
+// picture has the bits of one device.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/render/Megakernel.h"
+#include "runtime/render/Stripes.h"
 
 #include <functional>
 #include <memory>
@@ -36,14 +39,9 @@ private:
 
 class SeveralDevices final : public Backend {
 public:
-  /// Options for the backend of each device: those of a part, which has the most rows that a device
-  /// takes at once.
-  static RenderOptions optionsOfPart(const RenderOptions &options, std::size_t devices);
-
-  /// `make(i, options)` makes the backend of device i, with these options; it is called for all
-  /// devices at once, by a thread for each. Throws what it throws.
-  using Make =
-      std::function<std::unique_ptr<Megakernel>(std::size_t, const RenderOptions &optionsOfPart)>;
+  /// `make(i)` makes the backend of device i, for the same options; it is called for all devices at
+  /// once, by a thread for each. Throws what it throws.
+  using Make = std::function<std::unique_ptr<Megakernel>(std::size_t)>;
   SeveralDevices(std::size_t devices, const Make &make, const RenderOptions &options);
 
   /// The number of samples that device i has rendered in the last run.
@@ -55,8 +53,8 @@ private:
   struct Device {
     std::unique_ptr<Megakernel> backend;
     // Of the run:
-    double pixelsDone = 0; // with a share of the rows that it has begun
-    double kernelSeconds = 0;
+    double pixelsBefore = 0, pixelsDone = 0; // without, and with a share of what it has begun
+    double seconds = 0, kernelSeconds = 0;
     std::uint64_t samples = 0;
   };
 
@@ -64,17 +62,22 @@ private:
   void begin() override;
   void run(Watch &watch) override;
   RenderStatistics finish() override { return met; }
+  void uploadSums() override;
+  void fetchSums() override;
 
-  void runDevice(Device &device, Watch &watch);
+  void moveStripes();
+  void runDevice(std::size_t i, Watch &watch);
   Window takeRows();
-  void renderRows(Device &device, const Window &rows, Watch &watch);
   void add(Device &device, RenderStatistics &&part);
   double shareDone() const;
 
   std::vector<Device> devices;
-  std::mutex mutex; // for what follows, and for Device::pixelsDone
+  std::mutex mutex; // for the next two, and for what the devices have done
   RowsLeft rowsLeft;
   RenderStatistics met; // of the run
+
+  Stripes stripes;      // of the rows that are rendered
+  bool mayMove = false; // the last run was a whole pass
 };
 
 } // namespace rtsl::runtime

@@ -31,29 +31,6 @@ PixelSums PixelSums::make(std::uint64_t pixels, std::uint32_t components, bool i
   return sums;
 }
 
-PixelSums PixelSums::part(std::size_t first, std::size_t count) const {
-  PixelSums part;
-  try {
-    const auto copy = [&](const auto &all, auto &some) {
-      const std::size_t perPixel = all.size() / pixels();
-      const auto begin = all.begin() + std::ptrdiff_t(first * perPixel);
-      some.assign(begin, begin + std::ptrdiff_t(count * perPixel));
-    };
-    forEachList(copy, *this, part);
-  } catch (const std::bad_alloc &) {
-    throw Error(message::noMemoryForPixelSums());
-  }
-  return part;
-}
-
-void PixelSums::putPart(std::size_t first, const PixelSums &part) {
-  const auto replace = [&](auto &all, const auto &some) {
-    const std::size_t perPixel = all.size() / pixels();
-    std::copy(some.begin(), some.end(), all.begin() + std::ptrdiff_t(first * perPixel));
-  };
-  forEachList(replace, *this, part);
-}
-
 RtslPixelSums PixelSums::pointers() {
   RtslPixelSums sums{};
   sums.colors = colors.data();

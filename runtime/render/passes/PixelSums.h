@@ -31,11 +31,6 @@ struct PixelSums {
   static PixelSums make(std::uint64_t pixels, std::uint32_t components, bool isAdaptive = false,
                         bool isMeasured = true);
 
-  /// A copy of those of `count` pixels from `first` on. Throws OutOfMemory.
-  PixelSums part(std::size_t first, std::size_t count) const;
-  /// Replaces those of as many pixels as `part` has.
-  void putPart(std::size_t first, const PixelSums &part);
-
   RtslPixelSums pointers();
   std::size_t pixels() const { return taken.size(); }
   bool isEmpty() const { return taken.empty(); }

@@ -14,7 +14,7 @@ std::atomic<unsigned> lanesBegun{0};
 void paint(const RtslJob *job, std::uint32_t) {
   ++lanesBegun;
   const RtslLaunch &launch = *job->launch;
-  const std::uint64_t samples = std::uint64_t(job->width) * job->height * job->sampleCount;
+  const std::uint64_t samples = device::samplesOfSlice(*job);
   while (!__atomic_load_n(&job->status->stop, __ATOMIC_RELAXED)) {
     const std::uint64_t sample = __atomic_fetch_add(&job->status->nextSample, 1, __ATOMIC_RELAXED);
     if (sample >= samples)

@@ -19,8 +19,8 @@ SeveralDevices team(std::size_t devices, const RenderOptions &options,
                     void (*runLane)(const RtslJob *, std::uint32_t) = paint) {
   return SeveralDevices(
       devices,
-      [=](std::size_t, const RenderOptions &ofPart) {
-        return std::make_unique<HostMegakernel>(codeOf(runLane), emptyScene(), ofPart);
+      [=](std::size_t) {
+        return std::make_unique<HostMegakernel>(codeOf(runLane), emptyScene(), options);
       },
       options);
 }
@@ -117,6 +117,37 @@ TEST(SeveralDevices, GoOnWithSums) {
   }
 }
 
+/// A device that takes longer gives rows away between passes.
+TEST(SeveralDevices, ShareWhatIsLeftOfThePasses) {
+  RenderOptions options = small();
+  options.width = 4;
+  options.height = 160;
+  options.samplesPerPixel = 6;
+  options.threads = 1;
+  PartialRendering ofOne, ofSeveral;
+  PassOptions passes;
+  passes.checkpoint = [](const PartialRendering &, bool) {}; // one pass after the other
+  const Image expected =
+      HostMegakernel(codeOf(paint), emptyScene(), options).renderInPasses(passes, nullptr, ofOne);
+  std::vector<std::uint64_t> ofSlow; // its pixels, pass by pass
+  SeveralDevices several(
+      2,
+      [&](std::size_t i) {
+        RenderOptions ofDevice = options;
+        ofDevice.maxDepth = std::uint32_t(i); // the second one takes its time
+        return std::make_unique<HostMegakernel>(codeOf(paint), emptyScene(), ofDevice);
+      },
+      options);
+  const auto progress = [&](const PassState &state) {
+    ofSlow.push_back(several.samplesOf(1) / state.samplesPerPixel);
+  };
+  EXPECT_EQ(several.renderInPasses(passes, progress, ofSeveral).pixels, expected.pixels);
+  EXPECT_EQ(ofSeveral.sums.colors, ofOne.sums.colors);
+  ASSERT_GT(ofSlow.size(), 1u);
+  EXPECT_EQ(ofSlow.front(), 4u * 80);
+  EXPECT_LT(ofSlow.back(), 4u * 50);
+}
+
 TEST(SeveralDevices, NameTheFirstSamplesThatAreNotFinite) {
   RenderOptions options = small();
   options.threads = 1;
@@ -174,12 +205,12 @@ TEST(SeveralDevices, AFaultOfOneEndsAll) {
   options.maxDepth = 1; // the others take their time, so that this one gets a share
   SeveralDevices several(
       3,
-      [](std::size_t i, const RenderOptions &ofPart) {
+      [&](std::size_t i) {
         const auto overflow = [](const RtslJob *job, std::uint32_t) {
           __atomic_store_n(&job->status->problem, RTSL_PROBLEM_STACK, __ATOMIC_RELAXED);
         };
         return std::make_unique<HostMegakernel>(codeOf(i == 1 ? +overflow : paint), emptyScene(),
-                                                ofPart);
+                                                options);
       },
       options);
   EXPECT_THROW(several.render(), Error);
