@@ -67,6 +67,7 @@ std::vector<Row> refractionRows(Path path);
 std::vector<Row> metalRows(Path path);
 std::vector<Row> matrixRows(Path path);
 std::vector<Row> attenuationRows(Path path);
+std::vector<Row> paneRows(Path path);
 
 /// What a program adds to the command line.
 void addOptions(CLI::App &app);

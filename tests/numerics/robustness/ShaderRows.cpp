@@ -15,7 +15,7 @@ std::vector<Row> allRows(Path path) {
   std::vector<Row> rows;
   for (const auto &family : {meshRows, meshTriangleRows, meshSpawnRows, primitiveBoxRows, pixelRows,
                              sphereRows, quadricRows, torusRows, scatteringRows, refractionRows,
-                             metalRows, matrixRows, attenuationRows})
+                             metalRows, matrixRows, attenuationRows, paneRows})
     for (Row &row : family(path))
       rows.push_back(std::move(row));
   return rows;

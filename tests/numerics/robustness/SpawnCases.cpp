@@ -20,6 +20,10 @@ double dot(const Vector &a, const Vector &b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+Vector pointAlong(Vec3 point, double t, Vec3 direction) {
+  return {point.x + t * direction.x, point.y + t * direction.y, point.z + t * direction.z};
+}
+
 float lastPlaceOf(float coordinate) {
   return std::ldexp(1.0f, device::exponentOf(coordinate) - 23);
 }
@@ -60,6 +64,20 @@ double Plane::cosine(Vec3 direction) const {
   return dot(d, normal) / std::sqrt(dot(d, d));
 }
 
+std::optional<double> crossing(const Triangle &triangle, Vec3 point, Vec3 direction) {
+  const Plane plane(triangle);
+  const double t = -plane.distance(point) / dot(difference(direction, {0, 0, 0}), plane.normal);
+  const Vector there = pointAlong(point, t, direction);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 from = triangle.v[i], to = triangle.v[(i + 1) % 3], other = triangle.v[(i + 2) % 3];
+    const Vector inward = cross(plane.normal, difference(to, from));
+    const Vector here = {there[0] - from.x, there[1] - from.y, there[2] - from.z};
+    if (!(dot(inward, here) > 0.02 * dot(inward, difference(other, from))))
+      return std::nullopt;
+  }
+  return t;
+}
+
 std::optional<Gap> gapAbove(Random &random, const Triangle &triangle, Vec3 point, float side) {
   const Plane floor(triangle);
   if (!floor.isGood)
@@ -74,25 +92,16 @@ std::optional<Gap> gapAbove(Random &random, const Triangle &triangle, Vec3 point
   while (!(device::dot(direction, up) * side > 0.125f));
   gap.direction = direction * std::ldexp(1.0f, random.integer(-20, 20));
 
-  const Plane plane(gap.ceiling);
-  const Vector along = {gap.direction.x, gap.direction.y, gap.direction.z};
-  const double t = -plane.distance(gap.point) / dot(along, plane.normal);
-  const Vector crossing = {gap.point.x + t * along[0], gap.point.y + t * along[1],
-                           gap.point.z + t * along[2]};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 from = gap.ceiling.v[i], to = gap.ceiling.v[(i + 1) % 3],
-               other = gap.ceiling.v[(i + 2) % 3];
-    const Vector inward = cross(plane.normal, difference(to, from));
-    const Vector here = {crossing[0] - from.x, crossing[1] - from.y, crossing[2] - from.z};
-    if (!(dot(inward, here) > 0.02 * dot(inward, difference(other, from))))
-      return std::nullopt;
-  }
+  const std::optional<double> t = crossing(gap.ceiling, gap.point, gap.direction);
+  if (!t)
+    return std::nullopt;
+  const Vector there = pointAlong(gap.point, *t, gap.direction);
   const double wide =
       lastPlaceOf(std::max(triangle.largestCoordinate(), gap.ceiling.largestCoordinate()));
-  gap.ulps = (dot(crossing, floor.normal) -
-              (floor.normal[0] * floor.base.x + floor.normal[1] * floor.base.y +
-               floor.normal[2] * floor.base.z)) *
-             side / wide;
+  gap.ulps =
+      (dot(there, floor.normal) - (floor.normal[0] * floor.base.x + floor.normal[1] * floor.base.y +
+                                   floor.normal[2] * floor.base.z)) *
+      side / wide;
   return gap;
 }
 

@@ -29,6 +29,11 @@ struct Plane {
   double cosine(device::Vec3 direction) const;
 };
 
+/// Where a ray meets a triangle that is no sliver, in units of its direction; behind its origin
+/// too, and nothing outside and near an edge.
+std::optional<double> crossing(const Triangle &triangle, device::Vec3 point,
+                               device::Vec3 direction);
+
 /// A second triangle at a small distance from one that was hit, and a ray from the hit point
 /// through both.
 struct Gap {
