@@ -43,14 +43,14 @@ public:
   explicit CopiedPayload(ir::TracePayloadOp trace) : trace(trace) {}
 
   /// Whether all of it is copied from the ray's own payload right before the trace and back right
-  /// after it, and nothing else uses it.
+  /// after it, and nothing else reads it. Where it is set before, as a variable is that is declared
+  /// without a value, no load could tell.
   bool find() {
     copy = trace.getPayload().getDefiningOp<ir::VarOp>();
     if (!copy || !findUsers(copy.getResult()))
       return false;
-    const unsigned leaves = ir::leafCount(ir::pointee(copy.getResult()));
-    return findCopyTo() && sent.size() == leaves && findCopyBack() && returned.size() == leaves &&
-           loads.empty() && stores.empty();
+    leaves = ir::leafCount(ir::pointee(copy.getResult()));
+    return findCopyTo() && findCopyBack() && returned.size() == leaves && loads.empty();
   }
 
   void forward() {
@@ -58,6 +58,8 @@ public:
     trace.getPayloadMutable().assign(
         ir::PayloadOp::create(builder, trace.getLoc(), copy.getType()).getResult());
     for (Operation *op : erased)
+      op->erase();
+    for (Operation *op : stores) // of what is overwritten
       op->erase();
   }
 
@@ -69,6 +71,8 @@ private:
     return llvm::all_of(address.getUsers(), [&](Operation *user) {
       if (llvm::isa<ir::FieldOp, ir::ElementOp>(user))
         return findUsers(user->getResult(0));
+      if (user != trace && ir::leafCount(ir::pointee(address)) != 1)
+        return false; // more than one part at once
       if (llvm::isa<ir::LoadOp>(user))
         return loads.insert(user).second;
       auto store = llvm::dyn_cast<ir::StoreOp>(user);
@@ -85,11 +89,11 @@ private:
     return own && own.getType() == copy.getType() && other && *other == path;
   }
 
-  /// From the trace back to the first store: the last store of each part is of the same part of the
-  /// own payload, which nothing between may change.
+  /// From the trace back until all parts are found: the last store of each part is of the same part
+  /// of the own payload, which nothing between may change.
   bool findCopyTo() {
     llvm::SmallPtrSet<Operation *, 8> awaited; // loads of what is stored later
-    for (Operation *op = trace->getPrevNode(); op && !(stores.empty() && awaited.empty());
+    for (Operation *op = trace->getPrevNode(); op && !(sent.size() == leaves && awaited.empty());
          op = op->getPrevNode()) {
       if (awaited.erase(op) || mlir::isMemoryEffectFree(op) || llvm::isa<ir::LoadOp>(op))
         continue;
@@ -105,7 +109,7 @@ private:
         return false;
       awaited.insert(load);
     }
-    return awaited.empty();
+    return sent.size() == leaves && awaited.empty();
   }
 
   bool findCopyBack() {
@@ -133,7 +137,8 @@ private:
 
   ir::TracePayloadOp trace;
   ir::VarOp copy;
-  llvm::SmallPtrSet<Operation *, 16> loads, stores; // of the copy, not yet found
+  unsigned leaves = 0;                              // parts that are not structs or arrays
+  llvm::SmallPtrSet<Operation *, 16> loads, stores; // of the copy, not yet in `erased`
   llvm::StringMap<bool> sent, returned;             // paths
   llvm::SmallVector<Operation *, 32> erased;        // users before what they use
 };

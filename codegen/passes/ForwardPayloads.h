@@ -15,6 +15,8 @@
 //     rtsl.store %back, %x
 //     return
 //
+// What else is stored to the copy, such as its first value, is overwritten before the trace.
+//
 // For traces that remain calls; those that are split have TailTraces.cpp.
 //
 //===----------------------------------------------------------------------===//
