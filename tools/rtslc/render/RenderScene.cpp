@@ -207,7 +207,8 @@ private:
     if (viewer->failure().empty())
       return true;
     messages.diagnostics
-        .report(Code::viewerUnreachable, {}, options.tev.host, options.tev.port, viewer->failure())
+        .report(Code::viewerUnreachable, {}, options.tev.shownHost(), options.tev.port,
+                viewer->failure())
         .note("start tev there first; it listens on port 14158 unless told otherwise");
     return false;
   }
@@ -360,6 +361,17 @@ private:
                                        : fmt::format("{}\n", fmt::join(summary.printed, "\n")));
   }
 
+  /// Called after the picture is in its file, because a slow viewer takes its time.
+  void finishShowing() {
+    if (!viewer)
+      return;
+    const auto shown = showPhase("sending the picture to the viewer");
+    viewer->finish();
+    if (!viewer->failure().empty())
+      messages.diagnostics.report(Code::viewerLost, {}, options.tev.shownHost(), options.tev.port,
+                                  viewer->failure());
+  }
+
   /// Says what the rendering has met.
   void describe() {
     if (!summary.statistics.notFinite.empty())
@@ -378,9 +390,7 @@ private:
         messages.report(warning);
     if (checkpoint)
       checkpoint->report(messages);
-    if (viewer && !viewer->failure().empty())
-      messages.diagnostics.report(Code::viewerLost, {}, options.tev.host, options.tev.port,
-                                  viewer->failure());
+    finishShowing();
     printSummary(options, summary);
   }
 

@@ -7,46 +7,52 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "TevConnection.h"
 #include "runtime/image/Image.h"
-#include "tools/common/OptionValues.h"
 
+#include <condition_variable>
+#include <mutex>
+#include <optional>
 #include <string>
+#include <thread>
 
 namespace rtsl::tool {
 
-struct TevOptions {
-  std::string host; // empty: no viewer
-  std::string port;
-};
-
-/// Adds --tev.
-void addTevOption(CLI::App &command, TevOptions &options);
-
-/// The connection to a viewer, for one picture.
+/// A viewer that shows one picture while it is rendered. A thread sends what it shows, so that the
+/// rendering does not wait for a slow viewer, which is sent fewer of the pictures so far.
 class TevViewer {
 public:
   /// Connects; `failure()` is set if that is not possible. `name`: of the picture, in the viewer.
   TevViewer(const TevOptions &options, std::string name);
+  /// Sends nothing more, not even the rest of a message.
   ~TevViewer();
   TevViewer(const TevViewer &) = delete;
   TevViewer &operator=(const TevViewer &) = delete;
 
-  /// Shows a picture in place of the last one, as red, green and blue. Nothing happens after a
-  /// failure.
+  /// Shows a picture in place of the last one, as red, green and blue, as soon as the viewer can
+  /// take it. Pictures that are given before that are left out.
   void show(const runtime::Image &image);
 
-  /// Why the viewer shows nothing more; empty: it does.
-  const std::string &failure() const { return whyNot; }
+  /// Waits until the last picture is sent. `failure()` says whether that was possible.
+  void finish();
+
+  /// Why the viewer shows nothing more; empty: it does. Valid before `show` and after `finish`.
+  const std::string &failure() const { return connection.failure(); }
 
 private:
-  void connectTo(const TevOptions &options);
-  void send(const std::string &message);
-  void fail(int error);
+  void run();
+  void send(const runtime::Image &rgb);
+  bool isOutdated();
 
   const std::string name;
-  int socket = -1;
+  TevConnection connection;
   bool hasPicture = false; // the viewer knows its size
-  std::string whyNot;
+
+  std::mutex mutex; // of what follows
+  std::condition_variable changed;
+  std::optional<runtime::Image> next; // to be shown
+  bool isLast = false;                // no other one will follow
+  std::thread thread;
 };
 
 } // namespace rtsl::tool

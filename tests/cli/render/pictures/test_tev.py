@@ -1,24 +1,46 @@
 """rtslc render --tev: what it sends to a viewer, here a small server, and what it reports."""
 
+import json
 import socket
 import struct
+import subprocess
 import threading
+import time
 import unittest
 
 from exr_files import channels as exr_channels
-from harness import USAGE, Case
+from harness import FINE, RTSLC, SECONDS, USAGE, Case
 
 CREATE, UPDATE = 4, 3
+
+CAMERA = """class Camera : rt_Camera;
+void generateRay() {
+  rt_RayOrigin = vec3(0.0);
+  rt_RayDirection = vec3(rt_ScreenCoord.xy, 1.0);
+}
+"""
+# A picture of 8 MB that takes no time.
+SKY = {
+    "rtsl": 1,
+    "import": ["Camera.rtsl"],
+    "camera": {"class": "Camera"},
+    "background": [0.25, 0.5, 1],
+    "render": {"size": [1024, 700]},
+}
 
 
 class Viewer:
     """Takes one connection, and keeps the pictures that its messages make. With `most`, hangs up
-    after that many bytes."""
+    after that many bytes. With `reads`, an event, reads nothing before it is set."""
 
-    def __init__(self, most=None):
-        self.most = most
+    def __init__(self, most=None, reads=None, family=socket.AF_INET):
+        self.most, self.reads = most, reads
         self.pictures, self.updates, self.order = {}, 0, []
-        self.server = socket.create_server(("127.0.0.1", 0))
+        self.server = socket.socket(family)
+        if reads:
+            self.server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        self.server.bind(("::1" if family == socket.AF_INET6 else "127.0.0.1", 0))
+        self.server.listen()
         self.port = self.server.getsockname()[1]
         self.thread = threading.Thread(target=self.run)
         self.thread.start()
@@ -26,6 +48,8 @@ class Viewer:
     def run(self):
         connection, _ = self.server.accept()
         with connection:
+            if self.reads:
+                self.reads.wait()
             data = b""
             while self.most is None or len(data) < self.most:
                 part = connection.recv(1 << 16)
@@ -114,6 +138,21 @@ class Tev(Case):
             else:
                 self.assertTrue(all(value >= 0 for value in channels["G"]))
 
+    def test_addresses_of_ipv6(self):
+        self.glass_scene()
+        small = ("scene.json", "--size", "40x20", "--spp", "1", "-o", "a.exr", "--tev")
+        try:
+            viewer = Viewer(family=socket.AF_INET6)
+        except OSError:
+            self.skipTest("this machine has no IPv6")
+        self.run_rtslc("render", *small, f"[::1]:{viewer.port}")
+        viewer.end()
+        self.assertEqual(list(viewer.pictures), ["a.exr"])
+        messages = self.diagnose("render", *small, f"[::1]:{viewer.port}")
+        self.assert_message(
+            messages, "E0908", f"cannot reach a viewer at `[::1]:{viewer.port}`: Connection refused"
+        )
+
     def test_it_is_shown_while_it_is_rendered(self):
         self.glass_scene()
         viewer = Viewer()
@@ -133,6 +172,53 @@ class Tev(Case):
         viewer.end()
         self.assertGreater(viewer.updates, 3)  # three of a picture
         self.assertEqual(viewer.order.count(CREATE), 1)
+
+    def until_the_file_is_there(self, viewer, *options):
+        """Renders a picture larger than what the system keeps for a viewer that does not read, and
+        gives the messages. The viewer reads when the file is there, if it waits for that."""
+        self.write("Camera.rtsl", CAMERA)
+        self.write("scene.json", json.dumps(SKY))
+        rendering = subprocess.Popen(
+            [RTSLC, "render", "scene.json", "-o", "a.exr", "-O0", *options]
+            + ["--tev", f"127.0.0.1:{viewer.port}"],
+            cwd=self.folder,
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+        while rendering.poll() is None and not (self.folder / "a.exr").exists():
+            time.sleep(0.02)
+        is_sending = rendering.poll() is None
+        viewer.reads.set()
+        _, error = rendering.communicate(timeout=SECONDS)
+        viewer.end()
+        self.assertEqual(rendering.returncode, FINE, error)
+        self.assertTrue(is_sending, "the file was written after the viewer had been given up")
+        return error
+
+    def test_a_slow_viewer_delays_nothing(self):
+        """It reads nothing before the file is there, and then shows the last picture."""
+        for options in (("--spp", "1"), ("--time", "1500ms")):
+            viewer = Viewer(reads=threading.Event())
+            error = self.until_the_file_is_there(viewer, *options)
+            self.assertNotIn("W2869", error)
+            _, _, channels = viewer.pictures["a.exr"]
+            read = exr_channels((self.folder / "a.exr").read_bytes())
+            for name, values in channels.items():
+                bits = struct.unpack(f"<{len(values)}I", struct.pack(f"<{len(values)}f", *values))
+                self.assertTrue(read[name] == list(bits), name)
+            (self.folder / "a.exr").unlink()
+
+    def test_a_viewer_that_accepts_nothing(self):
+        self.write("Camera.rtsl", CAMERA)
+        self.write("scene.json", json.dumps(SKY))
+        viewer = Viewer(reads=threading.Event(), most=0)
+        _, error = self.run_rtslc(
+            "render", "scene.json", "-o", "a.exr", "--spp", "1", "--tev", f"127.0.0.1:{viewer.port}"
+        )
+        viewer.reads.set()
+        viewer.end()
+        self.assertIn("shows an earlier picture: no answer for 5 seconds", error)
+        self.assertIn("a.exr", self.files())
 
     def test_a_viewer_that_is_not_there(self):
         self.glass_scene()
@@ -179,6 +265,12 @@ class Tev(Case):
             ("localhost:0", "1 to 65535"),
             ("localhost:tev", "1 to 65535"),
             ("localhost:70000", "1 to 65535"),
+            ("localhost:", "1 to 65535"),
+            ("::1", "such as [::1]:14158"),
+            ("a:1:2", "an address of IPv6 is written in brackets, such as [::1]:14158"),
+            ("[::1", "has no `]`"),
+            ("[]:14158", "names no host"),
+            ("[::1]14158", "is not `]` or `]:PORT` at its end"),
         ):
             _, error = self.run_rtslc(
                 "render", "scene.json", "-o", "a.exr", "--tev", value, status=USAGE
