@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
@@ -25,6 +26,10 @@ bool finishOutput(const char *program) {
     fmt::print(stderr, "{}: {}\n", program,
                message::cannotWriteStandardOutput(std::strerror(errno ? errno : EIO)).text);
   return isWritten;
+}
+
+void reportFileSizeLimit() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 } // namespace rtsl::tool

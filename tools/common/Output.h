@@ -13,4 +13,8 @@ void printOut(std::string_view text);
 /// if it was not.
 bool finishOutput(const char *program);
 
+/// From now on, to write beyond the limit on the size of files is an error like a full disk. The
+/// signal that the system sends otherwise would end the process, and what it has computed is lost.
+void reportFileSizeLimit();
+
 } // namespace rtsl::tool

@@ -358,6 +358,7 @@ int main(int argc, char **argv) {
   CLI::App app("renders packages of rtslc, without the compiler", "rtsl-run");
   Options options;
   addOptions(app, options);
+  tool::reportFileSizeLimit();
   tool::nameOutOfMemory("rtsl-run");
   try {
     int status = Fine;

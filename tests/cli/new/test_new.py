@@ -92,9 +92,6 @@ class New(Case):
         """A limit on the size of files stands in for a full disk."""
 
         def small_files():
-            import signal
-
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 
         (message,) = self.diagnose("new", "material", "Clay", prepare=small_files)

@@ -244,6 +244,7 @@ int runCommand(CLI::App &app, Action &action, int argc, char **argv) {
 } // namespace
 
 int run(CLI::App &app, Action &action, int argc, char **argv, const std::function<void()> &first) {
+  reportFileSizeLimit();
   nameOutOfMemory("rtslc");
   onLlvmOutOfMemory([] {
     sayOutOfMemory("rtslc");

@@ -53,7 +53,6 @@ class Checkpoints(Case):
     def start(self, *options):
         def signals():
             signal.signal(signal.SIGINT, signal.default_int_handler)
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
         return subprocess.Popen(
             [RTSLC, *self.arguments("a.exr", *options)],
@@ -298,7 +297,6 @@ class Refusing(Checkpoints):
 class Writing(Checkpoints):
     def small_files(self):
         resource.setrlimit(resource.RLIMIT_FSIZE, (30000, resource.RLIM_INFINITY))
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 
     def test_a_full_disk_at_the_end(self):
         """A limit on the size of files stands in for it. The old checkpoint stays, and the picture
