@@ -6,6 +6,7 @@
 #include "scenefile/files/MeshFiles.h"
 #include "scenefile/graph/VariablePlaces.h"
 #include "scenefile/graph/Variables.h"
+#include "scenefile/json/KeyFrames.h"
 #include "scenefile/mistakes/DarkLights.h"
 #include "scenefile/mistakes/InvisibleObjects.h"
 #include "support/ClosestName.h"
@@ -383,7 +384,8 @@ private:
   static void refuseUnlessReference(const JsonValue &json, const ValueType *type,
                                     const std::string &what) {
     if (type && type->kind != ValueType::Kind::Reference)
-      throw Error(message::typeMismatch(what, type->name, describe(json.kind)), json.place());
+      throw aboutKeyFrames(
+          Error(message::typeMismatch(what, type->name, describe(json.kind)), json.place()), json);
   }
 
   /// Is there an object of this name, with whatever variables?

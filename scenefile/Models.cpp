@@ -156,6 +156,7 @@ private:
                                           : gltf::Mention{path.string, path.fromOverride},
                           path);
     modules.insert(model.modules.begin(), model.modules.end());
+    scene.isAnimated |= model.isAnimated;
     std::move(model.warnings.begin(), model.warnings.end(), std::back_inserter(scene.warnings));
     return model.root;
   }
@@ -230,6 +231,7 @@ private:
     try {
       std::vector<Warning> known; // where its nodes are
       const gltf::Animation animation(opened, play, known);
+      scene.isAnimated |= animation.moves();
       return gltf::cameraOf(opened, animation, name, transform, path, modules);
     } catch (const Error &error) {
       throw gltf::named(error, file);

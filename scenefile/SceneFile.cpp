@@ -274,11 +274,11 @@ private:
 };
 
 /// Makes the scene that of its frame.
-void chooseFrame(JsonValue &root, ErrorCollector &errors) {
-  double frame = 0;
+void chooseFrame(JsonValue &root, SceneDescription &scene, ErrorCollector &errors) {
   if (const JsonValue *value = root.find("frame"))
-    errors.attempt([&] { frame = readNumber(*value, "`frame`"); });
-  resolveKeyFrames(root, frame, errors);
+    errors.attempt([&] { scene.frame = readNumber(*value, "`frame`"); });
+  scene.keyFrames = resolveKeyFrames(root, scene.frame, errors);
+  scene.isAnimated = !scene.keyFrames.empty();
 }
 
 } // namespace
@@ -293,7 +293,7 @@ SceneDescription parseScene(const std::string &text, const std::string &path,
   for (const std::string &override : overrides)
     found.attempt([&] { applyOverride(*root, override); });
   const bool isPart = found.count() > 0; // without what could not be read
-  chooseFrame(*root, ofFrames);
+  chooseFrame(*root, scene, ofFrames);
   scene.file = path;
   scene.root = root;
   scene.keptFiles = std::move(kept);

@@ -188,6 +188,9 @@ struct Refusals {
 struct SceneDescription {
   std::string file;                  // as given
   std::vector<std::string> included; // other scene files that are parts of it
+  double frame = 0;                  // which frame this is
+  std::set<double> keyFrames;        // of any of its values
+  bool isAnimated = false;           // by key frames, or by the animation of a model
   std::vector<ImportDescription> imports;
   std::optional<ObjectDescription> camera;                        // the classic engine needs it
   std::vector<std::pair<std::string, ObjectDescription>> cameras; // by name, to choose from

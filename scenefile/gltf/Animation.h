@@ -33,6 +33,9 @@ public:
   Animation(const File &file, const Play &play, std::vector<Warning> &warnings);
   ~Animation();
 
+  /// Whether anything changes from frame to frame.
+  bool moves() const { return !nodes.empty(); }
+
   /// The motion of a node at the frame; `rest` is what it is without an animation.
   Motion at(std::size_t node, const Motion &rest) const;
 

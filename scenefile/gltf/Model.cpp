@@ -33,6 +33,7 @@ public:
     std::vector<Node> nodes;
     errors.attempt([&] {
       animation.emplace(file, play, model.warnings);
+      model.isAnimated = animation->moves();
       nodes = nodesOf(file, *animation);
     });
     keepLightsAtRest(nodes);

@@ -16,6 +16,7 @@ struct Model {
   Members materials, nodes; // by name
   std::string root;         // the name of the node above all others
   Modules modules;
+  bool isAnimated = false;
   std::vector<Warning> warnings;
 };
 

@@ -1,6 +1,7 @@
 #include "scenefile/graph/TransformReader.h"
 
 #include "scenefile/graph/KeyTimes.h"
+#include "scenefile/json/KeyFrames.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorMessages.h"
 
@@ -68,7 +69,7 @@ Rotation readQuaternion(const JsonValue &value) {
   const std::vector<double> q = readNumbers(value, 4, "`quaternion`");
   const double length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
   if (length == 0)
-    throw Error(message::zeroQuaternion(), value.place());
+    throw aboutKeyFrames(Error(message::zeroQuaternion(), value.place()), value);
   Rotation result;
   result.orientation = {q[3] / length, q[0] / length, q[1] / length, q[2] / length};
   result.map = runtime::rotationOf(result.orientation);
@@ -141,7 +142,7 @@ Parts readParts(const JsonValue &value) {
     parts.translation = Transform::translate(t[0], t[1], t[2]);
   }
   if (parts.product().determinant() == 0)
-    throw Error(message::transformFlattens(), value.place());
+    throw aboutKeyFrames(Error(message::transformFlattens(), value.place()), value);
   return parts;
 }
 

@@ -18,6 +18,9 @@ namespace {
 
 using Kind = JsonValue::Kind;
 
+constexpr const char *stepHint =
+    "`\"interpolate\": \"step\"` beside `frames` makes values change at once";
+
 struct Key {
   double frame;
   const JsonKey *name;
@@ -67,11 +70,11 @@ void interpolate(JsonValue &value, const JsonValue &next, double share);
 
 void interpolateMembers(JsonValue &value, const JsonValue &next, double share) {
   if (value.members.size() != next.members.size())
-    throw Error(message::frameObjectsDiffer(), next.place());
+    throw Error(message::frameObjectsDiffer(), next.place()).note(stepHint);
   for (auto &[key, member] : value.members) {
     const JsonValue *other = next.find(key.text);
     if (!other)
-      throw Error(message::frameKeyMissing(key.text), next.place());
+      throw Error(message::frameKeyMissing(key.text), next.place()).note(stepHint);
     interpolate(member, *other, share);
   }
 }
@@ -87,7 +90,8 @@ void interpolate(JsonValue &value, const JsonValue &next, double share) {
   } else if (value.kind == Kind::Array && next.kind == Kind::Array) {
     if (value.elements.size() != next.elements.size())
       throw Error(message::frameListsDiffer(value.elements.size(), next.elements.size()),
-                  next.place());
+                  next.place())
+          .note(stepHint);
     for (std::size_t i = 0; i < value.elements.size(); ++i)
       interpolate(value.elements[i], next.elements[i], share);
   } else if (value.kind == Kind::Object && next.kind == Kind::Object) {
@@ -97,7 +101,7 @@ void interpolate(JsonValue &value, const JsonValue &next, double share) {
                     ? message::notInterpolated(describe(value.kind))
                     : message::notInterpolatedWith(describe(value.kind), describe(next.kind)),
                 next.place())
-        .note("`\"interpolate\": \"step\"` beside `frames` makes values change at once");
+        .note(stepHint);
   }
 }
 
@@ -165,6 +169,15 @@ JsonValue valueAt(const JsonValue &value, double frame) {
   return found;
 }
 
+/// Whether a number in the value is none of those that its key frames give.
+bool isBetweenKeys(const JsonValue &value) {
+  const auto isKey = [&](const JsonValue &key) { return key.number == value.number; };
+  return (value.keys && std::none_of(value.keys->begin(), value.keys->end(), isKey)) ||
+         std::any_of(value.elements.begin(), value.elements.end(), isBetweenKeys) ||
+         std::any_of(value.members.begin(), value.members.end(),
+                     [](const auto &member) { return isBetweenKeys(member.second); });
+}
+
 /// In place of a value that its key frames do not give, so that the rest can be checked.
 JsonValue firstOf(const JsonValue &value) {
   const auto &frames = value.find("frames")->members;
@@ -183,13 +196,29 @@ FramePlace placeAmong(const std::vector<double> &frames, double frame) {
   return {next - 1, next, (frame - frames[next - 1]) / (frames[next] - frames[next - 1])};
 }
 
-void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors) {
+std::set<double> resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors) {
+  std::set<double> frames;
   for (JsonValue &element : root.elements)
-    resolveKeyFrames(element, frame, errors);
+    frames.merge(resolveKeyFrames(element, frame, errors));
   for (auto &member : root.members)
-    resolveKeyFrames(member.second, frame, errors);
-  if (isKeyFrames(root) && !errors.attempt([&] { root = valueAt(root, frame); }))
+    frames.merge(resolveKeyFrames(member.second, frame, errors));
+  if (!isKeyFrames(root))
+    return frames;
+  for (const auto &member : root.find("frames")->members)
+    if (const std::optional<double> number = numberOf(member.first.text))
+      frames.insert(*number);
+  if (!errors.attempt([&] { root = valueAt(root, frame); }))
     root = firstOf(root);
+  return frames;
+}
+
+Error aboutKeyFrames(Error error, const JsonValue &value) {
+  if (value.find("frames"))
+    error.note("key frames are values by the number of a frame, `{\"frames\": {\"0\": ..., \"24\": "
+               "...}}`, with nothing beside `frames` but `interpolate`");
+  else if (isBetweenKeys(value))
+    error.note(fmt::format("this is between two key frames; {}", stepHint));
+  return error;
 }
 
 } // namespace rtsl::scene

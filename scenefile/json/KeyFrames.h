@@ -5,6 +5,7 @@
 #include "support/ErrorCollector.h"
 
 #include <cstddef>
+#include <set>
 #include <vector>
 
 namespace rtsl::scene {
@@ -27,7 +28,12 @@ inline double between(double number, double next, double share) {
 /// Replaces each {"frames": {"0": ..., "24": ...}} in a scene by its value at the frame: that of a
 /// key, interpolated linearly between two, or that of the first or last key outside of them. With
 /// "interpolate": "step" it is that of the last key so far. All key frames of the scene are
-/// checked, whatever the frame is; where there are errors, the value is that of a key.
-void resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors);
+/// checked, whatever the frame is; where there are errors, the value is that of a key. Gives the
+/// frames that have keys.
+std::set<double> resolveKeyFrames(JsonValue &root, double frame, ErrorCollector &errors);
+
+/// An error about a value, which may be the fault of its key frames: with a note if it was meant to
+/// have some, or is between two of them.
+Error aboutKeyFrames(Error error, const JsonValue &value);
 
 } // namespace rtsl::scene

@@ -1,6 +1,7 @@
 #include "scenefile/json/Reader.h"
 
 #include "runtime/scene/Scene.h"
+#include "scenefile/json/KeyFrames.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
@@ -15,7 +16,9 @@ namespace rtsl::scene {
 
 const JsonValue &expect(const JsonValue &value, JsonValue::Kind kind, const std::string &what) {
   if (value.kind != kind)
-    throw Error(message::wrongKind(what, describe(kind), describe(value.kind)), value.place());
+    throw aboutKeyFrames(
+        Error(message::wrongKind(what, describe(kind), describe(value.kind)), value.place()),
+        value);
   return value;
 }
 
@@ -30,7 +33,7 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
     Error error(message::unknownKey(what, key), object.place(member.first));
     if (const std::string near = closestName(key, names); !near.empty())
       error.fix(near);
-    errors.add(std::move(error));
+    errors.add(key == "frames" ? aboutKeyFrames(std::move(error), object) : std::move(error));
   }
   errors.throwIfAny();
 }
@@ -38,7 +41,7 @@ void checkKeys(const JsonValue &object, std::initializer_list<const char *> know
 const JsonValue &require(const JsonValue &object, const char *key, const std::string &what) {
   if (const JsonValue *found = object.find(key))
     return *found;
-  throw Error(message::missingKey(what, key), object.place());
+  throw aboutKeyFrames(Error(message::missingKey(what, key), object.place()), object);
 }
 
 double readNumber(const JsonValue &value, const std::string &what) {
@@ -52,7 +55,7 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
                           const std::string &what) {
   double number = readNumber(value, what);
   if (number != std::floor(number))
-    throw Error(message::notInteger(what, number), value.place());
+    throw aboutKeyFrames(Error(message::notInteger(what, number), value.place()), value);
   if (number < lowest || number > highest)
     throw Error(message::notBetween(what, lowest, highest, number), value.place());
   return std::uint32_t(number);
@@ -61,7 +64,7 @@ std::uint32_t readInteger(const JsonValue &value, std::uint32_t lowest, std::uin
 std::int32_t readId(const JsonValue &value) {
   const double number = readNumber(value, "`id`");
   if (number != std::floor(number) || number < -2147483648.0 || number > 2147483647.0)
-    throw Error(message::badId(number), value.place());
+    throw aboutKeyFrames(Error(message::badId(number), value.place()), value);
   return std::int32_t(number);
 }
 

@@ -1,6 +1,7 @@
 //===- ObjectReader.cpp - objects and colors of a scene file --------------===//
 #include "scenefile/sections/ObjectReader.h"
 
+#include "scenefile/json/KeyFrames.h"
 #include "scenefile/json/Reader.h"
 #include "support/ErrorMessages.h"
 
@@ -53,7 +54,8 @@ const JsonValue &readColor(const JsonValue &value, const std::string &what) {
     return value;
   }
   if (value.kind != Kind::Array)
-    throw Error(message::notColor(what, describe(value.kind)), value.place());
+    throw aboutKeyFrames(Error(message::notColor(what, describe(value.kind)), value.place()),
+                         value);
   readNumbers(value, value.elements.size(), what);
   return value;
 }

@@ -67,19 +67,21 @@ TEST(KeyFrames, AreCheckedForAllFrames) {
             "s.json:1:22+1: wrongType: a key of `frames` is the number of a frame, not `x`");
   EXPECT_EQ(errorIn(R"({"frames": {"1": 1, "1.0": 2}})"),
             "s.json:1:22+3: duplicateKey: `1` and `1.0` are the same frame");
-  EXPECT_EQ(errorIn(R"({"frames": {"7": [1, 2], "8": [1]}})"),
-            "s.json:1:31+1: wrongType: a list of 2 cannot be interpolated with one of 1");
   const std::string note =
       " (note `\"interpolate\": \"step\"` beside `frames` makes values change at once)";
+  EXPECT_EQ(errorIn(R"({"frames": {"7": [1, 2], "8": [1]}})"),
+            "s.json:1:31+1: wrongType: a list of 2 cannot be interpolated with one of 1" + note);
   EXPECT_EQ(errorIn(R"({"frames": {"7": "a", "8": "b"}})"),
             "s.json:1:29+1: wrongType: a string cannot be interpolated" + note);
   EXPECT_EQ(errorIn(R"({"frames": {"7": [1], "8": 2}})"),
             "s.json:1:28+1: wrongType: a list cannot be interpolated with a number" + note);
   EXPECT_EQ(errorIn(R"({"frames": {"7": {"a": 1}, "8": {"b": 1}}})"),
             "s.json:1:33+1: wrongType: this has no `a`, which the key frame before it has: objects "
-            "are interpolated only if they have the same keys");
+            "are interpolated only if they have the same keys" +
+                note);
   EXPECT_EQ(errorIn(R"({"frames": {"7": {"a": 1}, "8": {}}})"),
-            "s.json:1:33+1: wrongType: objects are interpolated only if they have the same keys");
+            "s.json:1:33+1: wrongType: objects are interpolated only if they have the same keys" +
+                note);
   EXPECT_EQ(errorIn(R"({"frames": {"7": 1}, "interpolate": "smooth"})"),
             "s.json:1:38+6: outOfRange: `interpolate` is `linear` or `step`, not `smooth`");
   EXPECT_EQ(errorIn(R"({"frames": {"7": 1}, "interpolate": 1})"),
@@ -104,6 +106,57 @@ TEST(KeyFrames, FollowTheFrameOfTheScene) {
             std::pair(5.0, 1.25));
   EXPECT_EQ(errorOf([&] { places({"frame=soon"}); }),
             "--set frame=soon:1:13+4: wrongType: `frame` is a number, not a string");
+}
+
+TEST(KeyFrames, AreListed) {
+  JsonValue value = parseJson(
+      R"([{"frames": {"7": 1, "-2.5": 2}}, {"a": {"frames": {"7": {"frames": {"1": 3}}}}}])",
+      "s.json");
+  ErrorCollector errors;
+  EXPECT_EQ(resolveKeyFrames(value, 0, errors), (std::set<double>{-2.5, 1, 7}));
+  const auto isAnimated = [](const std::string &ambient) {
+    return parseScene(R"({"rtsl": 1, "camera": {"class": "C"}, "ambient": )" + ambient + "}",
+                      "s.json", {})
+        .isAnimated;
+  };
+  EXPECT_TRUE(isAnimated(R"({"frames": {"0": 1, "9": 2}})"));
+  EXPECT_FALSE(isAnimated("1"));
+}
+
+// What is almost a value with key frames is an error of another kind, whose note says how they are
+// written.
+TEST(KeyFrames, HaveNotesWhereTheyMatter) {
+  const auto errorOfAmbient = [](const std::string &ambient) {
+    return errorOf([&] {
+      parseScene(R"({"rtsl": 1, "camera": {"class": "C"}, "ambient": )" + ambient + "}", "s.json",
+                 {});
+    });
+  };
+  const std::string written =
+      " (note key frames are values by the number of a frame, `{\"frames\": {\"0\": ..., \"24\": "
+      "...}}`, with nothing beside `frames` but `interpolate`)";
+  for (const char *ambient :
+       {R"({"frames": {}})", R"({"frames": [1, 2]})", R"({"frames": {"first": 1, "last": 2}})",
+        R"({"frames": {"0": 1, "9": 2}, "interpolat": "step"})"})
+    EXPECT_EQ(errorOfAmbient(ambient),
+              "s.json:1:50+1: wrongType: `ambient` is a color, not an object" + written);
+  EXPECT_EQ(errorOfAmbient(R"({"color": 1})"),
+            "s.json:1:50+1: wrongType: `ambient` is a color, not an object");
+
+  const auto errorOfSamples = [](const std::string &samples, const std::string &frame) {
+    return errorOf([&] {
+      parseScene(R"({"rtsl": 1, "camera": {"class": "C"}, "render": {"spp": )" + samples + "}}",
+                 "s.json", {"frame=" + frame});
+    });
+  };
+  const std::string keys = R"({"frames": {"0": 16, "9": 64}})";
+  EXPECT_EQ(errorOfSamples(keys, "3"), "no error");
+  EXPECT_EQ(
+      errorOfSamples(keys, "2"),
+      "s.json:1:74+2: wrongType: `spp` must be an integer, not 26.6667 (note this is between "
+      "two key frames; `\"interpolate\": \"step\"` beside `frames` makes values change at once)");
+  EXPECT_EQ(errorOfSamples(R"({"frames": {"0": 1.5, "9": 64}})", "-1"),
+            "s.json:1:74+3: wrongType: `spp` must be an integer, not 1.5");
 }
 
 TEST(Cameras, AreChosenByName) {

@@ -13,6 +13,7 @@ struct CheckOptions {
   CommonOptions common;
   std::vector<std::string> files, overrides;
   bool fix = false;
+  bool errorsOnly = false; // not the warnings about a scene
 };
 
 /// Everything that happens to a scene before it is rendered, through any of its cameras.

@@ -3,6 +3,7 @@
 #include "codegen/driver/MachineCode.h"
 #include "codegen/driver/SceneProgram.h"
 #include "codegen/driver/Stages.h"
+#include "scenefile/files/KeptFiles.h"
 #include "support/ErrorCollector.h"
 #include "tools/rtslc/common/MaterialCheck.h"
 #include "tools/rtslc/common/SceneShaders.h"
@@ -20,6 +21,8 @@ namespace rtsl::tool {
 
 namespace {
 
+constexpr std::size_t mostKeyFrames = 32; // besides the frame of the scene
+
 /// The shaders of a launch are linked, and its objects made.
 void checkLaunch(const scene::SceneDescription &launch, const typed::Module &module,
                  const CheckOptions &options, Messages &messages) {
@@ -32,7 +35,7 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
   input.makeObjects = storeScene(
       [&](const auto &constructors) { return scene::buildScene(launch, constructors); }, scene);
   emit(stage("ir"), input, options.common.compile, messages.diagnostics);
-  if (!scene)
+  if (!scene || options.errorsOnly)
     return;
   for (const Warning &warning : scene->warnings())
     messages.report(warning);
@@ -124,13 +127,14 @@ void checkSoundPart(scene::SceneDescription description, const CheckOptions &opt
     checkLaunches(description, *module, options, known, errors);
 }
 
-} // namespace
-
-void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
-                std::vector<std::string> &filesRead) {
-  ErrorCollector errors; // reported last: earlier ones would end the check of the shaders
+/// Checks one frame of the scene, and gives what the scene is then. `errors` gets those in the
+/// scene, because reported earlier they would end the check of the shaders.
+scene::SceneDescription checkFrame(const std::string &file, const CheckOptions &options,
+                                   const std::shared_ptr<scene::KeptFiles> &kept,
+                                   Messages &messages, std::vector<std::string> &filesRead,
+                                   ErrorCollector &errors) {
   scene::SceneDescription description =
-      readScene(file, options.overrides, messages, "check", nullptr, &errors);
+      readScene(file, options.overrides, messages, "check", kept, &errors);
   const std::unique_ptr<typed::Module> module =
       loadShaders(description, options.common, messages, &filesRead, {},
                   classesOfCameras(description), &errors);
@@ -141,7 +145,55 @@ void checkScene(const std::string &file, const CheckOptions &options, Messages &
   } else {
     checkSoundPart(description, options, messages, errors);
   }
-  errors.throwIfAny();
+  return description;
+}
+
+void report(ErrorCollector errors, Messages &messages) {
+  try {
+    errors.throwIfAny();
+  } catch (const Error &error) {
+    messages.report(error); // once, if it was reported for another frame
+  }
+}
+
+/// Checks the scene at a key frame. What there is to say of shaders is known from the scene's own
+/// frame, unless another class is used in this one.
+void checkKeyFrame(const std::string &file, const CheckOptions &options,
+                   const std::shared_ptr<scene::KeptFiles> &kept, Messages &messages,
+                   std::vector<std::string> &filesRead) {
+  Messages known(options.common);
+  known.silence();
+  ErrorCollector errors;
+  checkFrame(file, options, kept, known, filesRead, errors);
+  const bool isOfShaders = known.diagnostics.hasErrors() && !messages.diagnostics.hasErrors();
+  report(std::move(errors), messages);
+  ErrorCollector again;
+  if (isOfShaders)
+    checkFrame(file, options, kept, messages, filesRead, again);
+}
+
+} // namespace
+
+void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
+                std::vector<std::string> &filesRead) {
+  const auto kept = std::make_shared<scene::KeptFiles>();
+  ErrorCollector errors;
+  const scene::SceneDescription description =
+      checkFrame(file, options, kept, messages, filesRead, errors);
+  report(std::move(errors), messages);
+  std::size_t checked = 0;
+  for (const double frame : description.keyFrames) {
+    if (frame == description.frame)
+      continue;
+    if (++checked > mostKeyFrames)
+      break;
+    CheckOptions ofFrame = options;
+    ofFrame.errorsOnly = true; // a light may be dark at times
+    ofFrame.overrides.push_back(fmt::format("frame={}", frame));
+    std::vector<std::string> more;
+    checkKeyFrame(file, ofFrame, kept, messages, more);
+    filesRead.insert(filesRead.end(), more.begin(), more.end());
+  }
 }
 
 } // namespace rtsl::tool

@@ -182,6 +182,7 @@ private:
     input = readInput(options, messages);
     if (!input)
       return false;
+    warnOfFrame();
     input->description.keptFiles = options.keptFiles;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
@@ -197,6 +198,13 @@ private:
     files = withFiles(input->description, filesRead);
     checkOutputFiles(files);
     return true;
+  }
+
+  /// A frame was given for a scene without any; of --frames, the first one says so.
+  void warnOfFrame() const {
+    const bool isFirst = !options.frames || options.frame == options.frames->first;
+    if (options.frame && isFirst && !input->description.isAnimated)
+      messages.report(Warning{message::framesAlike(), {}});
   }
 
   /// Called before anything takes long, so that an error is reported at once.

@@ -12,6 +12,41 @@ from harness import DIAGNOSED, RTSLC, SECONDS, USAGE, Case, deep
 
 SMALL = ("--size", "50x37")  # not whole tiles
 
+ODD = """class Odd : rt_Material;
+void shade() {
+  float unused = 1.0;
+  float x = rand();
+  rt_SampleColor = color(x);
+}
+"""
+
+# Of frames 0, 5, 9 and 20.
+MOVING = {
+    "rtsl": 1,
+    "import": ["std"],
+    "camera": {"class": "PerspectiveCamera", "constructor": [[0, 0, 5], [0, 0, 0], [0, 1, 0]]},
+    "materials": {"clay": {"class": "Lambert"}, "gray": {"class": "Lambert"}},
+    "objects": [
+        {
+            "primitive": {"class": "Sphere", "center": [0, 0, 0], "radius": 1},
+            "material": {"frames": {"0": "clay", "9": "gray"}, "interpolate": "step"},
+        },
+        {
+            "primitive": {"class": "Sphere", "center": [2, 0, 0], "radius": 1},
+            "material": "clay",
+            "transform": {"frames": {"0": {"scale": 1}, "20": {"scale": 2}}},
+        },
+    ],
+    "lights": [
+        {
+            "class": "SphereLight",
+            "center": [0, 4, 0],
+            "radius": 1,
+            "radiance": {"frames": {"0": 3, "5": 0}},
+        }
+    ],
+}
+
 
 class Parts(Case):
     def setUp(self):
@@ -330,6 +365,53 @@ class Frames(Parts):
                     "render", "scene.json", *arguments, *options, status=USAGE
                 )
                 self.assertIn(part, error)
+
+
+class FramesOfScenes(Parts):
+    def test_a_frame_of_a_scene_without_any_is_a_warning(self):
+        text = "W2800]: all frames are the same: no value of the scene has key frames"
+        for options in (["--frame", "3"], ["--frames", "0..2"]):
+            name = "a.png" if options[0] == "--frame" else "a%d.png"
+            arguments = ["render", "scene.json", "-o", name, "--spp=1", *SMALL, *options]
+            for more, count in (
+                ([], 1),
+                (["-Wno-scene"], 0),
+                (["--set", 'ambient={"frames": {"0": 0, "9": 1}}'], 0),
+            ):
+                with self.subTest(options=options, more=more):
+                    _, error = self.run_rtslc(*arguments, *more)
+                    self.assertEqual(error.count(text), count, error)
+        _, error = self.run_rtslc(*arguments[:5], *SMALL, "--set", "frame=3")
+        self.assertNotIn(text, error)
+
+    def test_shaders_are_checked_once_for_all_frames(self):
+        self.write("Odd.rtsl", ODD)
+        scene = json.loads(json.dumps(MOVING))
+        scene["import"].append("Odd.rtsl")
+        scene["materials"]["gray"]["class"] = "Odd"
+        self.write("scene.json", json.dumps(scene, indent=1))
+        _, error = self.run_rtslc("check", "scene.json")
+        self.assertEqual(error.count("warning"), 1, error)
+        self.write("Odd.rtsl", ODD.replace("color(x)", "colour(x)"))
+        self.assert_message(self.diagnose("check", "scene.json"), "E0202", "`colour`")
+
+    def test_check_finds_mistakes_of_other_frames(self):
+        """Those of key frames, each once, and no warnings: a light may be dark at times."""
+        self.write("scene.json", json.dumps(MOVING, indent=1))
+        self.assertEqual(self.run_rtslc("check", "scene.json"), ("", ""))
+        wrong = json.loads(json.dumps(MOVING))
+        wrong["objects"][0]["material"]["frames"]["9"] = "cly"
+        wrong["objects"][1]["transform"]["frames"]["20"]["scale"] = 0
+        wrong["background"] = "blue"
+        self.write("scene.json", json.dumps(wrong, indent=1))
+        self.assertEqual(
+            sorted((one["code"], one["message"]) for one in self.diagnose("check", "scene.json")),
+            [
+                ("E0804", "`background` is a color, not a string"),
+                ("E0805", "this transform flattens its objects"),
+                ("E0806", "no texture or material is named `cly`"),
+            ],
+        )
 
 
 if __name__ == "__main__":
