@@ -581,6 +581,9 @@ private:
     try {
       runtime::Mesh mesh = files.take(number);
       addAttributes(geometry, mesh);
+      if (const std::optional<std::string> why = whyInvisible(mesh))
+        scene.addWarning({message::meshIsInvisible(geometry.mesh[0].name.text, *why),
+                          geometry.mesh[0].name.place});
       return meshes[number] =
                  scene.addMesh(std::move(mesh), geometry.name.text.empty() ? geometry.mesh[0].path
                                                                            : geometry.name.text);

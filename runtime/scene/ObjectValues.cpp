@@ -30,6 +30,21 @@ std::string ownerOf(const ClassInfo &info) {
   return fmt::format("class `{}`", info.name);
 }
 
+bool isGiven(const MemberInfo &member, const ObjectValues &values) {
+  return std::any_of(values.members.begin(), values.members.end(),
+                     [&](const NamedValue &one) { return one.name == member.name; });
+}
+
+bool hasName(const std::vector<MemberInfo> &all, const std::string &name) {
+  return std::any_of(all.begin(), all.end(),
+                     [&](const MemberInfo &member) { return member.name == name; });
+}
+
+/// Whether it is the name of a parameter of the constructor, and of no member.
+bool isOnlyParameter(const ClassInfo &classInfo, const std::string &name) {
+  return hasName(classInfo.parameters, name) && !hasName(classInfo.members, name);
+}
+
 /// The value of each parameter, in their order.
 std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const ObjectValues &values) {
   if (!classInfo.hasConstructor)
@@ -66,12 +81,20 @@ std::vector<const Value *> matchArguments(const ClassInfo &classInfo, const Obje
     }
   }
   std::string missing;
+  bool isBeside = false; // the constructor
   for (std::size_t i = 0; i < parameters.size(); ++i)
-    if (!arguments[i])
+    if (!arguments[i]) {
       missing += fmt::format("{}`{}`", missing.empty() ? "" : ", ", parameters[i].name);
-  if (!missing.empty())
-    throw Error(message::argumentMissing(classInfo.name, missing), values.place)
-        .note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+      isBeside |= isGiven(parameters[i], values);
+    }
+  if (!missing.empty()) {
+    Error error(message::argumentMissing(classInfo.name, missing), values.place);
+    error.note(fmt::format("it is declared as `{}`", listParameters(classInfo)));
+    if (isBeside)
+      error.note("arguments are in `constructor`, not beside it: `\"constructor\": "
+                 "{\"PARAMETER\": VALUE, ...}`");
+    throw error;
+  }
   return arguments;
 }
 
@@ -89,6 +112,8 @@ void setMember(const ClassInfo &classInfo, const std::string &name, const NamedV
         names.push_back(member.name);
     if (const std::string near = closestName(one.name, names); !near.empty())
       error.fix(near);
+    else if (isOnlyParameter(classInfo, one.name))
+      error.note("it is a parameter of the constructor: its value is in `constructor`");
     throw error;
   }
   if (!found->isPublic)
@@ -128,16 +153,12 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
 }
 
 void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
-                  std::uint8_t *record, const StoreContext &context) {
+                  std::uint8_t *record, const StoreContext &context, bool lacksArguments) {
   ErrorCollector errors;
   for (const NamedValue &one : values.members)
-    errors.attempt([&] { setMember(classInfo, name, one, values.place, record, context); });
+    if (!lacksArguments || !isOnlyParameter(classInfo, one.name))
+      errors.attempt([&] { setMember(classInfo, name, one, values.place, record, context); });
   errors.throwIfAny();
-}
-
-static bool isGiven(const MemberInfo &member, const ObjectValues &values) {
-  return std::any_of(values.members.begin(), values.members.end(),
-                     [&](const NamedValue &one) { return one.name == member.name; });
 }
 
 void checkOwnValues(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,

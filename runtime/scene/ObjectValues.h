@@ -25,9 +25,10 @@ std::vector<std::uint32_t> packArguments(const ClassInfo &classInfo, const Objec
 
 /// Writes the given public members to the object's record. `name` is the object's, for messages.
 /// Throws all their errors at once: UnknownMember, NotSettable, WrongType,
-/// OutOfRange, WrongClass.
+/// OutOfRange, WrongClass. `lacksArguments`: the constructor has reported those that are missing,
+/// and nothing is said of members that have the names of parameters alone.
 void storeMembers(const ClassInfo &classInfo, const std::string &name, const ObjectValues &values,
-                  std::uint8_t *record, const StoreContext &context);
+                  std::uint8_t *record, const StoreContext &context, bool lacksArguments = false);
 
 /// Checks the members that are not given: throws OutOfRange for all whose default, or the value
 /// that the constructor gave them, is not in their range.

@@ -100,7 +100,8 @@ RtslRef Objects::add(const std::string &className, const ObjectValues &values,
     bool isConstructed = false;
     errors.attempt([&] { isConstructed = runConstructor(object, values, launch); });
     errors.attempt([&] {
-      storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object));
+      storeMembers(classInfo, object.name, values, recordOf(object), storeContext(object),
+                   !isConstructed && std::holds_alternative<std::monostate>(values.constructor));
     });
     errors.throwIfAny();
     if (isConstructed) {

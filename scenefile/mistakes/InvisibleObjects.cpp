@@ -141,6 +141,25 @@ std::optional<std::string> whyInvisible(const runtime::Scene &scene, RtslRef ref
   return std::nullopt;
 }
 
+std::optional<std::string> whyInvisible(const runtime::Mesh &mesh) {
+  const auto vertex = [&](std::size_t number) {
+    const float *at = mesh.positions.data() + 3 * number;
+    return Vector{at[0], at[1], at[2]};
+  };
+  const auto side = [&](const Vector &from, const Vector &to) {
+    return Vector{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+  };
+  for (std::size_t key = 0; key < mesh.keyCount(); ++key)
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const std::size_t first = key * mesh.vertexCount();
+      const Vector a = vertex(first + mesh.indices[i]);
+      if (!whyFlat(side(a, vertex(first + mesh.indices[i + 1])),
+                   side(a, vertex(first + mesh.indices[i + 2]))))
+        return std::nullopt;
+    }
+  return "none of its triangles has an area";
+}
+
 std::optional<float> reachesTooFar(const runtime::Scene &scene, RtslRef primitive,
                                    std::uint32_t instance) {
   const Members object(scene, primitive);

@@ -1,6 +1,7 @@
 //===- InvisibleObjects.h - primitives and cameras that show nothing ------===//
 #pragma once
 
+#include "runtime/geometry/Mesh.h"
 #include "runtime/scene/Scene.h"
 
 #include <optional>
@@ -13,6 +14,9 @@ namespace rtsl::scene {
 /// which say nothing about theirs, and for boxes without area, which are named for any class
 /// (runtime/scene/Geometry.h).
 std::optional<std::string> whyInvisible(const runtime::Scene &scene, RtslRef object);
+
+/// The same of a mesh, at all of its keys.
+std::optional<std::string> whyInvisible(const runtime::Mesh &mesh);
 
 /// The library's primitives are seen as they are up to this distance from the origin
 /// (tests/cli/render/scenes/test_sizes.py).

@@ -4,6 +4,7 @@
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/json/Reader.h"
 #include "scenefile/sections/SettingsReader.h"
+#include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
 
 #include <fmt/ranges.h>
@@ -52,8 +53,14 @@ static const JsonValue *readEngine(const JsonValue &engine, SceneDescription &sc
   const std::vector<std::string> &ofLibrary = libraryEngines();
   const bool isOfLibrary =
       std::find(ofLibrary.begin(), ofLibrary.end(), engine.string) != ofLibrary.end();
-  if (!isOfLibrary && engine.string != "classic" && engine.string != "programs")
-    throw Error(message::noSuchEngine(engine.string, fmt::join(ofLibrary, "`, `")), engine.place());
+  if (!isOfLibrary && engine.string != "classic" && engine.string != "programs") {
+    Error error(message::noSuchEngine(engine.string, fmt::join(ofLibrary, "`, `")), engine.place());
+    std::vector<std::string> all = ofLibrary;
+    all.insert(all.end(), {"classic", "programs"});
+    if (const std::string near = closestName(engine.string, all); !near.empty())
+      error.fix(near);
+    throw error;
+  }
   if (engine.string != "classic")
     scene.render.engine = runtime::Engine::Programs;
   return isOfLibrary ? &engine : nullptr;

@@ -169,6 +169,12 @@ TEST(BuildScene, ConstructorArguments) {
       sphere("{\"center\": [0, 0, 0]}"),
       "s.json:3:43+6: badArguments: the constructor of `Sphere` requires an argument for `radius`" +
           declared);
+  const std::string beside = " (note arguments are in `constructor`, not beside it: "
+                             "`\"constructor\": {\"PARAMETER\": VALUE, ...}`)";
+  EXPECT_EQ(
+      sphere("{\"center\": [0, 0, 0]}, \"radius\": 1"),
+      "s.json:3:43+6: badArguments: the constructor of `Sphere` requires an argument for `radius`" +
+          declared + beside);
   EXPECT_EQ(sphere("{\"center\": [0, 0, 0], \"radus\": 1}"),
             "s.json:3:90+5: badArguments: the constructor of `Sphere` has no parameter `radus` "
             "(fix `radius`)" +

@@ -349,7 +349,8 @@ private:
     if (counts.most > summary.render.samplesPerPixel)
       throw Error(message::checkpointTooFar(options.checkpoint.file, counts.most,
                                             summary.render.samplesPerPixel),
-                  Place{options.checkpoint.file});
+                  Place{options.checkpoint.file})
+          .note(fmt::format("give `--spp={}` or more, or another file", counts.most));
     summary.resumedAt = counts.least;
     return rendering;
   }

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from harness import USAGE, Case
+from harness import DIAGNOSED, USAGE, Case
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 SMALL = ("--size", "32x18", "--spp", "1")
@@ -441,6 +441,17 @@ class AllAtOnce(Case):
                 ("E0804", "member `position`"),
             ],
         )
+
+    def test_arguments_beside_the_constructor(self):
+        """They are one mistake, and a note says where arguments are."""
+        scene = self.scene()
+        disk = {"class": "Disk", "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 1}
+        scene["objects"][0] = {"primitive": disk, "material": "clay"}
+        self.check(scene, [("E0814", "requires an argument for `center`, `normal`, `radius`")])
+        _, error = self.run_rtslc("check", "check.json", status=DIAGNOSED)
+        self.assertIn("= note: arguments are in `constructor`, not beside it", error)
+        disk["constructor"] = [[0, 0, 0], [0, 0, 1], 1, 0]
+        self.check(scene, 3 * [("E0812", "class `Disk` has no member")])
 
     def test_overrides_with_mistakes(self):
         """Nothing is said of what they might have added."""

@@ -148,6 +148,24 @@ class Invisible(Case):
         [(_, message)] = self.warnings()
         self.assertIn("is a line without width", message)
 
+    def test_meshes_without_area(self):
+        """Such as a lamp whose triangles have all their corners on a line; one triangle is enough
+        to be seen, at one key."""
+        self.write("flat.obj", "v 0 0 0\nv 1 1 0\nv 2 2 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
+        self.write("some.obj", "v 0 0 0\nv 1 1 0\nv 2 2 0\nv 1 2 0\nf 1 2 3\nf 2 4 3\n")
+        flat = "mesh `flat.obj` is invisible: none of its triangles has an area"
+        for mesh, expected in (
+            ("flat.obj", [("flat.obj", flat)]),
+            ("some.obj", []),
+            ({"keys": ["flat.obj", "some.obj"]}, []),
+        ):
+            with self.subTest(mesh=mesh):
+                self.scene([made("Disk", [0, 0, 0], [0, 0, 1], 1, 0)])
+                scene = json.loads((self.folder / "scene.json").read_text())
+                scene["objects"] = [{"mesh": mesh, "material": {"class": "Lambert"}}]
+                self.write("scene.json", json.dumps(scene))
+                self.assertEqual(self.warnings(), expected)
+
     def test_cameras_without_rays(self):
         for why, camera in BLIND:
             with self.subTest(camera=camera):
