@@ -195,7 +195,8 @@ Outcome runThree(Path path, std::uint64_t cases, std::uint32_t seed) {
     Matrix<3> m = randomMatrix<3>(random);
     scaleColumns<3>(random, m, 12);
     Precise magnitudes;
-    if (abs(determinantOf<3>(m, magnitudes)) < magnitudes / 100)
+    const Precise determinant = determinantOf<3>(m, magnitudes);
+    if (abs(determinant) < magnitudes / 100)
       continue;
     worst.add(residual<3>(m, inverses<3>(path).inverse(m)), [&] { return show<3>(m); });
   }

@@ -91,9 +91,10 @@ protected:
   Precise level = 1;
 
 private:
-  /// How far a ray's point is from the surface, in rounding units of the largest coordinate: the
-  /// step to where a form with this value, slope and largest curvature is 0. But for a cone's apex,
-  /// where the slope ends, that is value / slope.
+  /// How far a ray's point is from the surface, in rounding units of the largest coordinates of the
+  /// ray and of the centre, whose difference is rounded: the step to where a form with this value,
+  /// slope and largest curvature is 0. But for a cone's apex, where the slope ends, that is value /
+  /// slope.
   double offTheSurface(const Ray &ray, float t) const {
     const PreciseVec3 point =
         along(precise(ray.origin), Precise(t), precise(ray.direction)) - precise(center);
@@ -102,7 +103,8 @@ private:
     const Precise distance =
         value == 0 ? Precise(0)
                    : Precise(2 * value / (slope + sqrt(slope * slope + 4 * curvature * value)));
-    return static_cast<double>(distance / pointUnit(ray, t));
+    const Precise ofCenter = Precise(0x1p-24) * Precise(device::largest(center));
+    return static_cast<double>(distance / (pointUnit(ray, t) + ofCenter));
   }
 };
 

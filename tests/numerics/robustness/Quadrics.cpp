@@ -189,7 +189,7 @@ double nanosecondsAMeeting(Path path) {
 
 std::vector<Row> quadricRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
-  const char *off = "off the surface, rounding units of the largest coordinate";
+  const char *off = "off the surface, rounding units of the largest coordinates of ray and centre";
   return {
       row("quadrics.points",
           "ellipsoids, cylinders, cones and hyperboloids of size 1e-6 to 1e6 at distances up to "

@@ -135,7 +135,7 @@ double nanosecondsAMeeting(Path path) {
 std::vector<Row> sphereRows(Path path) {
   const auto row = rowsOf(path, nanosecondsAMeeting);
   const char *near = "between hit and miss, rounding units of the distance";
-  const char *off = "off the sphere, rounding units of the largest coordinate";
+  const char *off = "off the sphere, rounding units of the largest coordinates of ray and centre";
   return {
       row("spheres.far",
           "radius 1e-6 to 1e6 at distances up to 1e7: how near to the silhouette a ray passes that "
