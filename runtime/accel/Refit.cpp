@@ -65,14 +65,13 @@ TreeBuild Refit::begin() const {
 void Refit::findLevels() {
   device.upload(levels, trees.roots.data(), trees.roots.size() * sizeof trees.roots[0]);
   BuildMemory memory(device, begin(), [&](TreeBuild &build, Block &block) {
-    placeSums(build, block, trees.nodeCount);
+    placeSums(build, block, trees.nodeCount, device.lanes());
   });
+  memory.beginSums(trees.nodeCount);
   std::uint32_t first = 0, end = std::uint32_t(trees.roots.size());
   while (first != end) {
     starts.push_back(first);
-    memory.run(BuildStep::CountInner, end - first, first);
-    memory.sumBefore(end - first);
-    memory.run(BuildStep::PlaceInner, end - first, first, end);
+    memory.sum(BuildStep::PlaceInner, end - first, first, end);
     first = std::exchange(end, end + std::uint32_t(memory.sumOfAll()));
   }
   starts.push_back(end);

@@ -250,7 +250,7 @@ int buildStep(std::size_t number, const rtsl::device::build::TreeBuild &build, s
     return IllegalAddress;
   const std::string name = kernels[programKernels + number];
   for (const char *const ofWarps :
-       {"CountDigits", "MoveByDigit", "SumTile", "SumTilesBefore", "SumElementsBefore"})
+       {"CountDigits", "MoveByDigit", "SumNumbers", "SumClusters", "PlaceInner"})
     if (name == std::string("rtsl_build_") + ofWarps)
       count /= 32;
   std::size_t step = 0;

@@ -3,6 +3,7 @@
 
 #include "runtime/accel/trees/ClusterTree.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -30,10 +31,13 @@ BuildDevice::Address addressOf(Element *element) {
   return reinterpret_cast<BuildDevice::Address>(element);
 }
 
-/// Places TreeBuild::sums, for so many elements, and sumsOfTiles.
-inline void placeSums(device::build::TreeBuild &build, Block &block, std::size_t elements) {
-  block.place(build.sums, elements);
-  block.place(build.sumsOfTiles, device::build::tileCount(std::uint32_t(elements)) + 1);
+/// What sums of up to so many elements need.
+inline void placeSums(device::build::TreeBuild &build, Block &block, std::size_t elements,
+                      std::uint32_t lanes) {
+  const std::uint32_t tiles = device::build::mostTiles(std::uint32_t(elements), lanes);
+  block.place(build.calls, 2);
+  for (std::uint64_t *&words : build.words)
+    block.place(words, std::max<std::uint32_t>(tiles, 2));
 }
 
 /// A build and its arrays in the memory of a device, on which its steps run.
@@ -64,25 +68,35 @@ public:
     device.run(step, address, count, a, b, c);
   }
 
-  /// Replaces each of the first elements of TreeBuild::sums by the sum of all before it.
-  void sumBefore(std::uint32_t elements) {
-    const std::uint32_t tiles = device::build::tileCount(elements), lanes = device.lanes();
-    run(BuildStep::SumTile, tiles * lanes, elements);
-    run(BuildStep::SumTilesBefore, lanes, tiles);
-    run(BuildStep::SumElementsBefore, tiles * lanes, elements);
-    total = addressOf(build.sumsOfTiles + tiles);
+  /// Before the first step that sums up to so many elements.
+  void beginSums(std::size_t elements) {
+    const std::uint32_t tiles = device::build::mostTiles(std::uint32_t(elements), device.lanes());
+    run(BuildStep::BeginSums, std::max<std::uint32_t>(tiles, 2));
   }
-  /// The last sum of all.
+  /// Runs a step that sums up to so many elements (runtime/device/trees/Sums.h). Its last number is
+  /// that of the call.
+  void sum(BuildStep step, std::uint32_t elements, std::uint32_t a) {
+    run(step, threadsOfSums(elements), a, nextCall());
+  }
+  void sum(BuildStep step, std::uint32_t elements, std::uint32_t a, std::uint32_t b) {
+    run(step, threadsOfSums(elements), a, b, nextCall());
+  }
+  /// The sum of all elements of the last call.
   std::uint64_t sumOfAll() {
-    std::uint64_t sum = 0;
-    device.download(&sum, total, sizeof sum);
-    return sum;
+    device::build::SumCall call;
+    device.download(&call, addressOf(build.calls + (calls - 1) % 2), sizeof call);
+    return call.sum;
   }
 
 private:
+  std::uint32_t threadsOfSums(std::uint32_t elements) const {
+    return device::build::mostTiles(elements, device.lanes()) * device.lanes();
+  }
+  std::uint32_t nextCall() { return calls++ % 2; }
+
   BuildDevice &device;
   BuildDevice::Address start = 0, address = 0; // of the arrays, of the build
-  BuildDevice::Address total = 0;
+  std::uint32_t calls = 0;                     // that sum
 };
 
 } // namespace rtsl::runtime

@@ -12,10 +12,14 @@ using namespace device::build;
 
 namespace {
 
+/// The elements of the largest sum.
+std::size_t mostSummed(std::uint32_t items) {
+  return std::max<std::size_t>(items, std::size_t(digits) * tileCount(items));
+}
+
 /// The arrays of a build, but for those of the tree.
-void placeArrays(TreeBuild &build, Block &block) {
+void placeArrays(TreeBuild &build, Block &block, std::uint32_t lanes) {
   const std::size_t n = build.count;
-  const std::size_t sums = std::max<std::size_t>(n, std::size_t(digits) * tileCount(build.count));
   block.place(build.boxes, 2 * n);
   block.place(build.heights, 2 * n);
   block.place(build.children, n);
@@ -26,7 +30,10 @@ void placeArrays(TreeBuild &build, Block &block) {
   block.place(build.keys[1], n);
   block.place(build.order[0], n);
   block.place(build.order[1], n);
-  placeSums(build, block, sums);
+  block.place(build.numbers, mostSummed(build.count));
+  placeSums(build, block, mostSummed(build.count), lanes);
+  block.place(build.rounds, mostRounds);
+  block.place(build.levels, mostHeight + 2);
   block.place(build.clusters[0], n);
   block.place(build.clusters[1], n);
   block.place(build.nearest, n);
@@ -36,13 +43,14 @@ void placeArrays(TreeBuild &build, Block &block) {
   build.wide = reinterpret_cast<WideNode *>(build.keys[0]);
 }
 
-/// Usual are 20 to 70.
-constexpr std::uint32_t manyRounds = 150;
-
 class ClusterBuilder {
 public:
   ClusterBuilder(BuildDevice &device, const Items &items)
-      : device(device), memory(device, buildOf(items), placeArrays) {}
+      : device(device), memory(device, buildOf(items), [&](TreeBuild &build, Block &block) {
+          placeArrays(build, block, device.lanes());
+        }) {
+    memory.beginSums(mostSummed(build.count));
+  }
 
   void setBoxes(const RtslBox *boxes) {
     device.upload(addressOf(build.boxes + build.count), boxes, build.count * sizeof *boxes);
@@ -63,23 +71,24 @@ public:
     const std::uint32_t tiles = tileCount(build.count);
     for (std::uint32_t pass = 0; pass < sortPasses; ++pass) {
       run(BuildStep::CountDigits, tiles * device.lanes(), pass);
-      memory.sumBefore(digits * tiles);
+      memory.sum(BuildStep::SumNumbers, digits * tiles, digits * tiles);
       run(BuildStep::MoveByDigit, tiles * device.lanes(), pass);
     }
   }
 
   void cluster() {
+    // Reading how many are left takes a GPU as long as a round of few clusters.
+    const std::uint32_t roundsAtOnce = device.lanes() == 1 ? 1 : 4;
     run(BuildStep::MakeLeaf, build.count);
-    Round round{0, build.count, false};
-    while (round.clusters > 1) {
-      run(BuildStep::FindNearest, round.clusters, round.number, round.isInPairs);
-      run(BuildStep::CountCluster, round.clusters);
-      memory.sumBefore(round.clusters);
-      run(BuildStep::MoveCluster, round.clusters, round.number, round.isInPairs);
-      const auto left = std::uint32_t(memory.sumOfAll());
-      const bool isInPairs =
-          round.isInPairs || left == round.clusters || round.number == manyRounds;
-      round = {round.number + 1, left, isInPairs};
+    run(BuildStep::StartClusters, 1);
+    Round round{build.count, false};
+    for (std::uint32_t number = 0; round.clusters > 1;) {
+      for (const std::uint32_t end = number + roundsAtOnce; number < end; ++number) {
+        run(BuildStep::FindNearest, round.clusters, number);
+        memory.sum(BuildStep::SumClusters, round.clusters, number);
+        run(BuildStep::MoveCluster, round.clusters, number);
+      }
+      device.download(&round, addressOf(build.rounds + number), sizeof round);
     }
   }
 
@@ -88,17 +97,15 @@ public:
     ClusterTree tree;
     tree.itemCount = build.count;
     tree.cost = cost();
-    std::uint32_t first = 0, size = 1, items = 0; // of the level
-    while (size != 0) {
-      tree.nodeCount = first + size;
-      run(BuildStep::CountChildren, size, first);
-      memory.sumBefore(size);
-      run(BuildStep::PlaceChildren, size, first, tree.nodeCount, items);
-      const std::uint64_t ofLevel = memory.sumOfAll();
-      first += size;
-      size = std::uint32_t(ofLevel);
-      items += std::uint32_t(ofLevel >> 32);
+    Level level{0, 1, 0};
+    for (std::uint32_t number = 0; level.first < level.end; ++number) {
+      const std::uint32_t nodes = level.end - level.first;
+      run(BuildStep::CountChildren, nodes, number);
+      memory.sum(BuildStep::SumNumbers, nodes, nodes);
+      run(BuildStep::PlaceChildren, nodes, number);
+      device.download(&level, addressOf(build.levels + number + 1), sizeof level);
     }
+    tree.nodeCount = level.end;
     tree.nodes = device.allocate(tree.nodeCount * sizeof(RtslBvhNode), "the tree");
     build.nodes = reinterpret_cast<RtslBvhNode *>(tree.nodes);
     if (build.items.launch)
@@ -167,14 +174,6 @@ void moveNodes(BuildDevice &device, BuildDevice::Address nodes, std::uint32_t co
   device.upload(address, &build, sizeof build);
   device.run(BuildStep::MoveNode, address, count, firstNode, firstItem);
   device.release(address);
-}
-
-std::size_t clusterTreeScratch(std::uint32_t items) {
-  TreeBuild build{};
-  build.count = items;
-  Block block;
-  placeArrays(build, block);
-  return block.size();
 }
 
 } // namespace rtsl::runtime

@@ -57,7 +57,4 @@ ClusterTree buildClusterTree(BuildDevice &device, const device::build::Items &it
 void moveNodes(BuildDevice &device, BuildDevice::Address nodes, std::uint32_t count,
                std::uint32_t firstNode, std::uint32_t firstItem);
 
-/// Bytes that the build of so many items takes while it runs, without the tree.
-std::size_t clusterTreeScratch(std::uint32_t items);
-
 } // namespace rtsl::runtime

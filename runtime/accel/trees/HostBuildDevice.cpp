@@ -46,9 +46,10 @@ void HostBuildDevice::run(BuildStep step, Address address, std::uint32_t count, 
   using namespace device::build;
   const TreeBuild &build = *reinterpret_cast<const TreeBuild *>(address);
   const bool isOfTiles = step == BuildStep::CountDigits || step == BuildStep::MoveByDigit ||
-                         step == BuildStep::SumTile || step == BuildStep::SumElementsBefore;
+                         step == BuildStep::SumNumbers || step == BuildStep::SumClusters ||
+                         step == BuildStep::PlaceInner;
   // At least so many on one thread.
-  const std::uint32_t together = isOfTiles ? 2 : 512;
+  const std::uint32_t together = isOfTiles ? 1 : 512;
   const auto forEach = [&](auto work) {
     forEachInParallel(threads, (count + together - 1) / together, [&](std::uint32_t part) {
       const std::uint32_t end = std::min(count, (part + 1) * together);

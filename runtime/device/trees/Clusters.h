@@ -12,30 +12,21 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/trees/TreeBuild.h"
+#include "runtime/device/trees/Sums.h"
 
 namespace rtsl::device::build {
 
 /// How far along the curve clusters look for others.
 constexpr uint32_t searchRadius = 8;
 
-/// The parameters of a round, for its steps.
-struct Round {
-  uint32_t number;
-  uint32_t clusters;
-  bool isInPairs; // each cluster is joined with the next one
-
-  uint32_t from() const { return number & 1; }
-  uint32_t to() const { return from() ^ 1; }
-  /// The largest height that a cluster may have in this round: if all are joined in pairs from here
-  /// on, the tree is not higher than mostHeight.
-  uint32_t heightLimit() const {
-    uint32_t levels = 0; // of joining in pairs
-    while ((uint64_t(1) << levels) < clusters)
-      ++levels;
-    return mostHeight - levels;
-  }
-};
+/// The largest height that a cluster may have in a round with so many: if all are joined in pairs
+/// from there on, the tree is not higher than mostHeight.
+inline uint32_t heightLimit(uint32_t clusters) {
+  uint32_t levels = 0; // of joining in pairs
+  while ((uint64_t(1) << levels) < clusters)
+    ++levels;
+  return mostHeight - levels;
+}
 
 inline void makeLeaf(const TreeBuild &build, uint32_t i) {
   build.boxes[i] = build.boxes[build.count + build.itemOf(i)];
@@ -43,17 +34,24 @@ inline void makeLeaf(const TreeBuild &build, uint32_t i) {
   build.heights[i] = 0;
 }
 
+inline void startClusters(const TreeBuild &build, uint32_t) {
+  build.rounds[0] = {build.count, false};
+}
+
 /// Of several neighbours that are equally near, the result is the one whose number differs in the
 /// lowest bits: so in a row of equal boxes all find each other in pairs. In any row, some do.
-inline void findNearest(const TreeBuild &build, uint32_t i, Round round) {
+inline void findNearest(const TreeBuild &build, uint32_t i, uint32_t number) {
+  const Round round = build.rounds[number];
+  if (i >= round.clusters)
+    return;
   if (round.isInPairs) {
     build.nearest[i] = (i ^ 1) < round.clusters ? i ^ 1 : i;
     return;
   }
-  const uint32_t *const clusters = build.clustersOf(round.from());
+  const uint32_t *const clusters = build.clustersOf(number & 1);
   const RtslBox box = build.boxes[clusters[i]];
-  const uint32_t limit = round.heightLimit();
-  const bool mayBeTooHigh = round.number >= limit; // a round adds one at most
+  const uint32_t limit = heightLimit(round.clusters);
+  const bool mayBeTooHigh = number >= limit; // a round adds one at most
   const uint32_t first = i < searchRadius ? 0 : i - searchRadius;
   const uint32_t last = i + searchRadius < round.clusters ? i + searchRadius : round.clusters - 1;
   float least = infinity;
@@ -81,9 +79,10 @@ inline bool isJoined(const TreeBuild &build, uint32_t i) {
 
 /// Counts the clusters that are left: each is 1 in the lower half of the sum. The first of two that
 /// are joined makes a node: 1 in the upper half.
-inline void countCluster(const TreeBuild &build, uint32_t i) {
-  const bool isSecond = isJoined(build, i) && build.nearest[i] < i;
-  build.sums[i] = isSecond ? 0 : isJoined(build, i) ? uint64_t(1) << 32 | 1 : 1;
+inline uint64_t countOfCluster(const TreeBuild &build, uint32_t i) {
+  if (!isJoined(build, i))
+    return 1;
+  return build.nearest[i] < i ? 0 : uint64_t(1) << 32 | 1;
 }
 
 inline Costs costsOf(const TreeBuild &build, uint32_t node) {
@@ -104,19 +103,33 @@ inline void joinNodes(const TreeBuild &build, uint32_t node, uint32_t left, uint
              costsOf(build, left), costsOf(build, right));
 }
 
-/// Each round with m clusters begins with n - m nodes that are no leaves.
-inline void moveCluster(const TreeBuild &build, uint32_t i, Round round) {
-  const uint32_t other = build.nearest[i];
-  const bool joins = isJoined(build, i);
-  if (joins && other < i)
+inline void sumClusters(const TreeBuild &build, uint32_t thread, uint32_t number, uint32_t call) {
+  forSumsBefore(
+      build, thread, build.rounds[number].clusters, call,
+      [&](uint32_t i) { return countOfCluster(build, i); },
+      [&](uint32_t i, uint64_t sum) { build.numbers[i] = sum; });
+}
+
+/// Joins a cluster with its nearest one, or moves it to the next round as it is. A round with m
+/// clusters begins with n - m nodes that are no leaves.
+inline void moveCluster(const TreeBuild &build, uint32_t i, uint32_t number) {
+  const Round round = build.rounds[number];
+  if (i >= round.clusters)
     return;
-  const uint32_t *const clusters = build.clustersOf(round.from());
-  uint32_t node = clusters[i];
-  if (joins) {
-    node = build.count + (build.count - round.clusters) + uint32_t(build.sums[i] >> 32);
-    joinNodes(build, node, clusters[i], clusters[other]);
+  const uint32_t *const from = build.clustersOf(number & 1);
+  const uint64_t sum = build.numbers[i], count = countOfCluster(build, i);
+  uint32_t node = from[i];
+  if (count >> 32) {
+    node = build.count + (build.count - round.clusters) + uint32_t(sum >> 32);
+    joinNodes(build, node, from[i], from[build.nearest[i]]);
   }
-  build.clustersOf(round.to())[uint32_t(build.sums[i])] = node;
+  if (count)
+    build.clustersOf(~number & 1)[uint32_t(sum)] = node;
+  if (i + 1 != round.clusters)
+    return;
+  const uint32_t left = uint32_t(sum) + uint32_t(count);
+  build.rounds[number + 1] = {left,
+                              round.isInPairs || left == round.clusters || number == manyRounds};
 }
 
 } // namespace rtsl::device::build

@@ -12,7 +12,7 @@
 
 namespace rtsl::device::build {
 
-constexpr uint32_t tileSize = 1024; // elements for a warp
+constexpr uint32_t tileSize = 1024; // elements for a warp that sorts
 constexpr uint32_t digitBits = 5, digits = 1u << digitBits;
 
 #ifdef __NVPTX__
@@ -66,6 +66,10 @@ private:
 
 constexpr uint32_t lanes = 1;
 
+inline uint64_t valueOfLane(uint64_t value, uint32_t) {
+  return value;
+}
+
 inline uint64_t sumBefore(uint64_t value, uint32_t, uint64_t &sum) {
   sum += value;
   return 0;
@@ -95,13 +99,32 @@ inline uint32_t tileCount(uint32_t elements) {
   return uint32_t((uint64_t(elements) + tileSize - 1) / tileSize);
 }
 
-/// For each row of a tile: row(element, isElement), on all lanes of the warp. `thread` numbers the
-/// lanes of all warps.
+/// Warps that sum elements have tiles of at least so many. On a GPU these are few rows, so that
+/// there are many warps.
+inline uint32_t leastInSum(uint32_t lanesOfWarp) {
+  return lanesOfWarp == 1 ? 512 : 4 * lanesOfWarp;
+}
+/// More warps do not run at once.
+constexpr uint32_t mostTilesOfSum = 8192;
+
+/// The elements of a tile of a sum of so many.
+inline uint32_t elementsOfTile(uint32_t elements) {
+  const uint32_t rows = elements / (lanes * mostTilesOfSum) + 1, least = leastInSum(lanes);
+  return lanes * rows < least ? least : lanes * rows;
+}
+/// The most tiles of sums of up to so many elements.
+inline uint32_t mostTiles(uint32_t elements, uint32_t lanesOfWarp) {
+  const uint32_t least = leastInSum(lanesOfWarp),
+                 tiles = uint32_t((uint64_t(elements) + least - 1) / least);
+  return tiles < mostTilesOfSum ? tiles : mostTilesOfSum;
+}
+
+/// For each row of a tile: row(element, isElement), on all lanes of the warp.
 template <typename Row>
-void forEachRow(uint32_t thread, uint32_t elements, Row row) {
-  const uint32_t first = thread / lanes * tileSize, lane = thread % lanes;
-  for (uint32_t i = 0; i < tileSize && first + i < elements; i += lanes)
-    row(first + i + lane, first + i + lane < elements);
+void forEachRow(uint32_t tile, uint32_t elementsOfTile, uint32_t lane, uint32_t elements, Row row) {
+  const uint64_t first = uint64_t(tile) * elementsOfTile;
+  for (uint32_t i = 0; i < elementsOfTile && first + i < elements; i += lanes)
+    row(uint32_t(first) + i + lane, first + i + lane < elements);
 }
 
 } // namespace rtsl::device::build

@@ -8,7 +8,7 @@
 #pragma once
 
 #include "runtime/device/trees/Grid.h"
-#include "runtime/device/trees/TreeBuild.h"
+#include "runtime/device/trees/Sums.h"
 
 namespace rtsl::device::build {
 
@@ -29,18 +29,21 @@ inline uint32_t firstItem(const RtslBvhNode &node, unsigned slot) {
 // Levels
 //===----------------------------------------------------------------------===//
 
-/// Counts the children that are nodes of number `first` + i in TreeRefit::levels.
-inline void countInner(const TreeBuild &build, uint32_t i, uint32_t first) {
-  const RtslBvhNode &node = build.nodes[build.refit.levels[first + i]];
-  build.sums[i] = uint32_t(__builtin_popcount(node.inner));
-}
-
-/// Adds these children to the next level, which begins at number `next`.
-inline void placeInner(const TreeBuild &build, uint32_t i, uint32_t first, uint32_t next) {
-  const RtslBvhNode &node = build.nodes[build.refit.levels[first + i]];
-  const uint32_t count = uint32_t(__builtin_popcount(node.inner));
-  for (uint32_t child = 0; child < count; ++child)
-    build.refit.levels[next + uint32_t(build.sums[i]) + child] = node.firstNode + child;
+/// Lists the children that are nodes of those from number `first` to `next` - 1 in
+/// TreeRefit::levels: the next level, which begins there.
+inline void placeInner(const TreeBuild &build, uint32_t thread, uint32_t first, uint32_t next,
+                       uint32_t call) {
+  const auto node = [&](uint32_t i) -> const RtslBvhNode & {
+    return build.nodes[build.refit.levels[first + i]];
+  };
+  forSumsBefore(
+      build, thread, next - first, call,
+      [&](uint32_t i) { return uint64_t(__builtin_popcount(node(i).inner)); },
+      [&](uint32_t i, uint64_t sum) {
+        const auto count = uint32_t(__builtin_popcount(node(i).inner));
+        for (uint32_t child = 0; child < count; ++child)
+          build.refit.levels[next + uint32_t(sum) + child] = node(i).firstNode + child;
+      });
 }
 
 //===----------------------------------------------------------------------===//

@@ -6,7 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/trees/TreeBuild.h"
+#include "runtime/device/trees/Sums.h"
 
 namespace rtsl::device::build {
 
@@ -72,64 +72,28 @@ inline uint32_t digitOf(uint64_t key, uint32_t pass) {
   return uint32_t(key >> (pass * digitBits)) & (digits - 1);
 }
 
-/// The sums are those of digit 0 for all tiles, of digit 1, ...
+/// The numbers are those of digit 0 for all tiles, of digit 1, ...
 inline void countDigits(const TreeBuild &build, uint32_t thread, uint32_t pass) {
-  const uint32_t lane = thread % lanes;
+  const uint32_t tile = thread / lanes, lane = thread % lanes;
   PerDigit numbers;
-  forEachRow(thread, build.count, [&](uint32_t i, bool isElement) {
+  forEachRow(tile, tileSize, lane, build.count, [&](uint32_t i, bool isElement) {
     const uint64_t key = isElement ? build.keysOf(pass & 1)[i] : 0;
     numbers.count(digitOf(key, pass), isElement, lane);
   });
-  numbers.store(build.sums + thread / lanes, tileCount(build.count), lane);
+  numbers.store(build.numbers + tile, tileCount(build.count), lane);
 }
 
 inline void moveByDigit(const TreeBuild &build, uint32_t thread, uint32_t pass) {
-  const uint32_t lane = thread % lanes, from = pass & 1, to = from ^ 1;
+  const uint32_t tile = thread / lanes, lane = thread % lanes, from = pass & 1, to = from ^ 1;
   PerDigit numbers;
-  numbers.load(build.sums + thread / lanes, tileCount(build.count), lane);
-  forEachRow(thread, build.count, [&](uint32_t i, bool isElement) {
+  numbers.load(build.numbers + tile, tileCount(build.count), lane);
+  forEachRow(tile, tileSize, lane, build.count, [&](uint32_t i, bool isElement) {
     const uint64_t key = isElement ? build.keysOf(from)[i] : 0;
     const uint64_t place = numbers.count(digitOf(key, pass), isElement, lane);
     if (!isElement)
       return;
     build.keysOf(to)[place] = key;
     build.orderOf(to)[place] = build.orderOf(from)[i];
-  });
-}
-
-//===----------------------------------------------------------------------===//
-// Sums of all elements before each
-//===----------------------------------------------------------------------===//
-
-inline void sumTile(const TreeBuild &build, uint32_t thread, uint32_t elements) {
-  uint64_t sum = 0, ofTile = 0;
-  forEachRow(thread, elements,
-             [&](uint32_t i, bool isElement) { sum += isElement ? build.sums[i] : 0; });
-  sumBefore(sum, thread % lanes, ofTile);
-  build.sumsOfTiles[thread / lanes] = ofTile;
-}
-
-/// One warp, over all tiles; the sum of all comes last.
-inline void sumTilesBefore(const TreeBuild &build, uint32_t lane, uint32_t tiles) {
-  uint64_t sum = 0;
-  for (uint32_t first = 0; first < tiles; first += lanes) {
-    const uint32_t tile = first + lane;
-    const uint64_t before = sum,
-                   value = sumBefore(tile < tiles ? build.sumsOfTiles[tile] : 0, lane, sum);
-    if (tile < tiles)
-      build.sumsOfTiles[tile] = before + value;
-  }
-  if (lane == 0)
-    build.sumsOfTiles[tiles] = sum;
-}
-
-inline void sumElementsBefore(const TreeBuild &build, uint32_t thread, uint32_t elements) {
-  uint64_t sum = build.sumsOfTiles[thread / lanes];
-  forEachRow(thread, elements, [&](uint32_t i, bool isElement) {
-    const uint64_t before = sum,
-                   value = sumBefore(isElement ? build.sums[i] : 0, thread % lanes, sum);
-    if (isElement)
-      build.sums[i] = before + value;
   });
 }
 

@@ -10,6 +10,10 @@ namespace rtsl::device::build {
 /// No path from the root of the binary tree is longer, and so none of the wide one.
 constexpr uint32_t mostHeight = 63;
 
+/// After so many rounds clusters are joined in pairs; usual are 20 to 70 in all. `mostRounds` has
+/// the 32 of pairs, and those that begin before the host knows that one cluster is left.
+constexpr uint32_t manyRounds = 150, mostRounds = manyRounds + 40;
+
 /// Bits of the place of an item on the curve, along each axis, and the passes to sort by them.
 constexpr uint32_t bitsOfAxis = 20, sortPasses = 3 * bitsOfAxis / digitBits;
 static_assert(3 * bitsOfAxis % digitBits == 0);
@@ -23,6 +27,23 @@ struct WideNode {
 
 struct Pair {
   uint32_t left, right;
+};
+
+/// A round of joining clusters (Clusters.h).
+struct Round {
+  uint32_t clusters;
+  bool isInPairs; // each cluster is joined with the next one
+};
+
+/// A level of the wide tree (Widen.h): its nodes, and the first item of a leaf of theirs.
+struct Level {
+  uint32_t first, end, firstItem;
+};
+
+/// A call of forSumsBefore (Sums.h).
+struct SumCall {
+  uint32_t begun, tiles;
+  uint64_t sum; // of all
 };
 
 /// What the steps of a refit share, beside the nodes, the items and the sums.
@@ -53,11 +74,15 @@ struct TreeBuild {
 
   uint64_t *keys[2]; // of the curve; before and after a pass of sorting
   uint32_t *order[2];
-  uint64_t *sums;        // one for each element, or for each digit and tile
-  uint64_t *sumsOfTiles; // of `sums`; then that of all
+  uint64_t *numbers;  // to be summed: one for each element, or for each digit and tile
+  SumCall *calls;     // 2, in turn
+  uint64_t *words[2]; // by tile of a call: what it has told the others
+
+  Round *rounds;         // mostRounds
   uint32_t *clusters[2]; // their nodes, before and after a round
   uint32_t *nearest;     // of each cluster, the one to be joined with
 
+  Level *levels;      // mostHeight + 2
   WideNode *wide;     // n; may be where the keys are
   uint32_t *contents; // the items in the order of the wide tree
   RtslBvhNode *nodes;
@@ -69,6 +94,7 @@ struct TreeBuild {
   uint64_t *keysOf(uint32_t which) const { return which ? keys[1] : keys[0]; }
   uint32_t *orderOf(uint32_t which) const { return which ? order[1] : order[0]; }
   uint32_t *clustersOf(uint32_t which) const { return which ? clusters[1] : clusters[0]; }
+  uint64_t *wordsOf(uint32_t which) const { return which ? words[1] : words[0]; }
 
   bool isItem(uint32_t node) const { return node < count; }
   /// The item of such a node.

@@ -40,33 +40,38 @@ void forEachChild(const TreeBuild &build, const WideNode &wide, Visit visit) {
 
 inline void startWide(const TreeBuild &build, uint32_t) {
   build.wide[0].node = 2 * build.count - 2;
+  build.levels[0] = {0, 1, 0};
 }
 
-/// Sums the sizes of the children of node `first` + i.
-inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t first) {
-  const Children children = childrenOfWide(build, build.wide[first + i].node);
+/// Sums the sizes of the children of a node of a level.
+inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t number) {
+  const Children children = childrenOfWide(build, build.wide[build.levels[number].first + i].node);
   uint64_t sum = 0;
   for (unsigned child = 0; child < children.count; ++child)
     sum += sizeOfChild(build, children.nodes[child]);
-  build.sums[i] = sum;
+  build.numbers[i] = sum;
 }
 
-/// Sets where the children of the same node are; the children of the whole level begin at
-/// `firstNode` and `firstItem`.
-inline void placeChildren(const TreeBuild &build, uint32_t i, uint32_t first, uint32_t firstNode,
-                          uint32_t firstItem) {
-  WideNode &wide = build.wide[first + i];
+/// Sets where the children of the same node are. Those of all nodes of the level are the next one.
+inline void placeChildren(const TreeBuild &build, uint32_t i, uint32_t number) {
+  const Level level = build.levels[number];
+  WideNode &wide = build.wide[level.first + i];
   const Children children = childrenOfWide(build, wide.node);
   wide.slots =
       slotsOf(build.boxes[wide.node], children.count, [&](unsigned child) -> const RtslBox & {
         return build.boxes[children.nodes[child]];
       });
-  wide.firstNode = firstNode + uint32_t(build.sums[i]);
-  wide.firstItem = firstItem + uint32_t(build.sums[i] >> 32);
+  wide.firstNode = level.end + uint32_t(build.numbers[i]);
+  wide.firstItem = level.firstItem + uint32_t(build.numbers[i] >> 32);
+  uint64_t all = 0;
   forEachChild(build, wide, [&](uint32_t child, unsigned, uint64_t before) {
     if (build.choice(child).isNode)
       build.wide[wide.firstNode + uint32_t(before)].node = child;
+    all = before + sizeOfChild(build, child);
   });
+  if (level.first + i + 1 == level.end)
+    build.levels[number + 1] = {level.end, wide.firstNode + uint32_t(all),
+                                wide.firstItem + uint32_t(all >> 32)};
 }
 
 /// Writes the items below a node, at most RTSL_MOST_LEAF_ITEMS.
