@@ -18,7 +18,7 @@
 
 namespace rtsl::runtime {
 
-class HostMegakernel final : public Megakernel {
+class HostMegakernel : public Megakernel {
 public:
   /// `scene` is not relocated; the code at `code` must stay loaded. `kept`: of another scene's
   /// HostMegakernel, or null. Throws OutOfRange, OutOfMemory.

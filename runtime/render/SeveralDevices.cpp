@@ -136,7 +136,7 @@ void SeveralDevices::fetchSums() {
 
 /// Lets devices that took longer than others give stripes to them.
 void SeveralDevices::moveStripes() {
-  constexpr double longEnough = 0.01; // to be measured
+  constexpr double longEnough = 0.05; // to be measured, and to be worth it
   std::vector<double> seconds;
   for (const Device &device : devices)
     seconds.push_back(device.seconds);

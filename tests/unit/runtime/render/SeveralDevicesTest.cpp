@@ -38,6 +38,20 @@ void paintInfinities(const RtslJob *job, std::uint32_t lane) {
         job->samples[3 * (std::uint64_t(place) * job->sampleCount + i)] = 1e30f * 1e30f;
 }
 
+/// Counts the pixels whose sums a device with memory of its own would copy.
+class CopyCounter final : public HostMegakernel {
+public:
+  CopyCounter(const RenderOptions &options, std::atomic<std::size_t> &there,
+              std::atomic<std::size_t> &back)
+      : HostMegakernel(codeOf(paint), emptyScene(), options), there(there), back(back) {}
+
+private:
+  void uploadSums(const PixelSums &, std::size_t, std::size_t count) override { there += count; }
+  void fetchSums(PixelSums &, std::size_t, std::size_t count) override { back += count; }
+
+  std::atomic<std::size_t> &there, &back;
+};
+
 } // namespace
 
 TEST(RowsLeft, AreAllTakenOnceAndLessAndLess) {
@@ -115,6 +129,27 @@ TEST(SeveralDevices, GoOnWithSums) {
     EXPECT_EQ(ofSeveral.sums.closed, ofOne.sums.closed);
     EXPECT_EQ(statistics.samples, rtsl::runtime::countSamples(ofOne.sums).samples);
   }
+}
+
+TEST(SeveralDevices, KeepTheSumsBetweenPasses) {
+  RenderOptions options = small();
+  options.height = 37;
+  options.samplesPerPixel = 33;
+  options.threads = 1;
+  std::atomic<std::size_t> there{0}, back{0};
+  SeveralDevices several(
+      3, [&](std::size_t) { return std::make_unique<CopyCounter>(options, there, back); }, options);
+  PassOptions passes;
+  passes.checkpoint = [](const PartialRendering &, bool) {}; // one pass after the other
+  unsigned count = 0;
+  PartialRendering rendering;
+  several.renderInPasses(passes, [&](const PassState &) { ++count; }, rendering);
+  EXPECT_GE(count, 3u);
+  // Once; some rows may move if the machine delays a device by longer than passes take.
+  EXPECT_GE(there, 20u * 37);
+  EXPECT_LT(there, 2u * 20 * 37);
+  EXPECT_GE(back, 20u * 37);
+  EXPECT_LT(back, 2u * 20 * 37);
 }
 
 /// A device that takes longer gives rows away between passes.
