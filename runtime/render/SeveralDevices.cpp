@@ -75,6 +75,12 @@ void SeveralDevices::run(Watch &watch) {
   mayMove = sums && met.pixels == pixelCount();
 }
 
+/// A device, for this thread.
+Megakernel &SeveralDevices::on(std::size_t i) {
+  devices[i].backend->enterThread();
+  return *devices[i].backend;
+}
+
 /// What the thread of a device does.
 void SeveralDevices::runDevice(std::size_t i, Watch &watch) {
   Device &device = devices[i];
@@ -88,23 +94,24 @@ void SeveralDevices::runDevice(std::size_t i, Watch &watch) {
   };
   Watch watchOfPart(ofPart, &watch);
   const Clock::time_point start = Clock::now();
-  device.backend->enterThread();
+  Megakernel &backend = on(i);
+  const auto renderKept = [&] {
+    for (const Rows &rows : stripes.of(i))
+      pixels += double(rows.height()) * windowOf(options).width();
+    add(device, backend.renderKept(samplesOfPixel, watchOfPart));
+  };
+  const auto renderRows = [&](const Window &rows) {
+    pixels = double(rows.pixels());
+    const std::uint64_t first = std::uint64_t(rows.y0 - windowOf(options).y0) * rows.width();
+    add(device, backend.renderPart(rows, samplesOfPixel, picture.pixels.data() + first * channels(),
+                                   watchOfPart));
+  };
   try {
-    if (sums) {
-      for (const Rows &rows : stripes.of(i))
-        pixels += double(rows.height()) * windowOf(options).width();
-      add(device, device.backend->renderKept(samplesOfPixel, watchOfPart));
-    } else
-      while (!watch.isStopped()) {
-        const Window rows = takeRows();
-        if (rows.pixels() == 0)
-          break;
-        pixels = double(rows.pixels());
-        const std::uint64_t first = std::uint64_t(rows.y0 - windowOf(options).y0) * rows.width();
-        add(device,
-            device.backend->renderPart(rows, samplesOfPixel,
-                                       picture.pixels.data() + first * channels(), watchOfPart));
-      }
+    if (sums)
+      renderKept();
+    else
+      for (Window rows = takeRows(); rows.pixels() > 0 && !watch.isStopped(); rows = takeRows())
+        renderRows(rows);
   } catch (...) {
     watch.stop(); // the other devices
     throw;
@@ -121,17 +128,15 @@ void SeveralDevices::uploadSums() {
   const SampleCounts counts = countSamples(*sums);
   mayMove = mayMove && counts.least == counts.most;
   forEachInParallel(unsigned(devices.size()), devices.size(), [&](std::size_t i) {
-    devices[i].backend->enterThread();
-    devices[i].backend->keepSums(*sums, stripes.of(i));
-    devices[i].backend->uploadSums();
+    Megakernel &backend = on(i);
+    backend.keepSums(*sums, stripes.of(i));
+    backend.uploadSums();
   });
 }
 
 void SeveralDevices::fetchSums() {
-  forEachInParallel(unsigned(devices.size()), devices.size(), [&](std::size_t i) {
-    devices[i].backend->enterThread();
-    devices[i].backend->fetchSums();
-  });
+  forEachInParallel(unsigned(devices.size()), devices.size(),
+                    [&](std::size_t i) { on(i).fetchSums(); });
 }
 
 /// Lets devices that took longer than others give stripes to them.
@@ -142,10 +147,6 @@ void SeveralDevices::moveStripes() {
     seconds.push_back(device.seconds);
   if (!mayMove || *std::max_element(seconds.begin(), seconds.end()) < longEnough)
     return;
-  const auto on = [&](std::size_t i) -> Megakernel & {
-    devices[i].backend->enterThread();
-    return *devices[i].backend;
-  };
   const std::vector<Stripes::Move> moves = stripes.balance(seconds);
   for (const Stripes::Move &move : moves) {
     on(move.from).fetchRows(move.rows);

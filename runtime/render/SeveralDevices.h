@@ -65,6 +65,7 @@ private:
   void uploadSums() override;
   void fetchSums() override;
 
+  Megakernel &on(std::size_t i);
   void moveStripes();
   void runDevice(std::size_t i, Watch &watch);
   Window takeRows();

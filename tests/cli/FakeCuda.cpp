@@ -248,15 +248,14 @@ int buildStep(std::size_t number, const rtsl::device::build::TreeBuild &build, s
   using namespace rtsl::device::build;
   if (!isAllocated(&build, sizeof build))
     return IllegalAddress;
-  const std::string name = kernels[programKernels + number];
-  for (const char *const ofWarps :
-       {"CountDigits", "MoveByDigit", "SumNumbers", "SumClusters", "PlaceInner"})
-    if (name == std::string("rtsl_build_") + ofWarps)
-      count /= 32;
   std::size_t step = 0;
 #define RTSL_BUILD_STEP(name, call)                                                                \
   if (number == step++)                                                                            \
     for (std::uint32_t i = 0; i < count; ++i)                                                      \
+      call;
+#define RTSL_BUILD_STEP_OF_WARPS(name, call)                                                       \
+  if (number == step++)                                                                            \
+    for (std::uint32_t i = 0; i < count / 32; ++i)                                                 \
       call;
 #include "runtime/device/trees/Steps.def"
   return Success;

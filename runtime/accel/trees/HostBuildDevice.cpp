@@ -45,12 +45,8 @@ void HostBuildDevice::run(BuildStep step, Address address, std::uint32_t count, 
                           std::uint32_t b, std::uint32_t c) {
   using namespace device::build;
   const TreeBuild &build = *reinterpret_cast<const TreeBuild *>(address);
-  const bool isOfTiles = step == BuildStep::CountDigits || step == BuildStep::MoveByDigit ||
-                         step == BuildStep::SumNumbers || step == BuildStep::SumClusters ||
-                         step == BuildStep::PlaceInner;
-  // At least so many on one thread.
-  const std::uint32_t together = isOfTiles ? 1 : 512;
-  const auto forEach = [&](auto work) {
+  // `together`: at least so many on one thread.
+  const auto forEach = [&](std::uint32_t together, auto work) {
     forEachInParallel(threads, (count + together - 1) / together, [&](std::uint32_t part) {
       const std::uint32_t end = std::min(count, (part + 1) * together);
       for (std::uint32_t i = part * together; i < end; ++i)
@@ -60,7 +56,10 @@ void HostBuildDevice::run(BuildStep step, Address address, std::uint32_t count, 
   switch (step) {
 #define RTSL_BUILD_STEP(name, call)                                                                \
   case BuildStep::name:                                                                            \
-    return forEach([&](std::uint32_t i) { call; });
+    return forEach(512, [&](std::uint32_t i) { call; });
+#define RTSL_BUILD_STEP_OF_WARPS(name, call)                                                       \
+  case BuildStep::name:                                                                            \
+    return forEach(1, [&](std::uint32_t i) { call; });
 #include "runtime/device/trees/Steps.def"
   }
 }
