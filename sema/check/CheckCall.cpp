@@ -112,7 +112,8 @@ ExprPtr FunctionChecker::checkPlainCall(const ast::CallExpr &expr) {
 void FunctionChecker::reportUnknownFunction(const ast::Name &callee, SourceRange call) {
   Diagnostic &diagnostic = diagnostics.report(Code::unknownFunction, callee.range, callee.text);
   if (const ForeignSpelling *foreign = foreignSpelling(callee.text)) {
-    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), callee.range, call);
+    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement),
+                    program.imports(foreign->module), callee.range, call);
     return;
   }
   if (program.suggestImport(diagnostic, callee.text))

@@ -140,7 +140,8 @@ void FunctionChecker::reportUnknownName(const std::string &name, SourceRange ran
     return; // one report per function is enough, unless each use gets a fix
   Diagnostic &diagnostic = diagnostics.report(Code::unknownName, range, name);
   if (foreign) {
-    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement), range);
+    suggestSpelling(diagnostic, *foreign, whyNotHere(foreign->replacement),
+                    program.imports(foreign->module), range);
     const SourceRange dot{range.file, range.end, range.end + 1};
     if (isThis && range.end < diagnostics.sources().text(range.file).size() &&
         sourceText(dot) == ".")

@@ -29,7 +29,7 @@ static const Type *typeOfName(const ast::Name &name, Program &program) {
   }
   Diagnostic &diagnostic = program.diagnostics.report(Code::unknownType, name.range, name.text);
   if (const ForeignSpelling *foreign = foreignSpelling(name.text)) {
-    suggestSpelling(diagnostic, *foreign, "", name.range);
+    suggestSpelling(diagnostic, *foreign, "", program.imports(foreign->module), name.range);
     return program.types.error;
   }
   if (program.suggestImport(diagnostic, name.text))

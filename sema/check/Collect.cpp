@@ -39,6 +39,14 @@ bool Program::suggestImport(Diagnostic &diagnostic, const std::string &name) con
   return !module.empty();
 }
 
+bool Program::imports(const std::string &libraryModule) const {
+  for (const ast::TranslationUnit *unit : units)
+    for (const ast::ImportDecl &import : unit->imports)
+      if (!import.isFile && import.path == libraryModule)
+        return true;
+  return false;
+}
+
 void Program::collect(const std::vector<const ast::TranslationUnit *> &roots,
                       const ImportResolver &resolver) {
   std::unordered_set<const ast::TranslationUnit *> seen;

@@ -76,6 +76,11 @@ std::unique_ptr<typed::Function> Program::declareFunction(const ast::FunctionDec
 // Methods
 //===----------------------------------------------------------------------===//
 
+/// Is this a method by which an object lights others, as an rt_Light would?
+static bool isOfSurfaceThatShines(const std::string &method) {
+  return method == "generateSample" || method == "samplePDF" || method == "emission";
+}
+
 void Program::declareMethods(ClassScope &scope) {
   for (const ast::FunctionDecl &declaration : scope.declaration->functions) {
     std::unique_ptr<typed::Function> owned = declareFunction(declaration, &scope);
@@ -88,6 +93,7 @@ void Program::declareMethods(ClassScope &scope) {
       checkTableMethod(scope, declaration, *function);
     } else if (const std::vector<std::string> owners = classesWithMethod(name);
                scope.root && !owners.empty()) {
+      foreignMethods.insert(function);
       Diagnostic &diagnostic = diagnostics.report(Code::foreignMethod, function->range, name,
                                                   joinWords(owners), withArticle(scope.root->name));
       std::vector<std::string> methods;
@@ -97,6 +103,10 @@ void Program::declareMethods(ClassScope &scope) {
       const SourceRange named = scope.declaration->name.range;
       if (!methods.empty())
         diagnostic.note(withArticle(scope.root->name) + " has " + joinWords(methods));
+      if (scope.root->name == "rt_Light" && isOfSurfaceThatShines(name))
+        diagnostic.note(
+            "a light source with an area is an object whose material has `emission`: a mesh, or "
+            "an rt_Primitive with `generateSample` and `samplePDF`");
       else if (owners.size() == 1 && !scope.base)
         diagnostic.fix({named.file, named.end, named.end}, " : " + owners.front());
     }

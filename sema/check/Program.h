@@ -114,6 +114,9 @@ public:
   std::unordered_map<const RootModel *, std::vector<ClassScope *>>
       defaults; // the default classes of an rt_ class
   std::unordered_map<const typed::Class *, ClassScope *> scopeOf;
+  /// Methods of another class than the one that defines them, which is reported. What they use is
+  /// not: it follows from the class that they belong to.
+  std::unordered_set<const typed::Function *> foreignMethods;
 
   /// What a name at file level denotes where it is used; null: nothing. Names in the author's files
   /// are not visible in the library: an author's function may have the name of a built-in function
@@ -124,6 +127,8 @@ public:
                                                      SourceRange usedAt) const;
   /// Adds to a message about an unknown name which module of the library defines it, if one does.
   bool suggestImport(Diagnostic &diagnostic, const std::string &name) const;
+  /// Does a file of the program import that module of the library, "std.noise"?
+  bool imports(const std::string &libraryModule) const;
   /// The member in the class or one of its bases.
   const typed::Member *findMember(const ClassScope *scope, const std::string &name) const;
   /// All functions of that name that an object of the class has: own ones, and inherited ones that

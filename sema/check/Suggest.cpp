@@ -8,6 +8,14 @@ namespace rtsl {
 
 using SpellingTable = std::unordered_map<std::string, ForeignSpelling>;
 
+/// Functions of std.noise may be meant.
+static ForeignSpelling ofNoise(const std::string &functions) {
+  ForeignSpelling spelling;
+  spelling.advice = functions;
+  spelling.module = "std.noise";
+  return spelling;
+}
+
 static const SpellingTable &spellings() {
   static const SpellingTable table = {
       // Types of HLSL, CUDA and the double precision of GLSL
@@ -165,8 +173,13 @@ static const SpellingTable &spellings() {
       {"GroupMemoryBarrierWithGroupSync",
        {"", "a shader runs for one ray: there are no other threads to wait for"}},
       {"barrier", {"", "a shader runs for one ray: there are no other threads to wait for"}},
-      {"noise",
-       {"", "add `import std.noise;`: it has `gradientNoise`, `fractalNoise` and `worleyNoise`"}},
+      {"noise", ofNoise("`gradientNoise`, `fractalNoise` and `worleyNoise`")},
+      {"perlin", ofNoise("`gradientNoise`, which is Perlin's")},
+      {"snoise", ofNoise("`gradientNoise` and `fractalNoise`")},
+      {"cnoise", ofNoise("`gradientNoise`, which is Perlin's")},
+      {"fbm", ofNoise("`fractalNoise`")},
+      {"worley", ofNoise("`worleyNoise`")},
+      {"voronoi", ofNoise("`worleyNoise`, the distance to the nearest of scattered points")},
       {"log2f", {"log2", "", true}},
       {"sinhf", {"sinh", "", true}},
       {"coshf", {"cosh", "", true}},
@@ -300,7 +313,8 @@ std::vector<std::string> foreignNames() {
 }
 
 void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
-                     const std::string &whyNot, SourceRange name, SourceRange call) {
+                     const std::string &whyNot, bool hasModule, SourceRange name,
+                     SourceRange call) {
   if (!whyNot.empty()) {
     diagnostic.note(whyNot);
     return;
@@ -315,8 +329,14 @@ void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
     if (!foreign.after.empty())
       diagnostic.fix({call.file, call.end, call.end}, foreign.after, foreign.sure);
   }
-  if (!foreign.advice.empty())
+  if (foreign.advice.empty())
+    return;
+  if (foreign.module.empty())
     diagnostic.note(foreign.advice);
+  else if (hasModule)
+    diagnostic.note("`" + foreign.module + "`, which is imported, has " + foreign.advice);
+  else
+    diagnostic.note("add `import " + foreign.module + ";`: it has " + foreign.advice);
 }
 
 } // namespace rtsl

@@ -18,6 +18,8 @@ struct ForeignSpelling {
   std::string append = {}; // at the end of the call's arguments
   std::string after = {};  // after the call
   bool isVariable = false; // the call becomes a variable
+  /// The module of the library that `advice` is about: "std.noise".
+  std::string module = {};
 };
 /// Null if `name` is not known from HLSL, CUDA, OptiX, GLSL's rasteriser or the RenderMan language.
 const ForeignSpelling *foreignSpelling(const std::string &name);
@@ -25,8 +27,9 @@ const ForeignSpelling *foreignSpelling(const std::string &name);
 std::vector<std::string> foreignNames();
 /// Adds the fix and the advice to a message about `name`, which is called if `call` is valid.
 /// `whyNot`, if not empty, is the reason why the replacement is not allowed there; it is added
-/// instead.
+/// instead. `hasModule`: the program imports the module that the advice is about.
 void suggestSpelling(Diagnostic &diagnostic, const ForeignSpelling &foreign,
-                     const std::string &whyNot, SourceRange name, SourceRange call = {});
+                     const std::string &whyNot, bool hasModule, SourceRange name,
+                     SourceRange call = {});
 
 } // namespace rtsl

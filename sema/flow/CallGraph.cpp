@@ -194,6 +194,7 @@ private:
   std::unordered_map<const typed::Function *, unsigned> findCycles() const;
   void reportCycle(const Cycle &cycle);
   void judgeFrom(const typed::Function &method, const ClassScope &scope, const MethodModel &rules);
+  void reachFrom(const typed::Function &method);
   void warnOfMistypedMethod(const typed::Function &function, const RootModel &root);
   const FunctionFacts &factsOf(const typed::Function *function) const {
     static const FunctionFacts none;
@@ -480,6 +481,20 @@ void CallGraph::judgeFrom(const typed::Function &method, const ClassScope &scope
   }
 }
 
+/// Leaves the uses in the function and in those that it calls unchecked, unless a method of the
+/// right class reaches them.
+void CallGraph::reachFrom(const typed::Function &method) {
+  Functions pending = {&method};
+  while (!pending.empty()) {
+    const typed::Function *function = pending.back();
+    pending.pop_back();
+    if (reached.insert(function).second)
+      for (const CallEdge &edge : factsOf(function).calls)
+        for (const typed::Function *target : targets(edge))
+          pending.push_back(target);
+  }
+}
+
 /// Warns of a function that is never called and whose name and signature resemble those of an
 /// engine method: it was probably meant to be one.
 void CallGraph::warnOfMistypedMethod(const typed::Function &function, const RootModel &root) {
@@ -523,6 +538,8 @@ void CallGraph::judgeHelpers() {
         const_cast<typed::Function *>(target)->isCalledOnSelf |=
             target->isStateMethod && edge.dispatched && !edge.throughReference;
       }
+  for (const typed::Function *function : program.foreignMethods)
+    reachFrom(*function);
   // A function that no method reaches yet may do what any method of its class may do.
   for (const ClassScope *scope : baseFirst) {
     if (!scope->root || scope->root == &helperModel())

@@ -95,6 +95,21 @@ TEST(Hints, OtherLanguagesAreTranslated) {
             "write `a * b`: it is the product of linear algebra\n");
 }
 
+/// A module is added only where it is missing, be it imported by this file or by another one.
+TEST(Hints, ModulesAreNotAddedTwice) {
+  const std::string noise = "float f(vec3 p) { return noise(p); }\n";
+  EXPECT_EQ(hints(noise), "add `import std.noise;`: it has `gradientNoise`, `fractalNoise` and "
+                          "`worleyNoise`\n");
+  const std::string imported = "`std.noise`, which is imported, has ";
+  EXPECT_EQ(hints("import std.noise;\n" + noise +
+                  "//=== std.noise\nfloat fractalNoise(vec3 p) { return p.x; }\n"),
+            imported + "`gradientNoise`, `fractalNoise` and `worleyNoise`\n");
+  EXPECT_EQ(hints("import \"b.rtsl\";\nfloat f(vec3 p) { return fbm(p); }\n"
+                  "//=== b.rtsl\nimport std.noise;\nfloat x(vec3 p) { return p.x; }\n"
+                  "//=== std.noise\nfloat fractalNoise(vec3 p) { return p.x; }\n"),
+            imported + "`fractalNoise`\n");
+}
+
 TEST(Hints, WhatCannotStandThereIsNotSuggested) {
   EXPECT_EQ(
       hints("class A : rt_Material { void shade() { discard; rt_SampleColor = color(1.0); } };"),
@@ -236,6 +251,10 @@ TEST(Hints, ExpectedMethodsAreShown) {
             "expected `void miss()` or `void miss(inout P)`, where P is a struct, the "
             "payload of the ray\n");
   EXPECT_EQ(hints("class L : rt_Light { void shade() { } };"), "an rt_Light has `illumination`\n");
+  EXPECT_EQ(
+      hints("class L : rt_Light { void generateSample() { rt_PDF = 1.0; } };"),
+      "an rt_Light has `illumination`\na light source with an area is an object whose material has "
+      "`emission`: a mesh, or an rt_Primitive with `generateSample` and `samplePDF`\n");
 }
 
 TEST(Hints, StateListsTheClassesThatReadIt) {
