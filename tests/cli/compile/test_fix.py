@@ -75,8 +75,11 @@ class Fixes(Case):
         while (
             path.read_text() != AFTER and rounds < 3
         ):  # the types are looked at once the syntax is right
-            _, error = self.fix("grey.rtsl")
-            self.assertRegex(error, r"\ngrey.rtsl: \d+ mistakes? fixed\n$")
+            _, error = self.fix("grey.rtsl", status=None)
+            self.assertRegex(
+                error, r"\ngrey.rtsl: \d+ mistakes? fixed\n(\d+ mistakes? left:\n\n|$)"
+            )
+            self.assertEqual(" left:" in error, path.read_text() != AFTER, error)
             rounds += 1
         self.assertEqual(path.read_text(), AFTER)
         out, error = self.fix("grey.rtsl", status=0)
@@ -86,7 +89,7 @@ class Fixes(Case):
         path = self.write("clay.rtsl", HABITS)
         before = ""
         while before != (before := path.read_text()):
-            self.fix("clay.rtsl", status=0 if before == PLAIN else DIAGNOSED)
+            self.fix("clay.rtsl", status=None)
         self.assertEqual(before, PLAIN)
 
     def test_standard_input_goes_to_standard_output(self):
@@ -99,7 +102,7 @@ class Fixes(Case):
         self.write("a.rtsl", 'import "c.rtsl";\nfloat2 a() { return c(); }\n')
         self.write("b.rtsl", "float3 b() { return vec3(1); }\n")
         self.write("c.rtsl", "float2 c() { return vec2(1); }\n")
-        _, error = self.fix("a.rtsl", "b.rtsl")
+        _, error = self.fix("a.rtsl", "b.rtsl", status=0)
         for name in "abc":
             self.assertIn(f"{name}.rtsl: 1 mistake fixed\n", error)
             self.assertNotIn("float", (self.folder / f"{name}.rtsl").read_text())
@@ -109,9 +112,39 @@ class Fixes(Case):
         path = self.write(
             "many.rtsl", "".join(f"float3 f{i}() {{ return vec3(1); }}\n" for i in range(50))
         )
-        _, error = self.fix("many.rtsl")
+        _, error = self.fix("many.rtsl", status=0)
         self.assertIn("many.rtsl: 50 mistakes fixed\n", error)
         self.assertNotIn("float3", path.read_text())
+
+    def test_the_status_is_that_of_the_corrected_files(self):
+        path = self.write("a.rtsl", "float3 a() { return vec3(1); }\n")
+        _, error = self.fix("a.rtsl", status=0)
+        self.assertIn("error[E0201]", error)  # what was fixed is shown
+        self.assertTrue(error.endswith("\na.rtsl: 1 mistake fixed\n"), error)
+        # What no fix is certain for is left,
+        path.write_text("float3 a() { return vec3(radus); }\n")
+        _, error = self.fix("a.rtsl", status=DIAGNOSED)
+        left = error.split("\na.rtsl: 1 mistake fixed\n1 mistake left:\n\n")[1]
+        self.assertRegex(left, r"^a.rtsl:1:\d+: error\[E0200\]: unknown name `radus`\n")
+        # and what comes to light once the syntax is right.
+        path.write_text("float a() { float b = 1.0 return nothing + b; }\n")
+        _, error = self.fix("a.rtsl", status=DIAGNOSED)
+        self.assertIn("\na.rtsl: 1 mistake fixed\n1 mistake left:\n\na.rtsl:1:", error)
+        # As JSON there is one document.
+        path.write_text("float3 a() { return vec3(radus); }\n")
+        _, error = self.run_rtslc(
+            "check", "--fix", "a.rtsl", "--diagnostics=json", status=DIAGNOSED
+        )
+        document, end = json.JSONDecoder().raw_decode(error)
+        self.assertEqual(len(document["diagnostics"]), 2, error)
+        self.assertEqual(
+            error[end:].split("\n")[1:], ["a.rtsl: 1 mistake fixed", "1 mistake left", ""]
+        )
+        # Nothing is left in a scene's shaders.
+        path.write_text("float3 a() { return vec3(1); }\n")
+        self.write("b.rtsl", "float2 b() { return vec2(1); }\n")
+        self.fix("b.rtsl", "a.rtsl", "-MD", "-MF", "rule", status=0)
+        self.assertIn("a.rtsl", (self.folder / "rule").read_text())
 
     def test_guesses_change_nothing(self):
         text = "float f(float radius) { return radus; }\ndouble g() { return 1.0; }\n"
@@ -127,7 +160,7 @@ class Fixes(Case):
     def test_overlapping_fixes_wait_for_the_next_run(self):
         path = self.write("nested.rtsl", "int f(float x) { return lerp(x, 1.0, 0.5) + frac(x); }\n")
         for _ in range(3):
-            self.fix("nested.rtsl") if self.run_messages("nested.rtsl") else None
+            self.fix("nested.rtsl", status=None) if self.run_messages("nested.rtsl") else None
         self.assertEqual(
             path.read_text(), "int f(float x) { return int(mix(x, 1.0, 0.5) + fract(x)); }\n"
         )

@@ -20,8 +20,8 @@ std::string count(std::size_t number, const char *noun) {
 }
 
 /// Writes the corrected texts back, all of them or, if one cannot be written, none. What came from
-/// standard input goes to standard output.
-void writeFixes(const Messages &messages) {
+/// standard input goes to standard output. Gives whether anything was corrected.
+bool writeFixes(const Messages &messages) {
   const std::vector<FileId> files = filesToFix(messages.diagnostics);
   const auto path = [&](FileId file) { return std::string(messages.sources.name(file)); };
   for (const FileId file : files)
@@ -35,6 +35,7 @@ void writeFixes(const Messages &messages) {
                fixed.skipped ? ", {} skipped because they overlap with these: run again\n" : "\n",
                fixed.skipped);
   }
+  return !files.empty();
 }
 
 /// All that is wrong with scenes and, checked together, with RTSL files. Gives the files that were
@@ -63,24 +64,43 @@ std::vector<std::string> checkFiles(const CheckOptions &options, SceneChecker ch
   return filesRead;
 }
 
+/// The status of files that have been corrected. If they have errors, these are shown, after a line
+/// with their number; as JSON there is one document, which has been printed.
+int statusOfCorrected(const CheckOptions &options, SceneChecker checkScene,
+                      std::vector<std::string> &filesRead) {
+  Messages left(options.common);
+  left.diagnostics.errorLimit = 0;
+  filesRead = checkFiles(options, checkScene, left);
+  const bool isFine = left.status() == Fine, isJson = options.common.jsonDiagnostics;
+  if (!isFine)
+    fmt::print(stderr, "{} left{}\n", count(left.diagnostics.errorCount(), "mistake"),
+               isJson ? "" : ":\n");
+  if (isFine || isJson)
+    left.silence();
+  return left.status();
+}
+
 int check(const CheckOptions &options, SceneChecker checkScene) {
   Messages messages(options.common);
   if (options.fix)
     messages.diagnostics.errorLimit = 0; // what is not recorded cannot be fixed
-  const std::vector<std::string> filesRead = checkFiles(options, checkScene, messages);
+  std::vector<std::string> filesRead = checkFiles(options, checkScene, messages);
   messages.print();
+  int status = messages.status();
   if (options.fix || options.common.dependencies.isAsked)
     try {
-      if (options.fix)
-        writeFixes(messages);
+      const bool isStandardInput =
+          std::find(options.files.begin(), options.files.end(), "-") != options.files.end();
+      if (options.fix && writeFixes(messages) && status != Fine && !isStandardInput)
+        status = statusOfCorrected(options, checkScene, filesRead);
       checkOutputs("", options.common.dependencies, options.files, filesRead);
-      if (!messages.diagnostics.hasErrors())
+      if (status == Fine)
         writeDependencies(options.common.dependencies, "", options.files, filesRead);
     } catch (const Error &error) {
       fmt::print(stderr, "rtslc: {}\n", error.what());
       return Diagnosed;
     }
-  return messages.status();
+  return status;
 }
 
 } // namespace
