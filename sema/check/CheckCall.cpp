@@ -234,7 +234,7 @@ int FunctionChecker::choose(const ast::Name &callee, const std::vector<Signature
 
 void FunctionChecker::convertArguments(const Signature &signature, std::vector<ExprPtr> &args) {
   for (std::size_t i = 0; i != args.size(); ++i)
-    args[i] = convertTo(std::move(args[i]), signature.parameters[i].type);
+    args[i] = convertImplicitly(std::move(args[i]), signature.parameters[i].type);
 }
 
 //===----------------------------------------------------------------------===//

@@ -246,13 +246,31 @@ void FunctionChecker::explainConversion(Diagnostic &diagnostic, const typed::Exp
 
 ExprPtr FunctionChecker::coerce(ExprPtr expr, const Type *to, const Label &label) {
   if (implicitConversion(expr->type, to) != Conversion::None)
-    return to->isError() ? errorExpr(expr->range) : convertTo(std::move(expr), to);
+    return to->isError() ? errorExpr(expr->range) : convertImplicitly(std::move(expr), to);
   Diagnostic &diagnostic =
       diagnostics.report(Code::noConversion, expr->range, toString(expr->type), toString(to));
   if (!label.text.empty())
     diagnostic.label(label.range, label.text);
   explainConversion(diagnostic, *expr, to);
   return errorExpr(expr->range);
+}
+
+ExprPtr FunctionChecker::convertImplicitly(ExprPtr expr, const Type *to) {
+  const auto *quotient = dynCast<typed::BinaryExpr>(expr.get());
+  // A constant divisor is usually meant: `x / 2` is the middle.
+  const auto isOf = [](const Type *type, TypeKind kind) {
+    return type->scalar() && type->scalar()->is(kind);
+  };
+  const bool isWhole = isOf(expr->type, TypeKind::Int) || isOf(expr->type, TypeKind::UInt);
+  if (quotient && quotient->op == ast::BinaryOp::Div && isWhole && isOf(to, TypeKind::Float) &&
+      !evaluate(*quotient->right)) {
+    const typed::Expr &left = *quotient->left;
+    const Type *exact = withScalar(left.type, types.floatType, types);
+    diagnostics.report(Code::quotientTruncated, expr->range, toString(to))
+        .note("if that is meant, write `" + toString(exact) + "(...)` around the quotient")
+        .fix(left.range, toString(exact) + "(" + sourceText(left.range) + ")");
+  }
+  return convertTo(std::move(expr), to);
 }
 
 ExprPtr FunctionChecker::checkConditional(const ast::ConditionalExpr &expr) {
@@ -276,8 +294,8 @@ ExprPtr FunctionChecker::checkConditional(const ast::ConditionalExpr &expr) {
   }
   auto node = makeExpr<typed::ConditionalExpr>(type, expr.range);
   node->condition = std::move(condition);
-  node->whenTrue = convertTo(std::move(whenTrue), type);
-  node->whenFalse = convertTo(std::move(whenFalse), type);
+  node->whenTrue = convertImplicitly(std::move(whenTrue), type);
+  node->whenFalse = convertImplicitly(std::move(whenFalse), type);
   return node;
 }
 

@@ -172,9 +172,9 @@ const Type *FunctionChecker::operandTypes(BinaryOp op, ExprPtr &left, ExprPtr &r
     if (contains(l, TypeKind::Color) || contains(r, TypeKind::Color))
       return nullptr;
     if (implicitConversion(r, l) != Conversion::None)
-      right = convertTo(std::move(right), l);
+      right = convertImplicitly(std::move(right), l);
     else if (implicitConversion(l, r) != Conversion::None)
-      left = convertTo(std::move(left), r);
+      left = convertImplicitly(std::move(left), r);
     else
       return nullptr;
     return types.boolType;
@@ -207,7 +207,7 @@ const Type *FunctionChecker::colorTypes(BinaryOp op, ExprPtr &left, ExprPtr &rig
   ExprPtr &other = left->type->is(TypeKind::Color) ? right : left;
   if ((op != BinaryOp::Mul && op != BinaryOp::Div) || !other->type->isNumericScalar())
     return nullptr;
-  other = convertTo(std::move(other), types.floatType);
+  other = convertImplicitly(std::move(other), types.floatType);
   return types.color;
 }
 
@@ -236,8 +236,8 @@ const Type *FunctionChecker::arithmeticTypes(BinaryOp op, ExprPtr &left, ExprPtr
     result = r;
   if (!result)
     return nullptr;
-  left = convertTo(std::move(left), l);
-  right = convertTo(std::move(right), r);
+  left = convertImplicitly(std::move(left), l);
+  right = convertImplicitly(std::move(right), r);
   return result;
 }
 

@@ -56,7 +56,7 @@ ExprPtr FunctionChecker::checkTracePayload(const ast::CallExpr &expr) {
       explainConversion(diagnostic, *arg, parameters[i].type);
       broken = true;
     } else {
-      arg = convertTo(std::move(arg), parameters[i].type);
+      arg = convertImplicitly(std::move(arg), parameters[i].type);
     }
     node->args.push_back(std::move(arg));
   }

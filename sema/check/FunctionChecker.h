@@ -71,6 +71,8 @@ private:
   /// Converts, or reports why that is impossible. `label` (if its text is not empty) points to what
   /// requires the type.
   typed::ExprPtr coerce(typed::ExprPtr expr, const Type *to, const Label &label = {});
+  /// Converts what is convertible, and warns of what loses its fraction by that.
+  typed::ExprPtr convertImplicitly(typed::ExprPtr expr, const Type *to);
   void explainConversion(Diagnostic &diagnostic, const typed::Expr &expr, const Type *to);
   std::string sourceText(SourceRange range) const {
     return std::string(diagnostics.sources().text(range));

@@ -219,6 +219,17 @@ TEST(Hints, ConversionsAreWrittenOut) {
   expectFix("class L : rt_Light;\nfloat x;", "class L : rt_Light;\nprivate float x;");
 }
 
+TEST(Hints, QuotientsKeepTheirFraction) {
+  expectFix("float f(int a, int b) { return a / b; }",
+            "float f(int a, int b) { return float(a) / b; }");
+  expectFix("vec2 f(uvec2 a, uvec2 b) { return (a + b) / a; }",
+            "vec2 f(uvec2 a, uvec2 b) { return vec2((a + b)) / a; }");
+  EXPECT_EQ(hints("float f(int a, int b) { return a / b; }"),
+            "if that is meant, write `float(...)` around the quotient\n");
+  const std::string unsure = "float f(int a, int b) { return a / b; }\n"; // it may be meant
+  EXPECT_EQ(mended(unsure), unsure);
+}
+
 TEST(Hints, CandidatesAreListed) {
   EXPECT_EQ(hints("float g(float a, int b) { return a; }\nfloat g(int a, float b) { return b; }\n"
                   "float f() { return g(1, 2); }"),
