@@ -9,6 +9,7 @@
 #include "scenefile/json/KeyFrames.h"
 #include "scenefile/mistakes/DarkLights.h"
 #include "scenefile/mistakes/InvisibleObjects.h"
+#include "scenefile/mistakes/Members.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
 #include "support/ErrorMessages.h"
@@ -59,7 +60,7 @@ public:
     addContents();
     attempt([&] {
       if (description.background)
-        scene.setBackground(add(*description.background, "background"));
+        setBackground(*description.background);
     });
     attempt([&] {
       if (description.exception)
@@ -587,12 +588,13 @@ private:
       return meshes[number] =
                  scene.addMesh(std::move(mesh), geometry.name.text.empty() ? geometry.mesh[0].path
                                                                            : geometry.name.text);
-    } catch (Error &error) {
-      if (isOfAttribute(geometry, error))
+    } catch (const Error &caught) {
+      if (isOfAttribute(geometry, caught))
         throw;
+      Error error = caught; // which other objects with the same file catch, too
       if (geometry.part.empty() || !error.place || error.place->line == 0) // else it is in the part
         error.place = placeOfMesh(geometry, error);
-      throw;
+      throw error;
     }
   }
 
@@ -620,6 +622,19 @@ private:
         throw;
       }
     }
+  }
+
+  void setBackground(const ObjectDescription &background) {
+    const RtslRef object = add(background, "background");
+    scene.setBackground(object);
+    const Members members(scene, object);
+    if (!members.is("EnvironmentMap") || !members.has("image", "sampler2D"))
+      return;
+    if (const auto *negative = images.negativeOf(members.value<RtslRef>("image")))
+      scene.addWarning(
+          {message::environmentNegative("background", negative->count, negative->lowest,
+                                        negative->column, negative->row),
+           background.className.place});
   }
 
   /// Is the error about a value that the scene gives?

@@ -57,10 +57,19 @@ RtslRef ImageObjects::of(const JsonValue &image, const std::string &className,
                                    className == "sampler3D",
                                    readsOfImages(scene.program(), className, "directionChances")),
                                name);
-  } catch (Error &error) {
-    error.place = image.place();
-    throw;
+  } catch (const Error &caught) {
+    Error error = caught;                       // which other mentions of the image catch, too
+    if (!error.place || error.place->line == 0) // else it is in the model that has the image
+      error.place = image.place();
+    throw error;
   }
+}
+
+const runtime::NegativeTexels *ImageObjects::negativeOf(RtslRef object) const {
+  for (const auto &[number, one] : made)
+    if (one == object && files.negative(number).count != 0)
+      return &files.negative(number);
+  return nullptr;
 }
 
 } // namespace rtsl::scene

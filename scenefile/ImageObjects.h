@@ -20,6 +20,9 @@ public:
   /// ImageFiles::take, at the image.
   RtslRef of(const JsonValue &image, const std::string &className, const std::string &name);
 
+  /// What is below 0 of the image that has this object; null: nothing.
+  const runtime::NegativeTexels *negativeOf(RtslRef object) const;
+
 private:
   const SceneDescription &description;
   runtime::Scene &scene;

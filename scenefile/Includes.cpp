@@ -1,5 +1,6 @@
 #include "scenefile/Includes.h"
 
+#include "scenefile/gltf/File.h"
 #include "scenefile/json/Reader.h"
 #include "support/AtomicFile.h"
 #include "support/ErrorMessages.h"
@@ -90,6 +91,10 @@ private:
   /// The part of a scene in a file; null if it has been included before.
   JsonValue read(const JsonValue &path, const std::string &from) {
     expect(path, Kind::String, "`include`");
+    if (gltf::hasEnding(path.string, ".rtsl"))
+      throw Error(message::shadersIncluded(path.string), path.place());
+    if (gltf::isModel(path.string))
+      throw Error(message::modelIncluded(path.string), path.place());
     const std::string file = resolvePath(path, from);
     const std::string identity = identityOf(file);
     if (const auto above = std::find(open.begin(), open.end(), identity); above != open.end()) {

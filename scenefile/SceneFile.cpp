@@ -4,6 +4,7 @@
 #include "scenefile/Includes.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/Models.h"
+#include "scenefile/gltf/File.h"
 #include "scenefile/graph/Graph.h"
 #include "scenefile/json/KeyFrames.h"
 #include "scenefile/json/Reader.h"
@@ -183,11 +184,9 @@ private:
     ImportDescription import{{value.string, value.place()}, ""};
     if (value.string.empty())
       throw Error(message::importNameEmpty(), value.place());
-    const std::string extension = ".rtsl";
-    bool isFile = value.string.size() > extension.size() &&
-                  value.string.compare(value.string.size() - extension.size(), extension.size(),
-                                       extension) == 0;
-    if (isFile)
+    if (gltf::hasEnding(value.string, ".json") || gltf::isModel(value.string))
+      throw Error(message::sceneImported(value.string), value.place());
+    if (gltf::hasEnding(value.string, ".rtsl"))
       import.path = resolvePath(value, scene.file);
     scene.imports.push_back(std::move(import));
   }

@@ -28,7 +28,7 @@ enum class ErrorCode : std::uint8_t {
   BadCheckpoint, // not a checkpoint, of another rendering or version, truncated, damaged
   BadPackage,    // not a package, of another version, truncated, damaged
   // Scene files.
-  NotAScene, // shaders where a scene is expected
+  NotAScene, // a file of another kind than a scene, or shaders
   JsonSyntax,
   DuplicateKey,
   UnknownKey,
@@ -64,6 +64,11 @@ const char *name(ErrorCode code);
 struct Place {
   std::string file;
   std::uint32_t line = 0, column = 0, length = 0;
+
+  bool operator==(const Place &other) const {
+    return file == other.file && line == other.line && column == other.column &&
+           length == other.length;
+  }
 };
 
 /// A second position that helps to understand an error.

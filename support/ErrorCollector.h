@@ -11,6 +11,7 @@
 #include "support/Error.h"
 
 #include <cstddef>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -29,21 +30,22 @@ public:
     try {
       std::forward<Step>(step)();
       return true;
-    } catch (Error &error) {
+    } catch (const Error &error) { // not moved: it may be thrown again, for another part
       if (!isOfInput(error.code))
         throw;
-      add(std::move(error));
+      add(error);
       return false;
     }
   }
 
-  /// Keeps an error and those that it carries. Throws when there are `limit`.
+  /// Keeps an error and those that it carries, unless it has the same one: several parts of an
+  /// input may need what is missing. Throws when there are `limit`.
   void add(Error error) {
     std::vector<Error> further = std::move(error.further);
     error.further.clear();
-    errors.push_back(std::move(error));
+    keep(std::move(error));
     for (Error &one : further)
-      errors.push_back(std::move(one));
+      keep(std::move(one));
     if (errors.size() >= limit)
       throwIfAny();
   }
@@ -64,6 +66,17 @@ private:
   static bool isOfInput(ErrorCode code) {
     return code != ErrorCode::OutOfMemory && code != ErrorCode::Cancelled &&
            code != ErrorCode::Internal;
+  }
+
+  static bool isSame(const Error &a, const Error &b) {
+    return a.code == b.code && a.place == b.place && std::string_view(a.what()) == b.what();
+  }
+
+  void keep(Error error) {
+    for (const Error &other : errors)
+      if (isSame(other, error))
+        return;
+    errors.push_back(std::move(error));
   }
 
   std::vector<Error> errors;

@@ -143,4 +143,30 @@ std::size_t dropNotFinite(Texels &texels) {
   return dropped;
 }
 
+NegativeTexels negativeTexels(const Texels &texels) {
+  NegativeTexels negative;
+  if (texels.format != TexelFormat::Float16 && texels.format != TexelFormat::Float32)
+    return negative;
+  const ChannelCodec codec(texels.format);
+  const std::size_t channelBytes = bytesOf(texels.format);
+  const auto *bytes = reinterpret_cast<const std::uint8_t *>(texels.words.data());
+  const std::uint32_t colors = texels.channels == 4 ? 3 : 1;
+  for (std::uint32_t row = 0; row < texels.height; ++row)
+    for (std::uint32_t column = 0; column < texels.width; ++column) {
+      const std::size_t texel = std::size_t(texels.height - 1 - row) * texels.width + column;
+      double lowest = 0;
+      for (std::uint32_t c = 0; c < colors; ++c)
+        lowest = std::min(lowest, codec.decode(bytes + (texel * texels.channels + c) * channelBytes,
+                                               /*isAlpha=*/false));
+      if (lowest == 0)
+        continue;
+      if (negative.count++ == 0) {
+        negative.column = column;
+        negative.row = row;
+      }
+      negative.lowest = std::min(negative.lowest, static_cast<float>(lowest));
+    }
+  return negative;
+}
+
 } // namespace rtsl::runtime

@@ -83,6 +83,16 @@ Texels readRawTexels(const std::string &path, Texels shape);
 /// Sets texels that are not finite to 0; returns how many channels of texels were.
 std::size_t dropNotFinite(Texels &texels);
 
+/// Texels with a color (not alpha) below 0: how many, the lowest value, and the first one, by its
+/// column and row from the upper left corner.
+struct NegativeTexels {
+  std::size_t count = 0;
+  float lowest = 0;
+  std::uint32_t column = 0, row = 0;
+};
+/// Those of the first slice. Formats that are no floats have none.
+NegativeTexels negativeTexels(const Texels &texels);
+
 /// Leaves out channels that nothing reads, before levels are added: `read` has bits 0 to 3 for red,
 /// green, blue and alpha. What is read has the same values and bits. An image of which one color is
 /// read becomes a grey one of that color, with alpha if that is read, too; others stay as they are.

@@ -323,6 +323,7 @@ ImageFiles::ImageFiles(const SceneDescription &description,
     try {
       result.texels = load(*images[i].description, description);
       result.notFinite = runtime::dropNotFinite(result.texels);
+      result.negative = runtime::negativeTexels(result.texels);
       runtime::dropChannels(result.texels, images[i].channels);
       if (images[i].withLevels)
         runtime::addLevels(result.texels);

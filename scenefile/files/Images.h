@@ -67,10 +67,16 @@ public:
   /// finite. Throws the errors of runtime::readPixels and runtime::texelsOf.
   runtime::Texels take(std::size_t number, std::size_t &notFinite);
 
+  /// What of an image is below 0.
+  const runtime::NegativeTexels &negative(std::size_t number) const {
+    return results[number].negative;
+  }
+
 private:
   struct Result {
     runtime::Texels texels;
     std::size_t notFinite = 0;
+    runtime::NegativeTexels negative;
     std::exception_ptr failure;
   };
   std::map<const JsonValue *, std::size_t> numbers;

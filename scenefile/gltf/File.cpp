@@ -31,6 +31,29 @@ bool isKnown(const std::string &extension) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
+/// What a .glb file is that has neither the container's beginning nor JSON.
+Error noContainer(const std::string &bytes, const std::string &path) {
+  constexpr std::string_view pointer = "version https://git-lfs";
+  if (bytes.empty())
+    return Error(message::noContainer("it is empty"), Place{path});
+  if (bytes.compare(0, pointer.size(), pointer) == 0)
+    return std::move(Error(message::noContainer("it is a pointer of Git LFS"), Place{path})
+                         .note("`git lfs pull` fetches the file"));
+  std::string start;
+  for (const char byte : bytes.substr(0, 4))
+    start += fmt::format("{}{:02x}", start.empty() ? "" : " ", std::uint8_t(byte));
+  if (bytes[0] == '<')
+    return std::move(Error(message::noContainer("it begins with `<`, as web pages do"), Place{path})
+                         .note("the address of the page was downloaded, not that of the file"));
+  return std::move(Error(message::noContainer("its first bytes are " + start), Place{path})
+                       .note("export or download it again"));
+}
+
+bool isJson(const std::string &bytes) {
+  const std::size_t start = bytes.find_first_not_of(" \t\r\n");
+  return start != std::string::npos && (bytes[start] == '{' || bytes[start] == '[');
+}
+
 std::uint32_t wordAt(std::string_view bytes, std::size_t at) {
   std::uint32_t word = 0;
   for (std::size_t i = 4; i-- > 0;)
@@ -53,6 +76,8 @@ void forgetPositions(JsonValue &value) {
     }
   }
 }
+
+constexpr std::string_view base64Marker = ";base64,";
 
 int valueOfHex(char c) {
   if (c >= '0' && c <= '9')
@@ -110,18 +135,17 @@ bool isDataUri(const std::string &uri) {
 
 std::string bytesOfDataUri(const JsonValue &uri, const std::string &what) {
   const std::string &text = uri.string;
-  const std::string marker = ";base64,";
-  const std::size_t comma = text.find(marker);
+  const std::size_t comma = text.find(base64Marker);
   if (comma == std::string::npos)
     throw Error(message::uriNotBase64(what), uri.place());
   std::size_t end = text.size();
-  while (end > comma + marker.size() && text[end - 1] == '=')
+  while (end > comma + base64Marker.size() && text[end - 1] == '=')
     --end;
   std::string bytes;
   bytes.reserve((end - comma) * 3 / 4);
   std::uint32_t bits = 0;
   int count = 0;
-  for (std::size_t i = comma + marker.size(); i < end; ++i) {
+  for (std::size_t i = comma + base64Marker.size(); i < end; ++i) {
     const int value = valueOfBase64(text[i]);
     if (value < 0)
       throw Error(message::uriByteNotBase64(what, i), uri.place());
@@ -171,10 +195,13 @@ File::File(const std::string &bytes, std::string path) : name(std::move(path)) {
   try {
     if (bytes.compare(0, 4, "glTF") == 0)
       readContainer(bytes);
+    else if (hasEnding(name, ".glb") && !isJson(bytes))
+      throw noContainer(bytes, name);
     else
       json = parseJson(bytes, name);
     checkRoot();
     checkExtensions();
+    checkBuffers();
   } catch (const Error &error) {
     throw named(error, name);
   }
@@ -274,6 +301,70 @@ void File::checkExtensions() {
     if (std::find(missing.begin(), missing.end(), extension.string) == missing.end())
       allWarnings.push_back({message::extensionIgnored(extension.string, name), extension.place()});
   });
+  errors.throwIfAny();
+}
+
+/// The bytes that a buffer has, without reading them. Nothing: what is known only when it is read,
+/// which may fail.
+std::optional<std::uint64_t> File::sizeOf(const JsonValue &buffer, std::size_t number) const {
+  const JsonValue *uri = buffer.find("uri");
+  if (!uri && number == 0 && hasBinary)
+    return binary.size();
+  if (!uri || uri->kind != Kind::String)
+    return {};
+  if (isDataUri(uri->string)) {
+    const std::size_t start = uri->string.find(base64Marker);
+    if (start == std::string::npos)
+      return {};
+    const std::size_t end = uri->string.find_last_not_of('=') + 1;
+    const auto isBase64 = [](char c) { return valueOfBase64(c) >= 0; };
+    if (!std::all_of(uri->string.begin() + start + base64Marker.size(), uri->string.begin() + end,
+                     isBase64))
+      return {};
+    return (end - start - base64Marker.size()) * 3 / 4;
+  }
+  if (uri->string.find("://") != std::string::npos)
+    return {};
+  std::error_code failed;
+  const std::string path = resolve(*uri);
+  if (!std::filesystem::is_regular_file(path, failed))
+    return {};
+  const std::uintmax_t size = std::filesystem::file_size(path, failed);
+  return failed ? std::nullopt : std::optional<std::uint64_t>(size);
+}
+
+/// Buffers that have fewer bytes than their `byteLength`: errors where a view needs them.
+void File::checkBuffers() {
+  const auto wholeOf = [](const JsonValue &object, const char *key) {
+    const JsonValue *found = object.find(key);
+    return found && found->kind == Kind::Number && found->number >= 0
+               ? std::uint64_t(std::min(found->number, 0x1p53))
+               : 0;
+  };
+  ErrorCollector errors;
+  const std::vector<JsonValue> &all = list("buffers"), &views = list("bufferViews");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::uint64_t length = wholeOf(all[i], "byteLength");
+    const std::optional<std::uint64_t> size = sizeOf(all[i], i);
+    if (!size || *size >= length)
+      continue;
+    const Place place = all[i].find("byteLength")->place();
+    std::size_t beyond = views.size(); // a view that needs missing bytes, and no more than promised
+    for (std::size_t j = views.size(); j-- > 0;) {
+      const std::uint64_t end = wholeOf(views[j], "byteOffset") + wholeOf(views[j], "byteLength");
+      const JsonValue *buffer = views[j].find("buffer");
+      if (buffer && buffer->kind == Kind::Number && buffer->number == double(i) && end > *size &&
+          end <= length)
+        beyond = j;
+    }
+    if (beyond == views.size())
+      allWarnings.push_back({message::bufferShort(i, *size, length), place});
+    else
+      errors.add(Error(message::bufferWithoutView(i, *size, length, beyond,
+                                                  wholeOf(views[beyond], "byteOffset") +
+                                                      wholeOf(views[beyond], "byteLength")),
+                       place));
+  }
   errors.throwIfAny();
 }
 

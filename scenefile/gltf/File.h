@@ -88,6 +88,8 @@ private:
   void readContainer(const std::string &bytes);
   void checkRoot();
   void checkExtensions();
+  std::optional<std::uint64_t> sizeOf(const JsonValue &buffer, std::size_t number) const;
+  void checkBuffers();
   std::string load(const JsonValue &buffer, std::size_t number) const;
 
   std::string name;

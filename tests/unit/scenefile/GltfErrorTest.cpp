@@ -5,6 +5,7 @@
 #include "scenefile/SceneFile.h"
 #include "scenefile/gltf/Mesh.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -101,6 +102,22 @@ TEST_F(GltfError, DamagedContainers) {
   broken[20] = '[';
   EXPECT_EQ(sceneError(broken, "m.glb"),
             "s.json:2:24+5: jsonSyntax: `m.glb`: this is not JSON: unexpected ':'; expected ']'");
+  EXPECT_EQ(
+      sceneError("glTX" + whole.substr(4), "m.glb"),
+      "s.json:2:24+5: badMesh: `m.glb`: this is not a .glb file, which begins with `glTF`: its "
+      "first bytes are 67 6c 54 58 (note export or download it again)");
+  EXPECT_EQ(
+      sceneError("<!DOCTYPE html>", "m.glb"),
+      "s.json:2:24+5: badMesh: `m.glb`: this is not a .glb file, which begins with `glTF`: it "
+      "begins with `<`, as web pages do (note the address of the page was downloaded, not that "
+      "of the file)");
+  EXPECT_EQ(
+      sceneError("version https://git-lfs.github.com/spec/v1\n", "m.glb"),
+      "s.json:2:24+5: badMesh: `m.glb`: this is not a .glb file, which begins with `glTF`: it "
+      "is a pointer of Git LFS (note `git lfs pull` fetches the file)");
+  EXPECT_EQ(sceneError("", "m.glb"), "s.json:2:24+5: badMesh: `m.glb`: this is not a .glb file, "
+                                     "which begins with `glTF`: it is empty");
+  EXPECT_EQ(sceneError(squareFile(), "m.glb"), "no error"); // JSON by another name
   // Every shorter file gives a message.
   for (std::size_t size = 0; size < whole.size(); size += 7)
     EXPECT_NE(sceneError(whole.substr(0, size), "m.glb"), "no error") << size;
@@ -201,8 +218,8 @@ TEST_F(GltfError, Accessors) {
 TEST_F(GltfError, Buffers) {
   EXPECT_EQ(meshError(squareFile()), "no error");
   EXPECT_EQ(meshError(squareFile("{}", "", square().substr(0, 50))),
-            "m.gltf:7:13+1: badBuffer: `buffers.0` is truncated: it has 50 bytes, and `POSITION` "
-            "of `meshes.0.primitives.0` (`accessors.1`) needs 60");
+            "m.gltf:7:28+2: badBuffer: `buffers.0` is truncated: it has 50 bytes of its "
+            "`byteLength` 60, and `bufferViews.1` ends at byte 60");
   std::string model = squareFile();
   const std::size_t at = model.find("data:"), end = model.find('"', at);
   const auto withUri = [&](const std::string &uri) {
@@ -233,6 +250,42 @@ TEST_F(GltfError, Buffers) {
   EXPECT_EQ(meshError(squareFile("{}", "", bytes)),
             "m.gltf/meshes.0.primitives.0: badMesh: mesh `m.gltf/meshes.0.primitives.0` has a "
             "vertex that is not finite: y of vertex 0 is nan");
+}
+
+/// Nothing that is needed is missing, but the file promises more.
+TEST_F(GltfError, BuffersWithFewerBytesThanTheyGive) {
+  const auto warningsOf = [&](const gltf::File &file) {
+    std::string text;
+    for (const Warning &warning : file.warnings())
+      text +=
+          fmt::format("{}:{}: {}\n", warning.place->line, warning.place->column, warning.message);
+    return text;
+  };
+  const auto longer = [](std::string model) {
+    const std::string length = "\"byteLength\": 60";
+    return model.replace(model.find(length), length.size(), "\"byteLength\": 99");
+  };
+  const std::string warning =
+      "`buffers.0` has 60 bytes, and its `byteLength` is 99: the file may be truncated, though all "
+      "its views are complete\n";
+  EXPECT_EQ(warningsOf(gltf::File(squareFile(), folder.path + "/m.gltf")), "");
+  EXPECT_EQ(warningsOf(gltf::File(longer(squareFile()), folder.path + "/m.gltf")),
+            "7:28: " + warning);
+  std::string model = longer(squareFile());
+  const std::size_t at = model.find("data:"), end = model.find('"', at);
+  folder.write("square.bin", square());
+  EXPECT_EQ(warningsOf(gltf::File(std::string(model).replace(at, end - at, "square.bin"),
+                                  folder.path + "/m.gltf")),
+            "7:28: " + warning);
+  model.replace(at - 10, end - at + 11, ""); // no `uri`
+  EXPECT_EQ(warningsOf(gltf::File(container(model, square()), folder.path + "/m.glb")),
+            "0:0: " + warning);
+  EXPECT_EQ(errorOf([&] {
+              gltf::File(container(model, square().substr(0, 48)), folder.path + "/m.glb");
+            }).substr(folder.path.size() + 1),
+            "m.glb: badBuffer: `" + folder.path +
+                "/m.glb`: `buffers.0` is truncated: it has 48 bytes of its `byteLength` 99, and "
+                "`bufferViews.1` ends at byte 60");
 }
 
 TEST_F(GltfError, Materials) {

@@ -22,7 +22,8 @@ constexpr unsigned directions = 512;
 
 /// How often a method wrote what it should not.
 struct Faults {
-  unsigned drawn = 0, negative = 0, notFinite = 0, withoutDensity = 0;
+  unsigned drawn = 0, negative = 0, notFinite = 0, withoutDensity = 0, otherLength = 0;
+  float length = 1; // of one of these
 
   void add(const float *value, std::uint32_t components) {
     const float *end = value + components;
@@ -30,6 +31,9 @@ struct Faults {
     negative += std::any_of(value, end, [](float one) { return one < 0; });
   }
 };
+
+/// How far the length of a direction may be from 1.
+constexpr float lengthTolerance = 1e-3f;
 
 /// The faults by class and method.
 using FaultsByMethod = std::map<std::pair<std::string, std::string>, Faults>;
@@ -82,6 +86,13 @@ void draw(const runtime::Scene &scene, RtslRef material, FaultsByMethod &found) 
       ofDrawn.withoutDensity +=
           state.PDF == 0 && std::any_of(state.BSDFValue, state.BSDFValue + program.colorComponents,
                                         [](float one) { return one > 0; });
+      // Light that counts by the cosine, for which the direction has to have length 1.
+      const Vec3 direction = device::load(state.LightDirection);
+      const float length = std::sqrt(device::dot(direction, direction));
+      if (state.PDF > 0 && std::isfinite(length) && std::abs(length - 1) > lengthTolerance) {
+        ++ofDrawn.otherLength;
+        ofDrawn.length = length;
+      }
     } else { // any direction
       const RtslState other = randomHit(launch, random, i);
       device::store(state.LightDirection, device::load(other.RayDirection));
@@ -150,6 +161,10 @@ std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &mo
     if (faults.withoutDensity)
       warnings.push_back(
           {message::sampleWithoutDensity(className, faults.withoutDensity, faults.drawn), place});
+    if (faults.otherLength)
+      warnings.push_back(
+          {message::sampleOfOtherLength(className, faults.otherLength, faults.drawn, faults.length),
+           place});
   }
   return warnings;
 }

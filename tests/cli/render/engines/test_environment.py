@@ -157,6 +157,31 @@ class Images(EnvironmentCase):
         self.lit_floor(self.sky(4, 2, [0.0] * 8), spp=4)
         self.assertEqual(self.mean(), [0, 0, 0])
 
+    def test_radiance_below_0_counts_as_0(self):
+        """It is seen by nobody, and reported once."""
+        values = [float(i % 3) for i in range(32)]
+        values[5] = values[27] = -2.0
+        values[6] = -1e30
+        for camera in ("Down", "Inside"):
+            pictures = []
+            for clamped in (False, True):
+                sky = self.sky(
+                    8, 4, [max(v, 0.0) if clamped else v for v in values], filter="nearest"
+                )
+                self.lit_floor(sky, camera=camera, spp=16)
+                pictures.append(f"{clamped}.exr")
+                _, messages = self.run_rtslc("render", "scene.json", "-o", pictures[-1], "-q")
+                self.assertEqual(
+                    messages.count(
+                        "background: 3 texels of the image have colors below 0, the lowest -1e+30; "
+                        "the first is at (3, 0) from the upper left corner"
+                    ),
+                    0 if clamped else 1,
+                    messages,
+                )
+                self.assertEqual(messages.count("warning"), 0 if clamped else 1, messages)
+            self.assert_same_bits(*pictures)
+
     def test_every_path_gives_the_same_bits(self):
         self.lit_floor(
             self.sky(4, 2, [0.1, 0.2, 0.3, 0.4, 5.0, 0.1, 0.1, 0.1]),

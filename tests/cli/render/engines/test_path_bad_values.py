@@ -102,6 +102,30 @@ class Lost : Own {
 class Check(PathCase):
     """`rtslc check` tries the methods of materials."""
 
+    def test_directions_of_another_length(self):
+        """Twice as long: the cosine counts twice. Of a mirror's there is none."""
+        self.write(
+            "shaders.rtsl",
+            SHADERS
+            + """
+class Long : Half {
+  void sampleBSDF() { Half::sampleBSDF(); rt_LightDirection *= 2.0; }
+};
+class LongMirror : Mirror {
+  void sampleBSDF() { Mirror::sampleBSDF(); rt_LightDirection *= 2.0; }
+};
+""",
+        )
+        for name, is_named in (("Long", True), ("LongMirror", False), ("Half", False)):
+            self.scene([(BALL, {"class": name})])
+            _, messages = self.run_rtslc("check", "scene.json", "-Wno-sampling-method")
+            self.assertEqual(
+                "`sampleBSDF` of `Long` drew 512 of 512 directions with a length other than 1, "
+                "such as 2: light counts by the cosine" in messages,
+                is_named,
+                messages,
+            )
+
     def test_check_tries_the_methods_of_materials(self):
         """Values below 0, values that are no numbers, and directions without a density."""
         self.write(

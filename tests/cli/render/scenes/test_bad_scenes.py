@@ -101,6 +101,28 @@ class BadScenes(Case):
         diagnostics = self.render("--set", "objects.3.mesh=nothing.obj")
         self.assert_message(diagnostics, "E0900", "nothing.obj")
 
+    def test_each_mention_of_a_file_that_is_missing(self):
+        """The file is read once for all of them."""
+        self.write(
+            "scene.json",
+            """{"rtsl": 1, "import": "std",
+"camera": {"class": "PerspectiveCamera", "constructor": [[0, 1, 4], [0, 0, 0], [0, 1, 0]]},
+"materials": {"m": {"class": "Lambert"},
+ "a": {"class": "Lambert", "reflectanceMap": {"class": "ImageTexture", "image": {"file": "n.png"}}},
+ "b": {"class": "Lambert", "reflectanceMap": {"class": "ImageTexture", "image": {"file": "n.png"}}}},
+"objects": [{"mesh": "none.obj", "material": "a"},
+ {"mesh": "none.obj", "material": "b", "transform": {"scale": 2}},
+ {"mesh": "none.obj", "material": "m", "transform": {"scale": 3}}]}""",
+        )
+        for text, lines in (
+            ("cannot read mesh `none.obj`: No such file", [6, 7, 8]),
+            ("n.png", [4, 5]),
+        ):
+            self.assertEqual(
+                sorted(d["range"]["begin"]["line"] for d in self.render() if text in d["message"]),
+                lines,
+            )
+
     def test_unknown_material(self):
         self.glass_scene()
         self.assert_message(self.render("--set", "objects.1.material=gless"), "E0806", "gless")

@@ -167,6 +167,26 @@ class Include(Case):
         ):
             self.assertIn(text, str(codes))
 
+    def test_files_of_another_kind(self):
+        self.write_parts()
+        self.part("scene.json", include="models/gray.rtsl", camera=CAMERA)
+        self.assert_message(
+            self.diagnose("check", "scene.json"),
+            "E0865",
+            "`models/gray.rtsl` contains shaders, and `include` takes files of scenes: shaders are "
+            "for `import`",
+            file="scene.json",
+        )
+        self.part("scene.json", include=["models/triangle.obj"], camera=CAMERA)
+        self.assert_message(
+            self.diagnose("check", "scene.json"), "E0865", "a model is for `model` of a node"
+        )
+        for file in ("lights.json", "models/triangle.obj"):
+            self.part("scene.json", **{"import": ["std.cameras", file]}, camera=CAMERA)
+            self.assert_message(
+                self.diagnose("check", "scene.json"), "E0865", f"`{file}` contains no shaders"
+            )
+
     def test_cycles(self):
         self.part("scene.json", include="scene.json", camera=CAMERA)
         self.assert_message(
