@@ -392,8 +392,6 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
     addGpuRewrites(builder);
     keepStatesInLoop(callbacks);
   }
-  if (module.getFunction("rtsl_run_state"))
-    readLaunchAsVariable(module);
   if (options.optimization > 0)
     foldConstantFunctions(module, functions);
   if (options.isMegakernel && options.optimization > 0 && joinCalls(module))

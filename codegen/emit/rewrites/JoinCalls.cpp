@@ -58,14 +58,6 @@ private:
 
 } // namespace
 
-void readLaunchAsVariable(llvm::Module &module) {
-  for (llvm::Function &function : module)
-    for (llvm::Instruction &instruction : llvm::instructions(function))
-      if (auto *load = llvm::dyn_cast<llvm::LoadInst>(&instruction);
-          load && llvm::isa<llvm::Argument>(load->getPointerOperand()))
-        load->setMetadata(llvm::LLVMContext::MD_invariant_load, nullptr);
-}
-
 bool joinCalls(llvm::Module &module) {
   llvm::SmallVector<llvm::Function *> joined;
   Sizes sizes;

@@ -14,11 +14,6 @@ class Module;
 
 namespace rtsl::codegen {
 
-/// The launch pointer in a ray's state is normally loaded as invariant. That holds for one ray; in
-/// the state variable of a machine, which is reused for one ray after the other, the load must not
-/// move before the store.
-void readLaunchAsVariable(llvm::Module &module);
-
 /// Marks the functions that take addresses so that LLVM inlines all calls of them, before any other
 /// pass. Does nothing in programs with separate functions (codegen/ir/Separate.h), and in those
 /// that would become larger than LLVM handles in reasonable time. Returns whether any function is

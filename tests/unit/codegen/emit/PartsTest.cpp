@@ -4,6 +4,7 @@
 #include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/passes/Pipeline.h"
 #include "runtime/device/ray/State.h"
+#include "tests/unit/codegen/emit/MakeContext.h"
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/MLIRContext.h"
@@ -20,16 +21,6 @@
 using namespace rtsl::codegen;
 
 namespace {
-
-std::unique_ptr<mlir::MLIRContext> makeContext() {
-  mlir::DialectRegistry registry;
-  registerPassDependencies(registry);
-  registerLlvmTranslation(registry);
-  auto context =
-      std::make_unique<mlir::MLIRContext>(registry, mlir::MLIRContext::Threading::DISABLED);
-  context->loadAllAvailableDialects();
-  return context;
-}
 
 /// `count` separate functions of so many additions, of which each calls the one before, and `f`,
 /// which calls the last.
