@@ -6,6 +6,7 @@
 #include "codegen/emit/rewrites/JoinCalls.h"
 #include "codegen/emit/rewrites/NarrowLoads.h"
 #include "codegen/emit/rewrites/PackRecords.h"
+#include "codegen/emit/rewrites/SelectByMask.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 #include "codegen/emit/rewrites/UnrollLoops.h"
 #include "codegen/emit/rewrites/gpu/Approximations.h"
@@ -24,6 +25,7 @@
 #include "llvm/IR/IRBuilder.h"
 #include "llvm/IR/Module.h"
 #include "llvm/Linker/Linker.h"
+#include "llvm/MC/MCSubtargetInfo.h"
 #include "llvm/MC/TargetRegistry.h"
 #include "llvm/Passes/PassBuilder.h"
 #include "llvm/Support/TargetSelect.h"
@@ -365,6 +367,15 @@ static void addGpuRewrites(llvm::PassBuilder &builder) {
       });
 }
 
+/// Selects floats with the masks of AVX-512, on processors with masks for 128 bits.
+static void addMaskedSelects(llvm::PassBuilder &builder) {
+  builder.registerOptimizerLastEPCallback(
+      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
+        if (level != llvm::OptimizationLevel::O0)
+          passes.addPass(llvm::createModuleToFunctionPassAdaptor(SelectByMaskPass()));
+      });
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   tuning.LoopVectorization = options.optimization > 1;
@@ -391,6 +402,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   if (machine.getTargetTriple().isNVPTX()) {
     addGpuRewrites(builder);
     keepStatesInLoop(callbacks);
+  } else if (machine.getMCSubtargetInfo()->checkFeatures("+avx512vl")) {
+    addMaskedSelects(builder);
   }
   if (options.optimization > 0)
     foldConstantFunctions(module, functions);
