@@ -22,8 +22,7 @@ void placeArrays(TreeBuild &build, Block &block, std::uint32_t lanes) {
   const std::size_t n = build.count;
   block.place(build.boxes, 2 * n);
   block.place(build.heights, 2 * n);
-  block.place(build.children, n);
-  block.place(build.choices, n);
+  block.place(build.inner, n);
   block.place(build.costs, n);
   block.place(build.centres, n);
   block.place(build.keys[0], n);

@@ -39,12 +39,10 @@ public:
 
   float cost() const { return costOfTree; }
 
-  bool isNode(std::uint32_t node) const { return choices[node].isNode; }
-
-  // For childrenOf:
-  const Choice &choice(std::uint32_t node) const { return choices[node]; }
-  std::uint32_t left(std::uint32_t node) const { return tree.nodes[node].children[0]; }
-  std::uint32_t right(std::uint32_t node) const { return tree.nodes[node].children[1]; }
+  /// For forEachSubtree.
+  BinaryNode at(std::uint32_t node) const {
+    return {choices[node], tree.nodes[node].children[0], tree.nodes[node].children[1]};
+  }
 
 private:
   /// Subtrees for threads.
@@ -90,10 +88,8 @@ public:
   void run() {
     if (tree.nodes.empty())
       wide.nodes[0] = emptyNode();
-    else if (choices.isNode(0))
-      fillFrom(0, 0);
     else
-      fill(0, tree.nodes[0].bounds, only(0));
+      fillFrom(0, 0);
   }
 
   /// Makes a node, and all below it.
@@ -101,7 +97,7 @@ public:
     if (isUpperPart && isForOneThread(tree, tree.nodes[node].count))
       later.push_back({index, node});
     else
-      fill(index, tree.nodes[node].bounds, childrenOf(choices, node));
+      fill(index, tree.nodes[node].bounds, Children(choices, node));
   }
 
   WideTree wide;
@@ -109,12 +105,6 @@ public:
   std::vector<std::pair<std::size_t, std::uint32_t>> later;
 
 private:
-  static Children only(std::uint32_t child) {
-    Children children;
-    children.add(child);
-    return children;
-  }
-
   void fill(std::size_t index, const Bounds &all, const Children &children) {
     const std::uint32_t slots = slotsOf(all, children.count, [&](unsigned child) -> const Bounds & {
       return tree.nodes[children.nodes[child]].bounds;
@@ -125,22 +115,22 @@ private:
     node.firstNode = std::uint32_t(firstNode);
     node.firstItem = std::uint32_t(firstItem);
     Children inner;
-    for (unsigned slot = 0; slot < width; ++slot)
-      for (unsigned i = 0; i < children.count; ++i)
-        if (slotOf(slots, i) == slot)
-          fillSlot(node, slot, children.nodes[i], inner);
+    forEachInOrder(slots, children.count, [&](unsigned child, unsigned slot) {
+      fillSlot(node, slot, children.nodes[child], children.choices[child], inner);
+    });
     wide.nodes[index] = node;
     wide.nodes.resize(firstNode + inner.count);
     for (unsigned i = 0; i < inner.count; ++i)
       fillFrom(firstNode + i, inner.nodes[i]);
   }
 
-  void fillSlot(RtslBvhNode &node, unsigned slot, std::uint32_t child, Children &inner) {
+  void fillSlot(RtslBvhNode &node, unsigned slot, std::uint32_t child, Choice choice,
+                Children &inner) {
     setBox(node, slot, tree.nodes[child].bounds);
-    if (choices.isNode(child)) {
+    if (choice.isNode) {
       node.inner |= std::uint8_t(1u << slot);
       node.child[slot] = std::uint8_t(RTSL_INNER_CHILD + slot);
-      inner.add(child);
+      inner.add(child, choice);
       return;
     }
     const BinaryTree::Node &leaf = tree.nodes[child];

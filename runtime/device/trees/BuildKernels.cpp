@@ -19,8 +19,8 @@ uint32_t rtsl_needs(const RtslLaunch *launch) {
     const uint32_t i = __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +            \
                        __nvvm_read_ptx_sreg_tid_x();                                               \
     (void)a, (void)b, (void)c;                                                                     \
-    if (i < count)                                                                                 \
-      call;                                                                                        \
+    if (i < count) [[clang::always_inline]]                                                        \
+      call; /* or `build` would be copied to memory */                                             \
   }
 #include "runtime/device/trees/Steps.def"
 

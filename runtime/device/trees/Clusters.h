@@ -90,17 +90,23 @@ inline Costs costsOf(const TreeBuild &build, uint32_t node) {
                             : build.costs[node - build.count];
 }
 
+inline uint32_t itemsBelow(const TreeBuild &build, uint32_t node) {
+  return build.at(node).choice.items;
+}
+
 inline void joinNodes(const TreeBuild &build, uint32_t node, uint32_t left, uint32_t right) {
   RtslBox box = build.boxes[left];
   extend(box, build.boxes[right]);
   build.boxes[node] = box;
   const uint8_t leftHeight = build.heights[left], rightHeight = build.heights[right];
   build.heights[node] = uint8_t((leftHeight > rightHeight ? leftHeight : rightHeight) + 1);
-  const uint32_t i = node - build.count;
-  build.children[i] = {left, right};
+  BinaryNode inner;
+  inner.left = left;
+  inner.right = right;
+  const uint32_t i = node - build.count, items = itemsBelow(build, left) + itemsBelow(build, right);
   build.costs[i] =
-      choose(build.choices[i], halfArea(box), build.choice(left).items + build.choice(right).items,
-             costsOf(build, left), costsOf(build, right));
+      choose(inner.choice, halfArea(box), items, costsOf(build, left), costsOf(build, right));
+  build.inner[i] = inner;
 }
 
 inline void sumClusters(const TreeBuild &build, uint32_t thread, uint32_t number, uint32_t call) {

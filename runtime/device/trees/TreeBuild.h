@@ -25,10 +25,6 @@ struct WideNode {
   uint32_t slots; // slotsOf
 };
 
-struct Pair {
-  uint32_t left, right;
-};
-
 /// A round of joining clusters (Clusters.h).
 struct Round {
   uint32_t clusters;
@@ -65,12 +61,11 @@ struct TreeBuild {
   // The binary tree. Its leaves, one for each item, are nodes 0 to n - 1, in the order of a curve;
   // the others follow in the order of rounds, the root last. Before the leaves are made the box of
   // item i is that of node n + i.
-  RtslBox *boxes;   // 2 n
-  uint8_t *heights; // 2 n: levels below
-  Pair *children;   // of node n + i
-  Choice *choices;  // of node n + i
-  Costs *costs;     // of node n + i
-  RtslBox *centres; // ranges of the items' centres
+  RtslBox *boxes;    // 2 n
+  uint8_t *heights;  // 2 n: levels below
+  BinaryNode *inner; // node n + i
+  Costs *costs;      // of node n + i
+  RtslBox *centres;  // ranges of the items' centres
 
   uint64_t *keys[2]; // of the curve; before and after a pass of sorting
   uint32_t *order[2];
@@ -100,15 +95,13 @@ struct TreeBuild {
   /// The item of such a node.
   uint32_t itemOf(uint32_t node) const { return order[sortPasses & 1][node]; }
 
-  // For childrenOf:
-  Choice choice(uint32_t node) const {
-    Choice none;
-    __builtin_memset(&none, 0, sizeof none);
-    none.items = 1;
-    return isItem(node) ? none : choices[node - count];
+  BinaryNode at(uint32_t node) const {
+    if (!isItem(node))
+      return inner[node - count];
+    BinaryNode leaf = {};
+    leaf.choice.items = 1;
+    return leaf;
   }
-  uint32_t left(uint32_t node) const { return children[node - count].left; }
-  uint32_t right(uint32_t node) const { return children[node - count].right; }
 };
 
 } // namespace rtsl::device::build

@@ -11,31 +11,21 @@
 
 namespace rtsl::device::build {
 
-inline Children childrenOfWide(const TreeBuild &build, uint32_t node) {
-  if (build.choice(node).isNode)
-    return childrenOf(build, node);
-  Children children; // the root of a tree of few items, which is a leaf
-  children.add(node);
-  return children;
-}
-
 /// A child of a node: a node in the lower half of the sum, or items in the upper one.
-inline uint64_t sizeOfChild(const TreeBuild &build, uint32_t child) {
-  const Choice choice = build.choice(child);
-  return choice.isNode ? 1 : uint64_t(choice.items) << 32;
+inline uint64_t sizeOf(Choice child) {
+  return child.isNode ? 1 : uint64_t(child.items) << 32;
 }
 
-/// Calls visit(child, slot, what the children before it take) in the order of slots.
+/// Calls visit(child, choice, slot, what the children before it take) in the order of slots, and
+/// returns what all take.
 template <typename Visit>
-void forEachChild(const TreeBuild &build, const WideNode &wide, Visit visit) {
-  const Children children = childrenOfWide(build, wide.node);
+uint64_t forEachChild(const Children &children, uint32_t slots, Visit visit) {
   uint64_t before = 0;
-  for (unsigned slot = 0; slot < width; ++slot)
-    for (unsigned i = 0; i < children.count; ++i)
-      if (slotOf(wide.slots, i) == slot) {
-        visit(children.nodes[i], slot, before);
-        before += sizeOfChild(build, children.nodes[i]);
-      }
+  forEachInOrder(slots, children.count, [&](unsigned i, unsigned slot) {
+    visit(children.nodes[i], children.choices[i], slot, before);
+    before += sizeOf(children.choices[i]);
+  });
+  return before;
 }
 
 inline void startWide(const TreeBuild &build, uint32_t) {
@@ -45,10 +35,9 @@ inline void startWide(const TreeBuild &build, uint32_t) {
 
 /// Sums the sizes of the children of a node of a level.
 inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t number) {
-  const Children children = childrenOfWide(build, build.wide[build.levels[number].first + i].node);
   uint64_t sum = 0;
-  for (unsigned child = 0; child < children.count; ++child)
-    sum += sizeOfChild(build, children.nodes[child]);
+  forEachSubtree(build, build.wide[build.levels[number].first + i].node,
+                 [&](uint32_t, Choice child) { sum += sizeOf(child); });
   build.numbers[i] = sum;
 }
 
@@ -56,19 +45,18 @@ inline void countChildren(const TreeBuild &build, uint32_t i, uint32_t number) {
 inline void placeChildren(const TreeBuild &build, uint32_t i, uint32_t number) {
   const Level level = build.levels[number];
   WideNode &wide = build.wide[level.first + i];
-  const Children children = childrenOfWide(build, wide.node);
+  const Children children(build, wide.node);
   wide.slots =
       slotsOf(build.boxes[wide.node], children.count, [&](unsigned child) -> const RtslBox & {
         return build.boxes[children.nodes[child]];
       });
   wide.firstNode = level.end + uint32_t(build.numbers[i]);
   wide.firstItem = level.firstItem + uint32_t(build.numbers[i] >> 32);
-  uint64_t all = 0;
-  forEachChild(build, wide, [&](uint32_t child, unsigned, uint64_t before) {
-    if (build.choice(child).isNode)
-      build.wide[wide.firstNode + uint32_t(before)].node = child;
-    all = before + sizeOfChild(build, child);
-  });
+  const uint64_t all = forEachChild(children, wide.slots,
+                                    [&](uint32_t child, Choice choice, unsigned, uint64_t before) {
+                                      if (choice.isNode)
+                                        build.wide[wide.firstNode + uint32_t(before)].node = child;
+                                    });
   if (level.first + i + 1 == level.end)
     build.levels[number + 1] = {level.end, wide.firstNode + uint32_t(all),
                                 wide.firstItem + uint32_t(all >> 32)};
@@ -84,8 +72,9 @@ inline void writeContents(const TreeBuild &build, uint32_t node, uint32_t *to) {
       *to++ = build.itemOf(next);
       continue;
     }
-    open[count++] = build.right(next);
-    open[count++] = build.left(next);
+    const BinaryNode node = build.at(next);
+    open[count++] = node.right;
+    open[count++] = node.left;
   }
 }
 
@@ -95,9 +84,8 @@ inline void writeNode(const TreeBuild &build, uint32_t i) {
   setGrid(node, build.boxes[wide.node]);
   node.firstNode = wide.firstNode;
   node.firstItem = wide.firstItem;
-  forEachChild(build, wide, [&](uint32_t child, unsigned slot, uint64_t before) {
+  const auto write = [&](uint32_t child, Choice choice, unsigned slot, uint64_t before) {
     setBox(node, slot, build.boxes[child]);
-    const Choice choice = build.choice(child);
     const auto item = uint32_t(before >> 32);
     if (choice.isNode) {
       node.inner |= uint8_t(1u << slot);
@@ -106,7 +94,8 @@ inline void writeNode(const TreeBuild &build, uint32_t i) {
       node.child[slot] = RTSL_LEAF(item, choice.items);
       writeContents(build, child, build.contents + wide.firstItem + item);
     }
-  });
+  };
+  forEachChild(Children(build, wide.node), wide.slots, write);
   build.nodes[i] = node;
 }
 
