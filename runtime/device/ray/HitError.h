@@ -71,7 +71,9 @@ inline bool reportHitWithin(RtslState &state, float t, float error) {
     return false;
   if (!reportHit(state, t))
     return false;
-  if (state.instance == state.candidateInstance && state.foundDistance == t) // it has won
+  const bool hasWon = state.instance == state.candidateInstance && state.foundDistance == t &&
+                      (!hasCounts(*state.launch) || state.primitive == state.candidatePrimitive);
+  if (hasWon)
     state.hitError = error;
   return true;
 }

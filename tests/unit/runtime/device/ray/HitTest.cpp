@@ -1,4 +1,5 @@
 #include "runtime/device/ray/Hit.h"
+#include "runtime/device/ray/HitError.h"
 
 #include <gtest/gtest.h>
 
@@ -75,4 +76,17 @@ TEST(Hit, OutsideOfTheBoxIsComparedAtItsSide) {
   EXPECT_EQ(s.nearest, 3);
   EXPECT_EQ(endSearch(s), RTSL_HIT);
   EXPECT_EQ(s.HitDistance, 1.5f);
+}
+
+TEST(Hit, TheErrorIsThatOfTheHitThatWins) {
+  RtslLaunch launch{};
+  launch.needs = RTSL_HAS_COUNTS;
+  for (auto [instance, primitive, error] :
+       {std::tuple(5u, 8u, 0.25f), std::tuple(5u, 6u, 0.5f), std::tuple(4u, 9u, 0.5f)}) {
+    RtslState s = state(0, 10, 4, instance, primitive);
+    s.launch = &launch;
+    s.hitError = 0.5f;
+    EXPECT_TRUE(reportHitWithin(s, 4, 0.25f));
+    EXPECT_EQ(s.hitError, error) << instance << ", " << primitive;
+  }
 }
