@@ -2,12 +2,14 @@
 #include "codegen/link/Link.h"
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/Layout.h"
+#include "codegen/ir/Rays.h"
 
 #include "codegen/link/Members.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/BoundHitError.h"
 
+#include "mlir/IR/OwningOpRef.h"
 #include "mlir/IR/Verifier.h"
 #include "llvm/ADT/StringSet.h"
 
@@ -68,9 +70,41 @@ static void noteChannels(const std::string &className, const runtime::MemberInfo
          {}});
 }
 
+/// What a program does that shaders see in the state: rt_PDF begins as the density of illuminate(P)
+/// if some method that runs calls that, and LightColor is 0 where materials with `transmittance`
+/// let no light pass.
+namespace {
+struct SeenByShaders {
+  bool lightPasses, samplesSurfaces;
+};
+} // namespace
+
+/// Of the program that would be if nothing were kept: what is kept must not change the picture.
+/// Nothing if that follows from the program itself. `ir` is not linked yet.
+static std::optional<SeenByShaders>
+seenIfNothingIsKept(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
+                    std::uint32_t colorComponents, const Diagnostics &diagnostics,
+                    FloatingPoint floatingPoint) {
+  const auto isLit = [](mlir::Operation *op) {
+    return llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op);
+  };
+  if (request.keep.isEmpty() || !ir::anyOperation(ir, isLit))
+    return std::nullopt;
+  LinkRequest nothingKept = request;
+  nothingKept.keep = {};
+  const mlir::OwningOpRef<mlir::ModuleOp> copy(ir.clone());
+  Diagnostics unheard(diagnostics.sources());
+  runtime::Program program;
+  if (!link(*copy, module, nothingKept, colorComponents, unheard, program, nullptr, floatingPoint))
+    return std::nullopt;
+  return SeenByShaders{program.lightPasses, (program.needs & RTSL_NEEDS_EMITTERS) != 0};
+}
+
 bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &request,
           std::uint32_t colorComponents, Diagnostics &diagnostics, runtime::Program &program,
           Findings *findings, FloatingPoint floatingPoint) {
+  const std::optional<SeenByShaders> seen =
+      seenIfNothingIsKept(ir, module, request, colorComponents, diagnostics, floatingPoint);
   Findings unasked;
   linking::LinkContext context{ir,
                                module,
@@ -99,7 +133,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     return false;
   program.paths = linking::findPaths(context);
   program.raysLeaveHits = linking::raysLeaveHits(context);
-  program.lightPasses = linking::lightPasses(context);
+  program.lightPasses = seen ? seen->lightPasses : linking::lightPasses(context);
   program.hasPrimitives = linking::hasPrimitives(context);
   program.raysReadLaunch = request.keep.has(Item::Outputs) || linking::raysReadLaunch(context);
   linking::makeEntries(context);
@@ -132,10 +166,14 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   program.prints = linking::numberPrints(ir);
   program.colorComponents = colorComponents;
   // The camera's ray cannot be kept where `generate` does not read it: if it has no direction, the
-  // sample ends before `generate` (state.no-ray).
-  const std::uint32_t kept =
-      request.keep.has(Item::Outputs) ? RTSL_NEEDS_ALL & ~RTSL_NEEDS_CAMERA_RAY : 0;
+  // sample ends before `generate` (state.no-ray). Neither can surfaces that shine be kept as lights
+  // that nothing chooses: rt_PDF is then 0 (light.surfaces).
+  const std::uint32_t kept = request.keep.has(Item::Outputs)
+                                 ? RTSL_NEEDS_ALL & ~(RTSL_NEEDS_CAMERA_RAY | RTSL_NEEDS_EMITTERS)
+                                 : 0;
   program.needs = (kept | needs) & ~linking::needsLeftOut(context);
+  if (seen && !seen->samplesSurfaces)
+    program.needs &= ~RTSL_NEEDS_EMITTERS;
   program.keepsMeshes = request.keep.has(Item::Meshes);
   program.keepsMeshAttributes = request.keep.has(Item::MeshAttributes);
   return true;

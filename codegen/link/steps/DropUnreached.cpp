@@ -178,6 +178,13 @@ Item itemOf(llvm::StringRef method) {
   return isStartedByRays(method) ? Item::States : Item::Methods;
 }
 
+/// Can a method be kept that nothing reaches? The machine begins samples with `generate` if there
+/// is one (RayGraph.h): the engine `classic` has none.
+bool canBeKept(const LinkContext &context, llvm::StringRef method) {
+  return context.request.keep.has(itemOf(method)) &&
+         (method != "generate" || context.request.engine != runtime::Engine::Classic);
+}
+
 /// The methods that are kept although nothing reaches them, and what they call.
 llvm::SmallPtrSet<mlir::Operation *, 16>
 functionsOfKept(const LinkContext &context,
@@ -185,8 +192,7 @@ functionsOfKept(const LinkContext &context,
   std::vector<FuncOp> kept;
   for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
     if (const auto method = ir::attr::methodName.of(function);
-        method && !reached.contains(function) &&
-        context.request.keep.has(itemOf(method.getValue())))
+        method && !reached.contains(function) && canBeKept(context, method.getValue()))
       kept.push_back(function);
   const std::vector<FuncOp> all = reachedFrom(kept, context.symbols);
   return {all.begin(), all.end()};
@@ -263,7 +269,8 @@ void dropUnreached(LinkContext &context) {
         makeEmpty(function);
       const Item item = finding.item;
       context.findings.push_back(std::move(finding));
-      if (found == reached.end() && context.request.keep.has(item)) {
+      if (found == reached.end() &&
+          (method ? canBeKept(context, method.getValue()) : context.request.keep.has(item))) {
         // A function that no entry point reaches must be one itself, unless it sends rays: such
         // functions are only started by rays.
         if (item == Item::Methods && !ir::anyOperation(function, ir::sendsRays))
