@@ -60,6 +60,11 @@ bool changes(EvaluateOp op, std::size_t operand) {
   return changed && llvm::is_contained(changed.asArrayRef(), static_cast<std::int32_t>(operand));
 }
 
+bool changesNothing(EvaluateOp op) {
+  return attr::plain.isOn(op) && !attr::changes.isOn(op) &&
+         (!op.getWrites() || op.getWrites()->empty());
+}
+
 MemoryAccesses accessesOf(mlir::Operation *op) {
   MemoryAccesses accesses;
   auto addRead = [&](mlir::Value address) {

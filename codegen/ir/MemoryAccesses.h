@@ -49,6 +49,8 @@ MemoryAccesses accessesOf(mlir::Operation *op);
 
 /// Does the evaluation write what lies at the address that it has as this operand?
 bool changes(ir::EvaluateOp op, std::size_t operand);
+/// Has the evaluation no effect but its value?
+bool changesNothing(ir::EvaluateOp op);
 /// Does the operation write what lies at an address, or in a part of it?
 bool writesTo(mlir::Operation *op, mlir::Value address);
 

@@ -1,6 +1,7 @@
 //===- Restructure.cpp - blocks and branches to structured control flow ---===//
 #include "codegen/passes/restructure/Restructure.h"
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/MemoryAccesses.h"
 
 #include "codegen/passes/restructure/Steps.h"
 
@@ -117,9 +118,7 @@ void findCondition(ir::LoopOp loop) {
 void dropDeadCode(FuncOp function) {
   function.walk<mlir::WalkOrder::PostOrder, mlir::ReverseIterator>([](mlir::Operation *op) {
     auto evaluation = llvm::dyn_cast<ir::EvaluateOp>(op);
-    const bool isUnread = evaluation && op->use_empty() && ir::attr::plain.isOn(op) &&
-                          !ir::attr::changes.isOn(op) &&
-                          (!evaluation.getWrites() || evaluation.getWrites()->empty());
+    const bool isUnread = evaluation && op->use_empty() && ir::changesNothing(evaluation);
     if (isUnread || mlir::isOpTriviallyDead(op))
       op->erase();
   });

@@ -43,6 +43,7 @@ names = [
     "Varnished",
     "Worn",
     "Waxed",
+    "Rounded",
 ]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {

@@ -103,8 +103,7 @@ void StateMemory::write(ir::EvaluateOp op, Statements &out) {
     state.emitter.emit(out, std::move(statement));
   accesses.add(state.values.consumed);
   if (op.getNumResults() != 0)
-    state.values.define(*op, code, accesses,
-                        /*isPure=*/ir::attr::plain.isOn(op) && !ir::attr::changes.isOn(op), out);
+    state.values.define(*op, code, accesses, /*isPure=*/ir::changesNothing(op), out);
   else if (code)
     state.emitter.emit(out, code);
 }
