@@ -365,6 +365,8 @@ void Generator::addMethod(ClassPlan &plan, Node &members, const std::string &nam
   const bool areFirst = chance(50);
   if (areFirst)
     componentsAroundARay(*body, state);
+  if (context.illuminance && lit)
+    add(*body, illuminance(nesting()));
   statements(*body, some(statementCount), nesting());
   if (!areFirst)
     componentsAroundARay(*body, state);

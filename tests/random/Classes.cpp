@@ -37,6 +37,8 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
   addReferences(*plan, *members, someOf(targets));
   if (!base && likely(40))
     addConstructor(*plan, *members);
+  if (!base)
+    plan->square = chance(lit ? 85 : 20) ? std::string(1, "xyz"[below(3)]) : "";
   if (base)
     overrideFunction(*plan, *members);
   else
@@ -64,9 +66,12 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
                                      "+ dot(rt_RayDirection, rt_RayDirection))"
                                    : "0.125 + 4.0 * toUnit(h)";
         const char *error = chance(40) ? ", 0.5 * toUnit(h * 11u)" : "";
-        body.children.push_back(makeNode(
-            Role::Statement, std::string("bool won = (h & 3u) != 0u && hit(") + t + error + ");"));
-      } else {
+        body.children.push_back(
+            makeNode(Role::Statement,
+                     !plan->square.empty()
+                         ? meetsSquare(plan->square)
+                         : std::string("bool won = (h & 3u) != 0u && hit(") + t + error + ");"));
+      } else if (plan->square.empty()) {
         list->children.push_back(makeNode(Role::Statement, "hit(0.5 + toUnit(h * 2654435761u));"));
         body.children.push_back(
             makeNode(Role::Statement, "if (!won && (h & 8u) != 0u) {$}", std::move(list)));
@@ -83,7 +88,9 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
     addMethod(*plan, *members, name, more, result, count, Context());
   };
   add("computeNormal", left,
-      "rt_GeometricNormal = toVector(h); " +
+      (plan->square.empty()
+           ? "rt_GeometricNormal = toVector(h); "
+           : "rt_GeometricNormal = vec3(0.0); rt_GeometricNormal." + plan->square + " = 1.0; ") +
           std::string(chance(50) ? "rt_ShadingNormal = toVector(h * 3u); " : ""),
       below(3));
   if (likely(60))
@@ -94,35 +101,12 @@ const ClassPlan *Generator::makePrimitive(const ClassPlan *base, const Targets &
         "rt_dPdu = toVector(h); rt_dPdv = toVector(h * 7u); rt_dsdu = toUnit(h); rt_dtdv = "
         "toUnit(h * 9u); ",
         below(2));
-  if (likely(25)) {
-    add("generateSample", {},
-        "rt_HitPoint = toVector(h); rt_GeometricNormal = toVector(h * 7u); rt_PDF = toUnit(h); ",
-        1 + below(2));
-    add("samplePDF", {}, "rt_PDF = toUnit(h); ", below(2));
-  }
+  if (plan->square.empty() ? likely(25) : !base || chance(30))
+    addSamples(*plan, *members);
   if (likely(50))
     add("computeBounds", {}, "rt_BoundMin = toVector(h); rt_BoundMax = toVector(h * 3u); ",
         below(2));
   program.primitives.push_back(plan->name);
-  return plan;
-}
-
-const ClassPlan *Generator::makeLight(const Targets &targets) {
-  Node *members = nullptr;
-  ClassPlan *plan = startClass("Light", "rt_Light", nullptr, members);
-  addMembers(*plan, *members, some(below(3)));
-  if (chance(40))
-    addConstructor(*plan, *members);
-  addReferences(*plan, *members, someOf(targets));
-  for (unsigned n = some(below(3)); n-- > 0;)
-    addFunction(*plan, *members, chance(60), 0);
-  addMethod(*plan, *members, "illumination", {},
-            "rt_LightDirection = toVector(h); rt_LightDistance = 0.5 + 8.0 * toUnit(h); "
-            "rt_LightColor = toColor(h); ",
-            1 + below(3), Context());
-  program.lights.push_back(plan->name);
-  if (chance(40))
-    program.lights.push_back(plan->name);
   return plan;
 }
 
@@ -259,7 +243,7 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
   addImage(*plan, *members);
   if (!base) {
     for (const Variable &attribute : attributes)
-      if (chance(50)) {
+      if (chance(lit ? 25 : 50)) { // a mesh, which has none, may shine
         members->children.push_back(makeNode(Role::Fixed, "scratch " + toString(attribute.type) +
                                                               " " + attribute.name + ";"));
         plan->scratch.push_back(attribute);
@@ -283,7 +267,7 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
     for (Variable &attribute : attributesOfHit)
       attribute.writable = false;
     Context rules;
-    rules.illuminance = chance(50);
+    rules.illuminance = lit || chance(50);
     rules.print = true;
     rules.traces = traces;
     addMethod(*plan, *members, "shade", attributesOfHit, toColor, 4 + below(6), rules);
@@ -303,28 +287,6 @@ const ClassPlan *Generator::makeMaterial(const ClassPlan *base, const Targets &t
   if (plan->scratch.empty())
     program.meshMaterials.push_back(plan->name);
   return plan;
-}
-
-/// What sampling a surface queries of its material.
-void Generator::addBsdf(ClassPlan &plan, Node &members) {
-  if (!likely(40))
-    return;
-  std::vector<Variable> attributesOfHit = plan.scratch;
-  for (Variable &attribute : attributesOfHit)
-    attribute.writable = false;
-  Context rules;
-  rules.print = true;
-  auto add = [&](const char *name, const std::string &result) {
-    addMethod(plan, members, name, attributesOfHit, result, 1 + below(3), rules);
-  };
-  add("sampleBSDF",
-      "rt_LightDirection = toVector(h); rt_BSDFValue = toColor(h); rt_PDF = toUnit(h); ");
-  add("BSDF", "rt_BSDFValue = toColor(h); ");
-  add("evaluatePDF", "rt_PDF = toUnit(h); ");
-  if (chance(50))
-    add("emission", "rt_EmissionColor = toColor(h); ");
-  if (chance(50))
-    add("transmittance", "rt_SampleColor = toColor(h); ");
 }
 
 void Generator::makeClasses() {
@@ -381,6 +343,8 @@ void Generator::makeClasses() {
     makeException(helpers);
   if (generates(program.seed))
     makeRayGeneration(textures);
+  if (usesPathTracer(program.seed))
+    makePathTracer();
 }
 
 } // namespace rtsl::random

@@ -18,6 +18,7 @@ Generator::Generator(std::uint32_t seed)
 
 Program Generator::run() {
   large = chance(5);
+  lit = usesPathTracer(program.seed) || program.seed % 4 == 2;
   workLimit = 150;
   for (unsigned n = some(below(3)); n-- > 0;)
     makeStruct();
@@ -36,10 +37,15 @@ bool isInRange(std::uint32_t seed) {
   return raises(seed) ? seed % 4 == 0 : seed % 5 != 4;
 }
 bool hasTraces(std::uint32_t seed) {
-  return raises(seed) ? seed % 5 != 3 || generates(seed) : seed % 5 < 3 || seed % 10 == 4;
+  return usesPathTracer(seed) ? true
+         : raises(seed)       ? seed % 5 != 3 || generates(seed)
+                              : seed % 5 < 3 || seed % 10 == 4;
 }
 bool generates(std::uint32_t seed) {
-  return raises(seed) && seed % 4 > 1;
+  return raises(seed) && seed % 4 > 1 && !usesPathTracer(seed);
+}
+bool usesPathTracer(std::uint32_t seed) {
+  return seed % 7 == 5;
 }
 bool hasImages(std::uint32_t seed) {
   return seed % 3 == 1;
@@ -105,8 +111,8 @@ static std::vector<Shared> sharedFunctions() {
 }
 
 /// A file of the library, without what it imports.
-static std::string imageClass(const char *name) {
-  std::ifstream file(std::string(RTSL_SOURCE_FOLDER "/library/std/images/") + name + ".rtsl");
+static std::string libraryFile(const char *name) {
+  std::ifstream file(std::string(RTSL_SOURCE_FOLDER "/library/std/") + name + ".rtsl");
   std::string text, line;
   while (std::getline(file, line))
     if (line.rfind("import ", 0) != 0)
@@ -122,7 +128,10 @@ std::string prelude(const std::string &text) {
         chosen.find(shared.name + "(") != std::string::npos)
       chosen += shared.text + "\n";
   if (text.find("sampler2D ") != std::string::npos)
-    chosen += imageClass("ImageTexels") + imageClass("sampler2D");
+    chosen += libraryFile("images/ImageTexels") + libraryFile("images/sampler2D");
+  if (text.find(" : PathTracer ") != std::string::npos)
+    for (const char *name : {"sampling", "phase", "media/Medium", "engines/PathTracer"})
+      chosen += libraryFile(name);
   return chosen;
 }
 

@@ -61,6 +61,8 @@ struct ClassPlan {
   std::vector<Variable> scratch;
   std::vector<Variable> outputs; // output buffers
   std::vector<Reference> references;
+  // of a primitive that is a square, and chooses points on it: its normal, x, y or z; empty: none
+  std::string square;
   std::string image;               // a member of the type sampler2D; empty: none
   unsigned images = 0;             // of an array: its length
   std::vector<Function> functions; // that methods of it may call
@@ -210,7 +212,7 @@ private:
   void makeFreeFunction();
   NodePtr function(Function &made, const std::string &head, const std::vector<Variable> &around);
 
-  // Classes (Classes.cpp)
+  // Classes (Classes.cpp, Light.cpp)
   void makeClasses();
   using Targets = std::vector<const ClassPlan *>; // of references
   ClassPlan *startClass(const char *stem, const std::string &root, const ClassPlan *base,
@@ -238,9 +240,12 @@ private:
   void makeSelector(const Targets &targets);
   void makeException(const Targets &targets);
   void makeRayGeneration(const Targets &targets);
+  void makePathTracer();
   Targets someOf(const Targets &targets);
   const ClassPlan *makeMaterial(const ClassPlan *base, const Targets &targets);
   void addBsdf(ClassPlan &plan, Node &members);
+  void addSamples(ClassPlan &plan, Node &members);
+  static std::string meetsSquare(const std::string &normal);
   const ClassPlan *makeHelper(const ClassPlan *base);
   void addRecursion(ClassPlan &plan, Node &members, const Type *result, unsigned traces = 0);
   std::vector<Variable> around(const ClassPlan &plan);
@@ -252,6 +257,7 @@ private:
   TypeContext &types;
   Program program;
   bool large = false;
+  bool lit = false; // surfaces that shine matter to it
   unsigned counter = 0;
   unsigned work = 0, workLimit = 0, indexDepth = 0;
 

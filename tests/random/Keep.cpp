@@ -86,7 +86,7 @@ public:
     if (!bound)
       throw std::logic_error("refused: " + renderText(unheard, false));
     World world(*bound, *made);
-    Words words = world.run();
+    Words words = world.run(/*isSampled=*/false);
     hitSomething |= world.hitSomething();
     return words;
   }
@@ -102,14 +102,24 @@ private:
   LinkRequest request;
 };
 
-/// Whether keeping something changes a program's results.
-bool differs(Subject &subject, std::uint32_t seed) {
+/// Whether keeping something changes a program's results: the items that are named, or all of them
+/// and perhaps one.
+bool differs(Subject &subject, std::uint32_t seed, const std::vector<std::string> &names) {
   const bool isSplit = seed % 2 != 0;
   const Item single = allItems[seed % std::size(allItems)];
   const Words leftOut = subject.run({}, isSplit);
   std::vector<std::pair<std::string, ItemSet>> others = {{"all", ItemSet::all()}};
   if (seed % 3 == 0)
     others.push_back({nameOf(single), ItemSet::only(single)});
+  if (!names.empty())
+    others.clear();
+  for (const std::string &name : names) {
+    ItemSet items;
+    for (const Item item : allItems)
+      if (("+" + name + "+").find("+" + std::string(nameOf(item)) + "+") != std::string::npos)
+        items.add(item);
+    others.push_back({name, items});
+  }
   for (const auto &[name, kept] : others) {
     const Words words = subject.run(kept, isSplit);
     for (std::size_t i = 0; i != leftOut.size(); ++i)
@@ -128,8 +138,10 @@ int main(int argc, char **argv) {
   CLI::App app(
       "Random programs with everything left out that is not needed, and with it kept: they agree.");
   std::uint32_t first = 0, count = 30;
+  std::vector<std::string> names;
   app.add_option("--first", first, "the first seed")->capture_default_str();
   app.add_option("--count", count, "run so many seeds")->capture_default_str();
+  app.add_option("--keep", names, "keep these, one at a time; `a+b`: both")->delimiter(',');
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError &error) {
@@ -145,7 +157,7 @@ int main(int argc, char **argv) {
       continue; // two programs together may be more than the language allows
     ++run;
     try {
-      failed += differs(subject, currentSeed);
+      failed += differs(subject, currentSeed, names);
     } catch (const std::exception &fault) {
       fmt::print("seed {}: {}\n", currentSeed, fault.what());
       ++failed;

@@ -26,7 +26,8 @@ struct Program {
   /// The objects of the scene, by class; what refers to others comes after them.
   std::vector<std::string> helpers, textures, lights, primitives, materials;
   std::string camera;
-  // may be empty; of a program with a ray generation the samples are those of its `generate`
+  // may be empty; of a program with a ray generation the samples are those of its `generate`, or of
+  // the engine `path`
   std::string miss, selector, exception, rayGeneration;
   // those that ask nothing of a primitive that meshes have not
   std::vector<std::string> meshMaterials;
@@ -40,15 +41,17 @@ Program generate(std::uint32_t seed);
 bool raises(std::uint32_t seed);
 bool isInRange(std::uint32_t seed);
 bool hasTraces(std::uint32_t seed);
-/// It has a ray generation.
+/// It has a ray generation of its own.
 bool generates(std::uint32_t seed);
+/// It is for the engine `path`: its ray generation derives from PathTracer.
+bool usesPathTracer(std::uint32_t seed);
 /// Its materials and textures have images.
 bool hasImages(std::uint32_t seed);
 /// 3, 1, 4 or 16: the same for fifty seeds, so that they fit into one compilation.
 unsigned colorComponents(std::uint32_t seed);
 
 /// The functions that programs share, as far as `text` uses them: they fold values into a hash and
-/// make numbers of it. With images, also the classes of the library for them.
+/// make numbers of it. Also the classes of the library for images and for the engine `path`.
 std::string prelude(const std::string &text);
 
 } // namespace rtsl::random

@@ -303,8 +303,9 @@ NodePtr Generator::answer() {
 NodePtr Generator::illuminance(unsigned depth) {
   const Type *vec3 = types.vector(types.floatType, 3);
   const Context outer = context;
-  const bool isOne = chance(30); // of the lights
-  NodePtr number = isOne ? expression(types.intType, 2) : nullptr;
+  const bool isOfSurface = chance(40);          // that shines, or of the background
+  const bool isOne = isOfSurface || chance(30); // of the lights
+  NodePtr number = isOne && !isOfSurface ? expression(types.intType, 2) : nullptr;
   NodePtr point = chance(60) ? makeNode(Role::Fixed, "rt_HitPoint") : expression(vec3, 2);
   NodePtr axis = chance(50) ? expression(vec3, 2) : nullptr;
   NodePtr angle = axis ? expression(types.floatType, 1) : nullptr;
@@ -316,14 +317,23 @@ NodePtr Generator::illuminance(unsigned depth) {
   scope.push_back({"rt_LightDirection", vec3, false});
   scope.push_back({"rt_LightDistance", types.floatType, false});
   scope.push_back({"rt_LightColor", types.color, false});
+  if (isOfSurface)
+    scope.push_back({"rt_PDF", types.floatType, false});
   NodePtr body = block(1 + below(3), depth - 1);
   scope.resize(variables);
   const unsigned traces = context.traces;
   context = outer;
   context.traces = traces;
+  if (isOfSurface && axis)
+    return makeNode(Role::Statement, "if (illuminate($, $)) {$}", std::move(point), std::move(axis),
+                    std::move(body));
+  if (isOfSurface)
+    return makeNode(Role::Statement, "if (illuminate($)) {$}", std::move(point), std::move(body));
   if (isOne && axis)
-    return makeNode(Role::Statement, "if (illuminate($, $, ($).x > 0.0)) {$}", std::move(number),
-                    std::move(point), std::move(axis), std::move(body));
+    return makeNode(Role::Statement,
+                    chance(50) ? "if (illuminate($, $, $)) {$}"
+                               : "if (illuminate($, $, ($).x > 0.0)) {$}",
+                    std::move(number), std::move(point), std::move(axis), std::move(body));
   if (isOne)
     return makeNode(Role::Statement, "if (illuminate($, $)) {$}", std::move(number),
                     std::move(point), std::move(body));

@@ -121,11 +121,12 @@ std::vector<Finding> compareSeeds(const std::vector<std::uint32_t> &seeds,
 std::deque<std::vector<std::uint32_t>> makeBatches(std::uint32_t first, std::uint32_t count,
                                                    const RunOptions &options) {
   std::deque<std::vector<std::uint32_t>> batches;
-  using Kind = std::tuple<std::vector<std::string>, unsigned, bool, bool>;
+  using Kind = std::tuple<std::vector<std::string>, unsigned, bool, bool, bool>;
   std::map<Kind, std::vector<std::uint32_t>> kinds;
   for (std::uint32_t seed = first; seed != first + count; ++seed) {
     std::vector<std::uint32_t> &batch =
-        kinds[{pathsOf(seed, options.paths), colorComponents(seed), raises(seed), generates(seed)}];
+        kinds[{pathsOf(seed, options.paths), colorComponents(seed), raises(seed), generates(seed),
+               usesPathTracer(seed)}];
     batch.push_back(seed);
     if (batch.size() == options.batch)
       batches.push_back(std::exchange(batch, {}));

@@ -87,6 +87,10 @@ void World::sampleObjects(std::vector<std::uint32_t> &words) {
       for (Method method : {slots.rt_Miss_sampleDirection, slots.rt_Miss_directionPDF})
         call(method, launch.background, number);
   }
+}
+
+/// The elements of output buffers.
+void World::noteOutputs(std::vector<std::uint32_t> &words) const {
   for (const std::vector<std::uint32_t> *buffer : outputs)
     for (std::uint32_t word : *buffer) // not known to be a float: what would be a NaN is one
       words.push_back((word & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : word);
@@ -104,34 +108,54 @@ void World::noteRanges(std::vector<std::uint32_t> &words) const {
         }
 }
 
+/// What surfaces that shine send out, as whoever makes a scene estimates it.
+void World::notePowers(std::vector<std::uint32_t> &words) const {
+  if (!(code.needs & RTSL_NEEDS_EMITTERS) || !code.emittedPower)
+    return;
+  for (const RtslEmitter &emitter : emitters)
+    for (std::uint32_t sample = 0; sample != 2; ++sample) {
+      float normal[3];
+      words.push_back(
+          wordOf(code.emittedPower(&launch, emitter.instance, sample % 2, sample, normal)));
+      for (const float component : normal)
+        words.push_back(wordOf(component));
+    }
+}
+
 template <typename Render>
-std::vector<std::uint32_t> World::renderAtEachDepth(Render render) {
+std::vector<std::uint32_t> World::renderAtEachDepth(bool isSampled, Render render) {
   begin();
   std::vector<std::uint32_t> words;
   launch.status = &status;
-  for (std::uint32_t depth : {0u, 2u}) {
+  // Paths of the engine `path` end at random from the fourth surface on.
+  for (std::uint32_t depth : {0u, usesPathTracer(program.seed) ? 4u : 2u}) {
     launch.maxDepth = depth;
     status = {};
     render(words);
     noteExceptions(words);
   }
   launch.status = nullptr;
-  sampleObjects(words);
+  if (isSampled)
+    sampleObjects(words);
+  noteOutputs(words);
   return words;
 }
 
-std::vector<std::uint32_t> World::run() {
-  std::vector<std::uint32_t> all = renderAtEachDepth([&](std::vector<std::uint32_t> &words) {
-    for (std::uint32_t pixel = 0; pixel != 6; ++pixel) {
-      float color[RTSL_MAX_COLOR] = {};
-      code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
-      checkStack();
-      for (unsigned i = 0; i != code.colorComponents; ++i)
-        words.push_back(wordOf(color[i]));
-      words.push_back(hashOfPrinted());
-    }
-  });
+std::vector<std::uint32_t> World::run(bool isSampled) {
+  std::vector<std::uint32_t> all =
+      renderAtEachDepth(isSampled, [&](std::vector<std::uint32_t> &words) {
+        for (std::uint32_t pixel = 0; pixel != 6; ++pixel) {
+          float color[RTSL_MAX_COLOR] = {};
+          code.sample(&launch, pixel * 7 % 5, pixel % 3, pixel / 3, color);
+          checkStack();
+          for (unsigned i = 0; i != code.colorComponents; ++i)
+            words.push_back(wordOf(color[i]));
+          words.push_back(hashOfPrinted());
+        }
+      });
   noteRanges(all);
+  if (isSampled)
+    notePowers(all);
   return all;
 }
 
@@ -170,7 +194,7 @@ void World::renderBySample(std::vector<float> &pixels) {
 }
 
 std::vector<std::uint32_t> World::render() {
-  return renderAtEachDepth([&](std::vector<std::uint32_t> &words) {
+  return renderAtEachDepth(/*isSampled=*/true, [&](std::vector<std::uint32_t> &words) {
     std::vector<float> pixels(static_cast<std::size_t>(launch.width) * launch.height *
                               code.colorComponents);
     if (code.megakernel.runLane)

@@ -5,6 +5,7 @@
 
 #include "runtime/device/ray/Divisor.h"
 #include "runtime/scene/MeshValues.h"
+#include "runtime/scene/Objects.h"
 
 #include <algorithm>
 #include <cstring>
@@ -156,9 +157,18 @@ World::World(const runtime::Program &code, const Program &program)
   launch.boxes = boxes.data();
   launch.boxCount = static_cast<std::uint32_t>(boxes.size());
   makeTree();
-  launch.needs = code.needs | RTSL_HAS_ALL;
+  addEmitters();
+  launch.needs = code.needs | featuresOfScene();
   launch.host = &host;
   listAttributes();
+}
+
+/// RTSL_HAS_*: everything, but directions of a background that cannot choose any.
+std::uint32_t World::featuresOfScene() const {
+  const bool isSampled = launch.background != 0 &&
+                         runtime::hasMethod(classOf(launch.background), "sampleDirection") &&
+                         runtime::hasMethod(classOf(launch.background), "directionPDF");
+  return isSampled ? RTSL_HAS_ALL : RTSL_HAS_ALL & ~RTSL_HAS_SAMPLED_BACKGROUND;
 }
 
 void World::listAttributes() {
@@ -176,7 +186,7 @@ World::World(const runtime::Program &bound, const World &made)
         describeMaterial(instance, *bound.find(object.info->name));
   }
   launch.instances = instances.data();
-  launch.needs = bound.needs | RTSL_HAS_ALL;
+  launch.needs = bound.needs | made.featuresOfScene();
   launch.host = &host;
   listAttributes();
 }
@@ -191,7 +201,8 @@ runtime::SceneFacts World::facts() const {
   facts.instanceCount = instances.size();
   if (facts.instanceCount <= runtime::SceneFacts::mostInstances)
     facts.instances = instances;
-  facts.needs = RTSL_HAS_ALL;
+  facts.needs = featuresOfScene();
+  facts.emitters = emitters;
   facts.lightCount = launch.lightCount;
   facts.referenceChain = static_cast<std::uint32_t>(objects.size()); // no longer
   facts.ambient.assign(launch.ambient, launch.ambient + code.colorComponents);

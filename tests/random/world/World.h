@@ -33,8 +33,9 @@ public:
 
   /// The colors of some pixels, each without and with the rays that shaders send, as bits (all NaNs
   /// are one), and what was printed until then; the exceptions, by their codes. After them what
-  /// methods leave that only the host calls, and the elements of output buffers.
-  std::vector<std::uint32_t> run();
+  /// methods leave that only the host calls, if it may call them, and the elements of output
+  /// buffers.
+  std::vector<std::uint32_t> run(bool isSampled = true);
   /// The colors of a picture as whoever renders it makes it of one sample a pixel: a color that is
   /// not finite is black. With it, what was printed until its end. The program may be a megakernel.
   std::vector<std::uint32_t> render();
@@ -64,6 +65,12 @@ private:
   void listAttributes();
   void addMotion();
   void addSelections(RtslRef selector);
+  void addEmitters();
+  void addLightTree();
+  bool shines(const RtslInstance &instance) const;
+  const runtime::ClassInfo &classOf(RtslRef object) const;
+  std::uint32_t partsOf(const RtslInstance &instance) const;
+  std::uint32_t featuresOfScene() const;
   void place(RtslInstance &instance, std::uint32_t number, std::uint32_t primitives);
   void describeMaterial(RtslInstance &instance, const runtime::ClassInfo &material) const;
   std::uint32_t needsOf(const runtime::ClassInfo &info,
@@ -74,10 +81,12 @@ private:
   void begin();
   /// What render(words) and the objects give with each limit of the depth.
   template <typename Render>
-  std::vector<std::uint32_t> renderAtEachDepth(Render render);
+  std::vector<std::uint32_t> renderAtEachDepth(bool isSampled, Render render);
   void noteExceptions(std::vector<std::uint32_t> &words);
   void sampleObjects(std::vector<std::uint32_t> &words);
+  void noteOutputs(std::vector<std::uint32_t> &words) const;
   void noteRanges(std::vector<std::uint32_t> &words) const;
+  void notePowers(std::vector<std::uint32_t> &words) const;
   void renderBySample(std::vector<float> &pixels);
   void renderByLane(std::vector<float> &pixels);
 
@@ -104,6 +113,10 @@ private:
   std::vector<RtslMotionKey> motionKeys;
   std::vector<RtslSelection> selections;
   std::vector<RtslBox> boxes;
+  std::vector<RtslEmitter> emitters;
+  std::vector<float> partChances;
+  std::vector<RtslLightNode> lightNodes;
+  std::vector<std::uint32_t> lightLeaves;
   // of the world, and of the mesh and each object with several primitives, in their own spaces
   std::vector<runtime::BvhItem> worldItems;
   std::vector<std::vector<runtime::BvhItem>> treeItems;
