@@ -58,6 +58,7 @@ lowerModule(const typed::Module &module, const CompileOptions &options, const Li
   lowering.prints = request.features & RTSL_FEATURE_PRINT;
   lowering.source = source;
   lowering.isWidenedLater = options.floatingPoint == FloatingPoint::Double;
+  lowering.hidesConstants = lowering.isWidenedLater || options.checksNumbers;
   if (!request.keep.has(Item::Classes))
     lowering.classes = {request.classes.begin(), request.classes.end()};
   return lower(module, lowering, context);

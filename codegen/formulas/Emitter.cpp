@@ -146,10 +146,10 @@ Value Emitter::element(Value address, unsigned index) {
 // Control
 //===----------------------------------------------------------------------===//
 
-bool Emitter::isWidenedLater() const {
+bool Emitter::hidesConstants() const {
   mlir::Operation *at = getInsertionBlock()->getParentOp();
   auto module = llvm::dyn_cast<mlir::ModuleOp>(at);
-  return ir::attr::inDouble.isOn(module ? module : at->getParentOfType<mlir::ModuleOp>());
+  return ir::attr::hidesConstants.isOn(module ? module : at->getParentOfType<mlir::ModuleOp>());
 }
 
 bool Emitter::isTerminated() const {

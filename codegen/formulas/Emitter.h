@@ -82,7 +82,7 @@ public:
   template <typename Op, typename... Args>
   Value fold(Args &&...args) {
     if constexpr (roundsToSingle<Op>)
-      if (isWidenedLater())
+      if (hidesConstants())
         return make<Op>(std::forward<Args>(args)...);
     return createOrFold<Op>(std::forward<Args>(args)...);
   }
@@ -90,9 +90,8 @@ public:
   /// Owns the functions of long formulas; null: these are emitted in place.
   Library *library = nullptr;
 
-  /// Whether arithmetic will be done in double, so that it must not be folded in single precision
-  /// (HideConstants.h).
-  bool isWidenedLater() const;
+  /// Whether arithmetic must not be folded in single precision, or at all (HideConstants.h).
+  bool hidesConstants() const;
 
 private:
   /// Operations whose result on constants depends on the precision.

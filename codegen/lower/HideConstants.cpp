@@ -1,4 +1,4 @@
-//===- HideConstants.cpp - no folding in single precision -----------------===//
+//===- HideConstants.cpp - no folding before LLVM IR ----------------------===//
 #include "codegen/lower/HideConstants.h"
 
 #include "codegen/ir/Rtsl.h"

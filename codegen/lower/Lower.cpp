@@ -20,10 +20,12 @@ mlir::OwningOpRef<mlir::ModuleOp> lower(const typed::Module &module, const Lower
     ir::attr::source.set(*target);
   if (options.isWidenedLater)
     ir::attr::inDouble.set(*target);
+  if (options.hidesConstants)
+    ir::attr::hidesConstants.set(*target);
   lowering::ModuleLowering(module, options, *target).run();
   if (options.diagnostics->errorCount() != errorsBefore)
     return nullptr;
-  if (options.isWidenedLater)
+  if (options.hidesConstants)
     lowering::hideConstants(*target);
   return target;
 }

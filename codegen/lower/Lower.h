@@ -32,8 +32,8 @@ struct LowerOptions {
   /// An index out of range is an exception too; `print` prints. Without, `print` does nothing, and
   /// its arguments are not evaluated.
   bool raisesExceptions = false, prints = false;
-  /// Leave arithmetic to LLVM IR, which will be widened: see HideConstants.h.
-  bool isWidenedLater = false;
+  /// Leave arithmetic to LLVM IR: see HideConstants.h. It will also be widened.
+  bool hidesConstants = false, isWidenedLater = false;
   /// Keep expressions whole, for C++: see SourceTable.h. Null: lower them.
   SourceTable *source = nullptr;
   /// Lower these classes only, with the functions that they call. Empty: everything.

@@ -131,7 +131,7 @@ bool FunctionLowering::appendWords(const typed::Expr &expr,
 }
 
 bool FunctionLowering::isComputedWhenRun(const typed::Expr &constant) {
-  if (!module.options.isWidenedLater)
+  if (!module.options.hidesConstants)
     return false;
   if (auto *literal = dynCast<typed::LiteralExpr>(&constant)) {
     const typed::Expr *init = literal->variable ? literal->variable->init.get()

@@ -100,7 +100,17 @@ float rtsl_check_number(float value, float a, float b, float c, std::uint32_t pl
   return rtsl::runtime::check(value, fromFinite, place);
 }
 
+float rtsl_check_stored_number(float value, std::uint32_t place) {
+  return rtsl::runtime::check(value, false, place);
+}
+
 double rtsl_double_check_number(double value, double a, double b, double c, std::uint32_t place) {
   const bool fromFinite = std::isfinite(a) && std::isfinite(b) && std::isfinite(c);
   return rtsl::runtime::check(value, fromFinite, place);
+}
+
+double rtsl_double_check_stored_number(double value, std::uint32_t place) {
+  const auto stored = double(float(value));
+  const double checked = rtsl::runtime::check(stored, std::isfinite(value), place);
+  return std::isfinite(stored) ? value : checked;
 }

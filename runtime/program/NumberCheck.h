@@ -1,7 +1,8 @@
 //===- NumberCheck.h - where a sample becomes infinite or NaN -------------===//
 //
 // A program that was compiled with checks calls rtsl_check_number for every number that a shader
-// computes or stores, with the number of its place in the source and its operands. A sample that is
+// computes, with its operands, and rtsl_check_stored_number for every number that it stores, each
+// with the number of its place in the source. A sample that is
 // infinite or NaN is rendered again by such a program, repeatedly: each time one more of the places
 // that made a number not finite returns a finite number instead, the latest first, until the sample
 // is finite. The last of these places is the result: without it, and the later ones, the sample
@@ -21,8 +22,12 @@ extern "C" {
 
 /// Returns `value`, which was computed from `a`, `b` and `c`; unused operands are finite.
 float rtsl_check_number(float value, float a, float b, float c, std::uint32_t place);
-/// The same for --fp=double.
+/// Returns `value`, which is about to be stored.
+float rtsl_check_stored_number(float value, std::uint32_t place);
+
+/// The same for --fp=double, where a number may become infinite because it is stored as a float.
 double rtsl_double_check_number(double value, double a, double b, double c, std::uint32_t place);
+double rtsl_double_check_stored_number(double value, std::uint32_t place);
 }
 
 namespace rtsl::runtime {

@@ -113,6 +113,8 @@ void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbo
           const CompileOptions &options, runtime::Program &program) {
   symbols.push_back({"rtsl_print", reinterpret_cast<void *>(&rtsl_print)});
   symbols.push_back({"rtsl_check_number", reinterpret_cast<void *>(&rtsl_check_number)});
+  symbols.push_back(
+      {"rtsl_check_stored_number", reinterpret_cast<void *>(&rtsl_check_stored_number)});
   if (options.floatingPoint == FloatingPoint::Double)
     for (const codegen::HostSymbol &function : codegen::doubleFunctions())
       symbols.push_back(function);

@@ -82,7 +82,7 @@ struct ConvertRefract : ConvertOpToLLVMPattern<ir::RefractOp> {
   }
 };
 
-/// A hidden value stays hidden until arithmetic has been widened.
+/// A hidden value stays hidden until arithmetic has been widened, or checked.
 struct ConvertHide : ConvertOpToLLVMPattern<ir::HideOp> {
   using ConvertOpToLLVMPattern::ConvertOpToLLVMPattern;
   LogicalResult matchAndRewrite(ir::HideOp op, OpAdaptor adaptor,

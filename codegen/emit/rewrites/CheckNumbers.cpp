@@ -17,6 +17,7 @@ namespace LLVM = mlir::LLVM;
 namespace {
 
 constexpr llvm::StringLiteral checkFunction = "rtsl_check_number";
+constexpr llvm::StringLiteral checkStoredFunction = "rtsl_check_stored_number";
 
 bool isFloat(mlir::Type type) {
   return mlir::getElementTypeOrSelf(type).isF32();
@@ -59,9 +60,11 @@ public:
 private:
   void declare() {
     builder.setInsertionPointToStart(module.getBody());
-    const mlir::Type f32 = builder.getF32Type();
-    auto type = LLVM::LLVMFunctionType::get(f32, {f32, f32, f32, f32, builder.getI32Type()});
-    LLVM::LLVMFuncOp::create(builder, module.getLoc(), checkFunction, type);
+    const mlir::Type f32 = builder.getF32Type(), i32 = builder.getI32Type();
+    LLVM::LLVMFuncOp::create(builder, module.getLoc(), checkFunction,
+                             LLVM::LLVMFunctionType::get(f32, {f32, f32, f32, f32, i32}));
+    LLVM::LLVMFuncOp::create(builder, module.getLoc(), checkStoredFunction,
+                             LLVM::LLVMFunctionType::get(f32, {f32, i32}));
   }
 
   mlir::Value placeNumber(mlir::Location location) {
@@ -83,25 +86,22 @@ private:
     return LLVM::ExtractElementOp::create(builder, location, value, at);
   }
 
-  /// The value after its check, where `sources` are the operands that it was computed from.
-  mlir::Value checked(mlir::Location location, mlir::Value value,
+  /// The value after `check`, a function of each of its components, of the same component of each
+  /// of `sources`, and of the place.
+  mlir::Value checked(mlir::Location location, llvm::StringRef check, mlir::Value value,
                       llvm::ArrayRef<mlir::Value> sources) {
     const mlir::Value place = placeNumber(location);
     const auto vector = llvm::dyn_cast<mlir::VectorType>(value.getType());
     const unsigned count = vector ? static_cast<unsigned>(vector.getNumElements()) : 1;
     mlir::Value result = value;
     for (unsigned i = 0; i < count; ++i) {
-      const mlir::Value number = component(location, value, i);
-      llvm::SmallVector<mlir::Value> arguments = {number};
+      llvm::SmallVector<mlir::Value> arguments = {component(location, value, i)};
       for (mlir::Value source : sources)
         arguments.push_back(component(location, source, i));
-      while (arguments.size() < 4)
-        arguments.push_back(LLVM::ConstantOp::create(builder, location, builder.getF32Type(),
-                                                     builder.getF32FloatAttr(0)));
       arguments.push_back(place);
       mlir::Value after =
-          LLVM::CallOp::create(builder, location, mlir::TypeRange{builder.getF32Type()},
-                               checkFunction, arguments)
+          LLVM::CallOp::create(builder, location, mlir::TypeRange{builder.getF32Type()}, check,
+                               arguments)
               .getResult();
       if (!vector) {
         result = after;
@@ -114,11 +114,10 @@ private:
     return result;
   }
 
-  /// Stores check constants that are not finite, and numbers from other sources.
   void checkStore(LLVM::StoreOp store) {
     builder.setInsertionPoint(store);
-    mlir::Value value = store.getValue();
-    store.getValueMutable().assign(checked(store.getLoc(), value, {value}));
+    store.getValueMutable().assign(
+        checked(store.getLoc(), checkStoredFunction, store.getValue(), {}));
   }
 
   void checkResult(mlir::Operation *op) {
@@ -129,7 +128,10 @@ private:
     for (mlir::Value operand : op->getOperands())
       if (isFloat(operand.getType()) && sources.size() < 3)
         sources.push_back(operand);
-    const mlir::Value after = checked(op->getLoc(), value, sources);
+    while (sources.size() < 3)
+      sources.push_back(LLVM::ConstantOp::create(builder, op->getLoc(), builder.getF32Type(),
+                                                 builder.getF32FloatAttr(0)));
+    const mlir::Value after = checked(op->getLoc(), checkFunction, value, sources);
     value.replaceUsesWithIf(after,
                             [&](mlir::OpOperand &use) { return users.contains(use.getOwner()); });
   }

@@ -76,6 +76,7 @@ const DoubleFunction functions[] = {
     BINARY(atan2),
     {"rtsl_double_inversesqrt", reinterpret_cast<void *>(&inverseSquareRoot)},
     {"rtsl_double_check_number", reinterpret_cast<void *>(&rtsl_double_check_number)},
+    {"rtsl_double_check_stored_number", reinterpret_cast<void *>(&rtsl_double_check_stored_number)},
     {"rtsl_double_sinpi", reinterpret_cast<void *>(&sineOfPi)},
     {"rtsl_double_cospi", reinterpret_cast<void *>(&cosineOfPi)},
     REFRACT(1),

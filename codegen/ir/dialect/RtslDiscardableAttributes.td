@@ -301,10 +301,16 @@ def source : DiscardableAttribute<"source", Unit, ["builtin.module"]> {
   let readBy = "passes, Split";
 }
 
-def inDouble : DiscardableAttribute<"double", Unit, ["builtin.module"]> {
-  let meaning = "its arithmetic will be done in double, so no pass may fold it in single precision";
+def hidesConstants : DiscardableAttribute<"hides_constants", Unit, ["builtin.module"]> {
+  let meaning = "no operation of numbers may be folded before LLVM IR";
   let setBy = "lower";
-  let readBy = "formulas, passes/InlineFunctions, emit";
+  let readBy = "formulas";
+}
+
+def inDouble : DiscardableAttribute<"double", Unit, ["builtin.module"]> {
+  let meaning = "its arithmetic will be done in double";
+  let setBy = "lower";
+  let readBy = "passes/InlineFunctions, emit";
 }
 
 def lightCount : DiscardableAttribute<"light_count", Integer, ["builtin.module"]> {

@@ -186,9 +186,74 @@ class NotFinite(ShaderCase):
         self.run_rtslc("render", "scene.json", "-o", "b.exr", "-q", "-Werror=not-finite", status=1)
         self.run_rtslc("compare", "a.exr", "b.exr")
 
+    def line_of_bad_number(self, statements, *way):
+        """The line in the body of `shade` that is named for all samples, counted from 0."""
+        head = (
+            "class Bad : rt_Material {\n  public float zero = 0.0, one = 1.0;\n  void shade() {\n"
+        )
+        text = SHADERS + head
+        self.write("shaders.rtsl", text + "\n".join(statements) + "\n  }\n};\n")
+        self.scene("Bad", spp=1)
+        figures, _ = self.render("--size=2x2", *way)
+        lines = {one.get("place", {"line": 0})["line"] for one in figures["notFinite"]}
+        self.assertEqual((len(lines), figures["samplesNotFinite"]), (1, 4))
+        return lines.pop() - text.count("\n") - 1
+
+    def test_values_of_constants(self):
+        """Folding and rounding hide no operation; the bad line has the index that is given."""
+        in_single = (
+            (0, ["float a = 1.0 / 0.0;", "rt_SampleColor = color(a * one);"]),
+            (
+                1,
+                [
+                    "mat3 m = mat3(0.0);",
+                    "float d = 1.0 / determinant(m);",
+                    "rt_SampleColor = color(d * zero + d);",
+                ],
+            ),
+            (
+                1,
+                [
+                    "const float large = 3e38;",
+                    "float a = large * 2.0;",
+                    "float b = a - 1.0;",
+                    "rt_SampleColor = color(b);",
+                ],
+            ),
+            (1, ["float a = 1e30 * one;", "float b = a * a;", "rt_SampleColor = color(b);"]),
+            (
+                2,
+                [
+                    "float a = 1.0;",
+                    "for (int i = 0; i < 200; i++)",
+                    "  a *= 10.0 + rand();",
+                    "rt_SampleColor = color(a);",
+                ],
+            ),
+        )
+        for wanted, statements in in_single:
+            with self.subTest(statements=statements):
+                self.assertEqual(self.line_of_bad_number(statements), wanted)
+        # In double the number is finite until it is stored.
+        for wanted, statements in (
+            (0, in_single[0][1]),
+            (2, in_single[3][1]),
+            (3, in_single[4][1]),
+            (
+                2,
+                [
+                    "float a = clamp(one / zero, 0.0, 1e38);",
+                    "float b = a * 100.0;",
+                    "rt_SampleColor = color(b);",
+                ],
+            ),
+        ):
+            with self.subTest(statements=statements):
+                self.assertEqual(self.line_of_bad_number(statements, "--fp=double"), wanted)
+
     def test_a_constant_and_a_payload(self):
-        """What no operation makes infinite shows where it is stored; what a payload carries goes
-        back to who made it."""
+        """What is computed from constants shows where that is; what a payload carries goes back to
+        who made it."""
         self.write(
             "shaders.rtsl",
             SHADERS
