@@ -3,6 +3,8 @@
 
 #include "sema/typed/TypeProperties.h"
 
+#include <algorithm>
+
 namespace rtsl::random {
 
 NodePtr Generator::declare(const std::string &name, const Type *type, NodePtr value,
@@ -103,8 +105,13 @@ NodePtr Generator::declaration(unsigned depth) {
     if (NodePtr made = referenceDeclaration())
       return made;
   const Type *type = anyType();
-  const std::string name = fresh("v");
+  std::string name = fresh("v");
   if (chance(10)) {
+    // Blocks and functions have constants of the same name.
+    if (context.switches == 0 && chance(50) &&
+        std::none_of(scope.begin(), scope.end(),
+                                   [](const Variable &one) { return one.name == "k"; }))
+      name = "k";
     context.constantOnly = true;
     NodePtr value = expression(type, 2);
     context.constantOnly = false;

@@ -109,7 +109,7 @@ Code Expressions::lowered(const typed::Expr &expr) {
   case ExprKind::Literal: {
     const auto &value = cast<typed::LiteralExpr>(expr);
     if (const void *constant = printer.literals.namedConstant(value))
-      return name(context.names.of(constant));
+      return name(printer.nameOf(constant));
     return printer.literals.literal(expr.type, value.value, value.spelling);
   }
   case ExprKind::Variable:

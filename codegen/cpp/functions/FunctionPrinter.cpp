@@ -17,6 +17,11 @@ FunctionPrinter::FunctionPrinter(Context &context, const typed::Function *functi
     usedNames.insert(context.names.of(local.get()));
 }
 
+const std::string &FunctionPrinter::nameOf(const void *entity) const {
+  const auto own = constantNames.find(entity);
+  return own != constantNames.end() ? own->second : context.names.of(entity);
+}
+
 std::string FunctionPrinter::temporaryName(const std::string &hint) {
   for (unsigned i = 1;; ++i) {
     std::string name = hint + std::to_string(i);

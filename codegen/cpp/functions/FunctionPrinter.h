@@ -27,6 +27,8 @@ struct FunctionPrinter {
                   const typed::Class *owner = nullptr);
   FunctionPrinter(const FunctionPrinter &) = delete;
 
+  /// The name of a variable, a constant or a member.
+  const std::string &nameOf(const void *entity) const;
   /// A name that the function does not use yet.
   std::string temporaryName(const std::string &hint);
   /// Puts the value into a variable, before the statement that is being made; its name.
@@ -47,6 +49,8 @@ struct FunctionPrinter {
   /// In a state: expressions that the IR has computed, and the code for their values.
   std::map<const typed::Expr *, Code> replaced;
   bool isNested = true; // parts with effects are not among them
+  /// In a state: the names of constants of functions, of which several may have the author's.
+  std::map<const void *, std::string> constantNames;
 
   Literals literals;
   Expressions expressions;

@@ -83,7 +83,7 @@ Code Lvalues::of(const typed::Expr &expr, bool storeIndices) {
     return found->second;
   switch (expr.kind) {
   case ExprKind::Variable:
-    return name(context.names.of(cast<typed::VariableExpr>(expr).variable));
+    return name(printer.nameOf(cast<typed::VariableExpr>(expr).variable));
   case ExprKind::State:
     return member(name("rt"), typed::name(cast<typed::StateExpr>(expr).variable));
   case ExprKind::Member: {

@@ -82,15 +82,27 @@ bool SplitMethods::overridesVirtual(const typed::Function &function) const {
   return false;
 }
 
+/// Has the class another method of this name, for another payload or none, or a base or a derived
+/// class of it? C++ would take one for the other: states have no payload as a parameter that do not
+/// use it.
+static bool isOneOfMany(const typed::Module &module, const typed::Class &definition,
+                        const typed::Function &method) {
+  const std::string slot = typed::slotName(module, method);
+  return std::any_of(module.classes.begin(), module.classes.end(), [&](const auto &other) {
+    const bool isRelated = other.get() == &definition || other->derivesFrom(&definition) ||
+                           definition.derivesFrom(other.get());
+    return isRelated &&
+           std::any_of(other->functions.begin(), other->functions.end(), [&](const auto &one) {
+             return one->name == method.name && typed::slotName(module, *one) != slot;
+           });
+  });
+}
+
 std::string SplitMethods::nameOfMachine(const typed::Class &definition,
                                         const typed::Function &method) const {
-  const bool isOneOfMany = typed::takesPayload(method) &&
-                           std::count_if(definition.functions.begin(), definition.functions.end(),
-                                         [&](const auto &other) {
-                                           return other->name == method.name;
-                                         }) > 1; // one method for each payload
+  const bool namesPayload = typed::takesPayload(method) && isOneOfMany(module, definition, method);
   return names.of(&method) +
-         (isOneOfMany ? names.of(method.parameters.front()->type->structure) : std::string());
+         (namesPayload ? names.of(method.parameters.front()->type->structure) : std::string());
 }
 
 std::string SplitMethods::stepName(const typed::Class &definition, const std::string &function) {

@@ -149,6 +149,7 @@ void StateExpressions::nameConstants(const typed::Expr &expr) {
       return;
     nameConstants(*constant.init); // constants that its initialiser mentions come first
     constants.push_back(&constant);
+    state.functions.constantNames[&constant] = state.names.fresh(context.names.of(&constant));
   };
   forEachExpr(expr, [&](const typed::Expr &inner) {
     if (elsewhere.count(&inner))

@@ -44,6 +44,10 @@ names = [
     "Worn",
     "Waxed",
     "Rounded",
+    "Patterned",
+    "Enamel",
+    "Glazed",
+    "Frosted",
 ]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {

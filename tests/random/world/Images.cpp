@@ -14,7 +14,7 @@ using runtime::MemberInfo;
 static constexpr std::uint32_t imageCount = 3;
 
 void World::addImages() {
-  if (const ClassInfo *info = code.find("sampler2D"))
+  if (const ClassInfo *info = hasImages(program.seed) ? code.find("sampler2D") : nullptr)
     for (std::uint32_t i = 0; i != imageCount; ++i)
       addImage(*info, i);
 }
@@ -69,7 +69,7 @@ void World::putBuffer(std::uint8_t *to, const runtime::Words &words) {
 }
 
 std::size_t World::wordsOfImages() const {
-  const ClassInfo *info = code.find("sampler2D");
+  const ClassInfo *info = hasImages(program.seed) ? code.find("sampler2D") : nullptr;
   return info ? imageCount * ((info->recordSize + 15) / 16 * 4) : 0;
 }
 

@@ -32,6 +32,7 @@ void StatePrinter::print(mlir::Operation &op, Statements &out) {
 }
 
 Statements StatePrinter::body(mlir::func::FuncOp function) {
+  functions.constantNames.clear();
   Statements lines;
   control.block(function.getBody().front(), lines);
   cleanUp(lines, machine.frameName);
@@ -39,7 +40,7 @@ Statements StatePrinter::body(mlir::func::FuncOp function) {
   for (const typed::Variable *constant : expressions.constants)
     statements.push_back(
         declaration(functions.literals.isTable(*constant->init) ? "static constexpr" : "const",
-                    method.context.types.of(constant->type), method.context.names.of(constant),
+                    method.context.types.of(constant->type), functions.nameOf(constant),
                     functions.expressions.initialiser(*constant->init)));
   append(statements, lines);
   return statements;
