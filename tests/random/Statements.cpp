@@ -110,7 +110,7 @@ NodePtr Generator::declaration(unsigned depth) {
     // Blocks and functions have constants of the same name.
     if (context.switches == 0 && chance(50) &&
         std::none_of(scope.begin(), scope.end(),
-                                   [](const Variable &one) { return one.name == "k"; }))
+                     [](const Variable &one) { return one.name == "k"; }))
       name = "k";
     context.constantOnly = true;
     NodePtr value = expression(type, 2);
