@@ -162,10 +162,13 @@ static bool partsChangeWritten(const typed::Expr &expr, const Writes &writes,
     forEachExpr(*part, [&](const typed::Expr &inner) {
       if (&inner == &expr)
         return;
-      for (const typed::Expr *target : writesOf(inner).lvalues)
+      for (const typed::Expr *target : writesOf(inner).lvalues) {
         if (auto *state = dynCast<typed::StateExpr>(&wholeOf(*target)))
           isChanged |= states.count(typed::name(state->variable)) != 0;
-      isChanged |= readsBuffer && outputOf(inner) && hasSideEffects(inner);
+        isChanged |= readsBuffer && isInOutputBuffer(*target);
+      }
+      auto *builtin = dynCast<typed::BuiltinExpr>(&inner);
+      isChanged |= readsBuffer && builtin && typed::isAtomic(builtin->builtin);
       const bool isCall = inner.kind == ExprKind::Call || inner.kind == ExprKind::MethodCall;
       if (!isCall || states.empty())
         return;

@@ -84,12 +84,12 @@ private:
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
       if (ir::attr::hitError.isOn(function)) // only those that are needed have been derived
         add(function, {"bounds the error of a hit", {}});
-    if (context.request.engine == runtime::Engine::Classic) {
+    if (context.request.engine != runtime::Engine::Programs) {
       addMethods("rt_Camera", "generateRay", {"begins every sample", {}});
       addClassicRays({"for the camera's rays", {}});
-    } else {
-      addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
     }
+    if (context.request.engine != runtime::Engine::Classic)
+      addMethods("rt_RayGeneration", "generate", {"begins every sample", {}});
     addMethods("rt_Primitive", "intersect", {"finds hits", {}});
     addMethods("rt_Selector", "visit", {"decides what rays may hit", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
@@ -227,14 +227,24 @@ bool isLitByLights(mlir::Operation *op) {
   return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex());
 }
 
-bool usesLights(const LinkContext &context) {
+/// Does a function that rendering runs have such an operation?
+static bool anyThatRenders(const LinkContext &context,
+                           llvm::function_ref<bool(mlir::Operation *)> holds) {
   Reach reach(context);
   reach.run();
   return llvm::any_of(mlir::ModuleOp(context.ir).getOps<FuncOp>(), [&](FuncOp function) {
-    const auto isLit = [](mlir::Operation *op) {
-      return isLitByLights(op) ? mlir::WalkResult::interrupt() : mlir::WalkResult::advance();
-    };
-    return reach.isReachedByRendering(function) && function.walk(isLit).wasInterrupted();
+    return reach.isReachedByRendering(function) && ir::anyOperation(function, holds);
+  });
+}
+
+bool usesLights(const LinkContext &context) {
+  return anyThatRenders(context, isLitByLights);
+}
+
+bool usesSurfacesAsLights(const LinkContext &context) {
+  return anyThatRenders(context, [](mlir::Operation *op) {
+    auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+    return light && !light.getIndex();
   });
 }
 

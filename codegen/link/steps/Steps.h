@@ -88,6 +88,8 @@ bool isLitByLights(mlir::Operation *op);
 
 /// Whether a method that rendering runs loops over lights. Runs before slots are resolved.
 bool usesLights(const LinkContext &context);
+/// Whether one lights a point with a surface that shines.
+bool usesSurfacesAsLights(const LinkContext &context);
 
 /// Records which classes the program has, once it is known which methods run.
 void noteClasses(LinkContext &context);

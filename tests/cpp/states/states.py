@@ -48,6 +48,7 @@ names = [
     "Enamel",
     "Glazed",
     "Frosted",
+    "Stained",
 ]
 shaders = ["PinholeCamera", "Sphere", "Parallelogram", "Checker", "BallLight", "Sky"]
 scene = {

@@ -181,6 +181,10 @@ const Type *ValueTypes::of(mlir::Value value) {
         return isKnown ? call->second->function->returnType : nullptr;
       })
       .Case([&](ir::CastRefOp cast) { return of(cast.getObject()); })
+      .Case([&](arith::IndexCastUIOp index) {
+        const Type *type = of(index.getIn());
+        return type ? type : types.intType;
+      })
       .Case([&](arith::SelectOp select) {
         const Type *type = of(select.getTrueValue());
         return type ? type : of(select.getFalseValue());

@@ -91,7 +91,7 @@ void WriteSummary::propagate(mlir::ModuleOp module) {
       callers[name].push_back(lights);
     StateWrites &writes = functions[name];
     function.walk([&](mlir::Operation *op) {
-      if (llvm::isa<ir::IlluminateOp>(op))
+      if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && light.getIndex())
         callers[lights].push_back(name);
       if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
           call && functions.contains(call.getCalleeAttr().getAttr()))
