@@ -34,11 +34,12 @@ int main(int argc, char **argv) try {
   scene.addPrimitive(floor, make("Glossy", {{"albedo", Value::reference(checks)}}));
   int i = 0;
   for (const char *name :
-       {"Many",    "Nested", "Middle",   "Choices",   "Endless",   "Mirror",    "Base",
-        "Derived", "Table",  "Bundle",   "Turned",    "Outputs",   "Component", "Lit",
-        "Tangled", "Loud",   "Quiet",    "Columns",   "Flags",     "Scattered", "Replaced",
-        "Arms",    "Late",   "Polished", "Matte",     "Lacquered", "Chalk",     "Varnished",
-        "Worn",    "Waxed",  "Rounded",  "Patterned", "Enamel",    "Glazed",    "Frosted", "Stained"}) {
+       {"Many",      "Nested",    "Middle",   "Choices",   "Endless", "Mirror",
+        "Base",      "Derived",   "Table",    "Bundle",    "Turned",  "Outputs",
+        "Component", "Lit",       "Tangled",  "Loud",      "Quiet",   "Columns",
+        "Flags",     "Scattered", "Replaced", "Arms",      "Late",    "Polished",
+        "Matte",     "Lacquered", "Chalk",    "Varnished", "Worn",    "Waxed",
+        "Rounded",   "Patterned", "Enamel",   "Glazed",    "Frosted", "Stained"}) {
     const double x = -4.5 + i % 10, y = 0.7 + 1.3 * (i / 10);
     scene.addPrimitive(make("Sphere", {{"center", {x, y, 0}}, {"radius", 0.7}}), make(name, {}));
     ++i;
