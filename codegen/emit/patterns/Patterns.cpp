@@ -40,10 +40,9 @@ Value loadFrom(OpBuilder &builder, Location location, mlir::Type type, Value add
 Value launchAddress(OpBuilder &builder, Location location, uint32_t bytes) {
   mlir::Type pointer = LLVM::LLVMPointerType::get(builder.getContext());
   Value field = offsetAddress(builder, location, rayState(builder), offsetof(RtslState, launch));
-  // All loads of one state's launch give the same value. They are not invariant: the device code
-  // has states in local variables, and such a load may move before the launch is written.
-  Value launch = LLVM::LoadOp::create(builder, location, pointer, field, alignof(void *), false,
-                                      false, /*isInvariant=*/false, /*isInvariantGroup=*/true);
+  // Not invariant, nor of an invariant group: the device code has states in local variables, and
+  // LLVM may move such a load before the store of the launch.
+  Value launch = LLVM::LoadOp::create(builder, location, pointer, field, alignof(void *));
   return offsetAddress(builder, location, launch, bytes);
 }
 

@@ -6,7 +6,7 @@ rtsl.class @Grid root "rt_Primitive" {
 }
 // CHECK-LABEL: llvm.func @Grid.cell(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32, %[[ARG2:.*]]: i32, %[[ARG3:.*]]: i32, %[[ARG4:.*]]: i32) -> vector<3xf32> attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr inbounds %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, !llvm.array<1 x i8>
@@ -37,7 +37,7 @@ func.func @Grid.cell(%self: !rtsl.ref<"Grid">, %i: i32, %j: i32, %k: i32) -> vec
 }
 // CHECK-LABEL: llvm.func @Grid.length(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32) -> i32 attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr inbounds %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, !llvm.array<1 x i8>

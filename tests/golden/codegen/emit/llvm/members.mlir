@@ -8,7 +8,7 @@ rtsl.class @Glass root "rt_Material" {
 }
 // CHECK-LABEL: llvm.func @Glass.shade(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32) -> f32 attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr inbounds %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, !llvm.array<1 x i8>
@@ -23,7 +23,7 @@ func.func @Glass.shade(%self: !rtsl.ref<"Glass">) -> f32 {
 }
 // CHECK-LABEL: llvm.func @Glass.constructor(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32) attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr inbounds %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, !llvm.array<1 x i8>
@@ -40,7 +40,7 @@ func.func @Glass.constructor(%self: !rtsl.ref<"Glass">) attributes {rtsl.constru
 }
 // CHECK-LABEL: llvm.func @Glass.helper(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32) -> f32 attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr inbounds %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, !llvm.array<1 x i8>

@@ -40,7 +40,7 @@ func.func @A.rand() -> f32 {
 }
 // CHECK-LABEL: llvm.func @A.launch(
 // CHECK-SAME: %[[STATE:.*]]: !llvm.ptr {
-// CHECK: %[[LAUNCH:.*]] = llvm.load %[[STATE]] invariant
+// CHECK: %[[LAUNCH:.*]] = llvm.load %[[STATE]] {alignment = 8
 // CHECK: llvm.getelementptr inbounds|nuw %[[LAUNCH]]
 // CHECK: llvm.load %{{.*}} invariant {alignment = 4 : i64} : !llvm.ptr -> vector<3xf32>
 // CHECK: llvm.load %{{.*}} invariant {alignment = 4 : i64} : !llvm.ptr -> i32

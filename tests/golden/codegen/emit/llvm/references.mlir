@@ -5,7 +5,7 @@
 
 // CHECK-LABEL: llvm.func @A.classOf(
 // CHECK-SAME: %[[ARG0:.*]]: !llvm.ptr {llvm.align = 8 : i64, llvm.dereferenceable = {{[0-9]+}} : i64, llvm.noalias, llvm.nonnull}, %[[ARG1:.*]]: i32) -> i32 attributes {no_unwind} {
-// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] invariant_group {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
+// CHECK-NEXT: %[[V0:.*]] = llvm.load %[[ARG0]] {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V1:.*]] = llvm.load %[[V0]] invariant {alignment = 8 : i64} : !llvm.ptr -> !llvm.ptr
 // CHECK-NEXT: %[[V2:.*]] = llvm.zext %[[ARG1]] : i32 to i64
 // CHECK-NEXT: %[[V3:.*]] = llvm.getelementptr %[[V1]][%[[V2]]] : (!llvm.ptr, i64) -> !llvm.ptr, i8
