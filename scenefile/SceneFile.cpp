@@ -71,6 +71,8 @@ public:
     section("background", [&](const JsonValue &background) {
       if (background.kind == Kind::Object)
         scene.background = readObject(background, "`background`");
+      else if (background.kind == Kind::String)
+        throw Error(message::backgroundIsString(background.string), background.place());
       else
         scene.backgroundColor = &readColor(background, "`background`");
     });

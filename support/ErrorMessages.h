@@ -5,6 +5,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "support/Articles.h"
 #include "support/Error.h"
 
 #include <fmt/format.h>
@@ -19,7 +20,7 @@ namespace rtsl::message {
   template <typename... Arguments>                                                                 \
   Message id(Arguments &&...arguments) {                                                           \
     return {ErrorCode::code,                                                                       \
-            fmt::format(FMT_STRING(text), std::forward<Arguments>(arguments)...)};                 \
+            withArticles(fmt::format(FMT_STRING(text), std::forward<Arguments>(arguments)...))};   \
   }
 #include "support/ErrorMessages.def"
 #include "support/SceneMessages.def"
@@ -28,7 +29,7 @@ namespace rtsl::message {
 #define RTSL_MESSAGE(id, text)                                                                     \
   template <typename... Arguments>                                                                 \
   std::string id(Arguments &&...arguments) {                                                       \
-    return fmt::format(FMT_STRING(text), std::forward<Arguments>(arguments)...);                   \
+    return withArticles(fmt::format(FMT_STRING(text), std::forward<Arguments>(arguments)...));     \
   }
 #include "support/WarningMessages.def"
 

@@ -19,7 +19,7 @@ class OutputMistakes(OutputCase):
             "no buffer is named `histogrom`", "E0806", start={**start, "histogram": "histogrom"}
         )
         refused(
-            "a `uint[]`, and the buffer `most` a `int[]`",
+            "a `uint[]`, and the buffer `most` an `int[]`",
             "E0804",
             start={**start, "histogram": "most"},
             buffers={"most": {"size": [7]}},

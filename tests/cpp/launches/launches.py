@@ -93,7 +93,7 @@ WORDS_OF_MODELS = (
     "compile them with `std.materials.Dielectric`",
     "is 1e+38",
     "Back",
-    "a `Emitter` cannot be in a node",
+    "an `Emitter` cannot be in a node",
     "`position` takes 3 numbers, not 2",
     "a light in a node cannot move",
     "a camera cannot move",

@@ -187,9 +187,9 @@ TEST(BuildScene, ConstructorArguments) {
 }
 
 TEST(BuildScene, ClassesInTheWrongPlace) {
-  EXPECT_EQ(
-      buildError("\"lights\": [{\"class\": \"Mirror\"}]"),
-      "s.json:2:23+6: wrongClass: `Mirror (lights.0)` is a `Mirror`, where a `rt_Light` is needed");
+  EXPECT_EQ(buildError("\"lights\": [{\"class\": \"Mirror\"}]"),
+            "s.json:2:23+6: wrongClass: `Mirror (lights.0)` is a `Mirror`, where an `rt_Light` is "
+            "needed");
   EXPECT_EQ(
       buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}}, "
                  "\"objects\": [\n{\"primitive\": {\"class\": \"Sphere\", \"constructor\": "
@@ -197,7 +197,7 @@ TEST(BuildScene, ClassesInTheWrongPlace) {
       "s.json:3:77+3: wrongClass: `sky` is a `Sky`, an `rt_Miss`, where a material is needed");
   EXPECT_EQ(buildError("\"textures\": {\"sky\": {\"class\": \"Sky\", \"low\": 1, \"high\": 1}},\n" +
                        everything("\"other\": \"sky\"")),
-            "s.json:4:11+3: wrongClass: member `other` of `e` takes a `rt_Material`, not a `Sky`");
+            "s.json:4:11+3: wrongClass: member `other` of `e` takes an `rt_Material`, not a `Sky`");
   EXPECT_EQ(buildError("\"background\": [1, 2]"),
             "s.json:2:15+1: wrongType: the background is a color: it takes 3 numbers or one for "
             "all, not 2 numbers");

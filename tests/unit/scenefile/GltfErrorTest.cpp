@@ -53,7 +53,7 @@ TEST_F(GltfError, WhatIsNoModel) {
   EXPECT_EQ(sceneError("{"), "m.gltf:1:2+1: jsonSyntax: this is not JSON: unexpected end of input; "
                              "expected string literal");
   EXPECT_EQ(sceneError("[]"), "m.gltf:1:1+1: wrongType: a glTF file is an object, not a list");
-  EXPECT_EQ(sceneError("{}"), "m.gltf:1:1+1: missingKey: a glTF file needs a `asset`");
+  EXPECT_EQ(sceneError("{}"), "m.gltf:1:1+1: missingKey: a glTF file needs an `asset`");
   EXPECT_EQ(sceneError(R"({"asset": {"version": "1.0"}})"),
             "m.gltf:1:24+3: notSupported: glTF 1.0 is not supported, only 2.0 is");
   EXPECT_EQ(sceneError(R"({"asset": {"version": "2.1", "minVersion": "2.1"}})"),

@@ -203,7 +203,8 @@ TEST(SceneFile, TellsAllThatIsWrongWithTheSettings) {
   EXPECT_EQ(parseError(withCamera(
                 "\"background\": \"blue\",\n\"render\": {\"engine\": \"paths\", \"size\": [0, 4], "
                 "\"spp\": 0,\n\"depth\": 257, \"seed\": -1, \"shutter\": 3, \"lightSampler\": 1}")),
-            "dir/s.json:2:16+4: wrongType: `background` is a color, not a string\n"
+            "dir/s.json:2:16+4: wrongType: `background` is a color or an object of an `rt_Miss` "
+            "class, such as {\"class\": \"blue\"}, not a string\n"
             "dir/s.json:4:38+1: wrongType: `shutter` is a list, not a number\n"
             "dir/s.json:4:57+1: wrongType: `lightSampler` is a string, not a number\n"
             "dir/s.json:3:23+5: notSupported: there is no engine `paths`; there are `classic`, "

@@ -109,14 +109,21 @@ Error unknownName(const Message &message, const scene::LocatedName &mention,
   return error;
 }
 
-/// Says which names of `render.editable` are not classes of the scene, or not their members.
+/// Says which names of `render.editable` are not classes of the scene, or not their members. The
+/// files of library classes that nothing in the scene uses are not read, so they have no members.
 void refuseUnknownEditable(const scene::SceneDescription &description, const typed::Module &module,
-                           ErrorCollector &errors) {
+                           const std::vector<std::string> &libraryModules, ErrorCollector &errors) {
+  const auto isInLibrary = [&](const std::string &className) {
+    return std::any_of(libraryModules.begin(), libraryModules.end(),
+                       [&](const std::string &name) { return lastPart(name) == className; });
+  };
   for (const scene::LocatedName &name : description.editable) {
     const std::size_t dot = name.text.find('.');
     const std::string className = name.text.substr(0, dot);
     std::vector<std::string> known;
     if (!module.findClass(className)) {
+      if (isInLibrary(className))
+        continue;
       for (const auto &one : module.classes)
         known.push_back(one->name);
       errors.add(unknownName(message::noSuchClass(className), name, className, known));
@@ -318,7 +325,7 @@ loadShaders(scene::SceneDescription &description, const CommonOptions &options, 
   ErrorCollector unknown;
   if (!description.refused.isAny) { // its imports may be missing
     refuseUnknownClasses(mentions, *module, shaders.modules(), unknown);
-    refuseUnknownEditable(description, *module, unknown);
+    refuseUnknownEditable(description, *module, shaders.modules(), unknown);
   }
   for (const scene::LocatedName &mention : mentions)
     if (!module->findClass(mention.text))

@@ -138,5 +138,8 @@ class Editable(Case):
                     "check", GLASS, f'--set=render.editable=["{name}"]', status=DIAGNOSED
                 )
                 self.assertIn(message, error)
+        self.write("lamps.json", json.dumps(LAMPS))
+        unused = '--set=render.editable=["Torus"]'  # no file of the library is read for it
+        self.assertEqual(self.run_rtslc("check", "lamps.json", unused)[1], "")
         _, error = self.run_rtslc("check", GLASS, "--set=render.editable=[1]", status=DIAGNOSED)
         self.assertIn("a name of `editable`", error)

@@ -252,7 +252,7 @@ class Preview(Case):
         self.assert_message(
             [self.refused("b.rtsl")],
             "E0815",
-            "`Onion` cannot be shown without an object for its member `inner`, a `Onion`",
+            "`Onion` cannot be shown without an object for its member `inner`, an `Onion`",
             line=1,
             column=42,
         )
@@ -261,7 +261,7 @@ class Preview(Case):
             "class Way : rt_Material { public rt_Light lamp; void shade() { rt_SampleColor = "
             "color(0.5); } };\n",
         )
-        self.assert_message([self.refused("c.rtsl")], "E0815", "its member `lamp`, a `rt_Light`")
+        self.assert_message([self.refused("c.rtsl")], "E0815", "its member `lamp`, an `rt_Light`")
 
     def test_an_image_must_be_given(self):
         self.write(
