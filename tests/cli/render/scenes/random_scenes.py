@@ -1,6 +1,6 @@
-"""Random scenes of the standard library: any of its cameras, primitives, materials, textures, media,
-lights, backgrounds and engines, with random members in their ranges, as the reflection of the
-library gives them. A class that is added to the library takes part."""
+"""Random scenes of the standard library: any of its cameras, primitives, materials, textures,
+media, lights, backgrounds and engines, with random members in their ranges, as the reflection of
+the library gives them. A class that is added to the library takes part."""
 
 import json
 import math
@@ -42,7 +42,8 @@ def ball(stacks, sectors):
 
 
 MESHES = {
-    "tetrahedron.obj": "v -1 -1 -1\nv 1 1 -1\nv 1 -1 1\nv -1 1 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n",
+    "tetrahedron.obj": "v -1 -1 -1\nv 1 1 -1\nv 1 -1 1\nv -1 1 1\n"
+    "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n",
     "ball.obj": ball(6, 8),
 }
 
