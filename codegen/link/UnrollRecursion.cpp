@@ -16,6 +16,7 @@
 #include "codegen/link/UnrollRecursion.h"
 
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
 #include "codegen/link/CallGraph.h"
@@ -65,6 +66,44 @@ bool isDispatch(mlir::Operation *function) {
   return ir::attr::dispatch.isOn(function);
 }
 
+/// How a function reaches an object that it calls a method of.
+enum class Reached { AsItself, ByMember, Otherwise };
+
+Reached howReached(mlir::Value object, FuncOp function) {
+  while (auto cast = object.getDefiningOp<ir::CastRefOp>())
+    object = cast.getObject();
+  if (function.getNumArguments() != 0 && object == function.getArgument(0))
+    return Reached::AsItself;
+  auto load = object.getDefiningOp<ir::LoadOp>();
+  auto member = load
+                    ? llvm::dyn_cast_or_null<ir::MemberOp>(ir::variableOperation(load.getAddress()))
+                    : nullptr;
+  return member && howReached(member.getObject(), function) != Reached::Otherwise
+             ? Reached::ByMember
+             : Reached::Otherwise;
+}
+
+/// Of the object of a call within a cycle.
+Reached howReached(CallOp call) {
+  return call.getNumOperands() == 0
+             ? Reached::Otherwise
+             : howReached(call.getOperand(0), call->getParentOfType<FuncOp>());
+}
+
+/// Does no call within the cycle lead up a chain of references?
+bool onlyDescends(const Cycle &cycle, mlir::ModuleOp ir) {
+  const mlir::SymbolTable symbols(ir);
+  return llvm::none_of(cycle, [&](mlir::Operation *function) {
+    const mlir::WalkResult result = function->walk([&](CallOp call) {
+      mlir::Operation *callee = symbols.lookup(call.getCallee());
+      const bool isWithin = callee && cycle.contains(callee);
+      return isWithin && howReached(call) == Reached::Otherwise ? mlir::WalkResult::interrupt()
+                                                                : mlir::WalkResult::advance();
+    });
+    return result.wasInterrupted();
+  });
+}
+
 class Unroller {
 public:
   Unroller(mlir::ModuleOp ir, const Cycle &cycle, std::uint32_t levels)
@@ -83,13 +122,14 @@ public:
 
 private:
   /// Calls of functions of the cycle lead to the copies of the same level, and calls through
-  /// references to those of the next level.
+  /// references to other objects to those of the next level.
   void redirect(FuncOp function, std::uint32_t level) {
     function.walk([&](CallOp call) {
       mlir::Operation *callee = symbols.lookup(call.getCallee());
       if (!callee || !cycle.contains(callee))
         return;
-      const std::uint32_t below = isDispatch(callee) ? level + 1 : level;
+      const bool isNext = isDispatch(callee) && howReached(call) != Reached::AsItself;
+      const std::uint32_t below = isNext ? level + 1 : level;
       if (below == level && level == 1)
         return;
       if (below <= levels) {
@@ -131,9 +171,10 @@ void unrollRecursion(mlir::ModuleOp ir, std::uint32_t referenceChain) {
   for (const Cycle &cycle : findCycles(ir)) {
     if (traces(cycle, ir))
       continue;
-    // Between two calls through the same reference, a member leads to the next object; other
-    // references may be used in between.
-    const auto dispatches = static_cast<std::uint32_t>(llvm::count_if(cycle, isDispatch));
+    // Each call through a member leads to the next object. If there are others, one of a member
+    // comes between two calls of the same function.
+    const auto dispatches =
+        static_cast<std::uint32_t>(onlyDescends(cycle, ir) ? 1 : llvm::count_if(cycle, isDispatch));
     const std::uint64_t levels =
         std::uint64_t(std::max(1u, referenceChain)) * std::max(1u, dispatches);
     if (levels <= mostRecursionLevels)
