@@ -56,7 +56,7 @@ typedef struct RtslBox {
 /// selector and `visit` calls visitChild with the number of the child.
 typedef struct RtslSelection {
   RtslRef selector;
-  int32_t child;
+  int32_t child;      // from 0; the selections of a selector follow each other in this order
   uint32_t transform; // of the space of the selector; as RtslInstance::transform
   uint32_t above;     // the selection that leads to the selector; 0: none
 } RtslSelection;

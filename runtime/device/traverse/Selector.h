@@ -14,10 +14,11 @@
 namespace rtsl::device {
 
 /// The first dimension of the random numbers in `visit` of a selector: beyond those of any method
-/// that runs once per ray, and different for each selector.
-inline uint32_t dimensionOfSelector(RtslRef selector, uint32_t transform) {
-  const uint32_t mixed = selector * 0xc2b2ae35u ^ (transform + 1) * 0x27d4eb2fu;
-  return 0xc0000000u | mixed >> 4;
+/// that runs once per ray, and different for each selector. `first`: the
+/// selection of its child 0, which depends on the selectors of the scene alone, and not on where
+/// records lie. Multiples of the golden ratio are far apart, so that `visit` may draw many numbers.
+inline uint32_t dimensionOfSelector(uint32_t first) {
+  return 0xc0000000u | (first * 0x9e3779b9u) >> 4;
 }
 
 /// `visitChild(child)`.
@@ -26,11 +27,13 @@ inline void visitChild(RtslState &state, int32_t child) {
     state.isChildVisited = 1;
 }
 
-/// Does the selector admit the ray on this path? visit(state, object) is the slot of rt_Selector.
+/// Does the selector admit the ray on this path, which is `number` of RtslLaunch::selections?
+/// visit(state, object) is the slot of rt_Selector.
 template <typename Slots>
-bool isTaken(RtslState &state, const RtslSelection &selection, const Slots &slots) {
+bool isTaken(RtslState &state, uint32_t number, const Slots &slots) {
+  const RtslSelection &selection = state.launch->selections[number];
   const uint32_t dimension = state.dimension;
-  state.dimension = dimensionOfSelector(selection.selector, selection.transform);
+  state.dimension = dimensionOfSelector(number - uint32_t(selection.child));
   state.wantedChild = selection.child;
   state.isChildVisited = 0;
   if (rtsl_needs(state.launch) & RTSL_NEEDS_TRANSFORMS)
@@ -50,7 +53,7 @@ bool isSelected(RtslState &state, const RtslInstance &instance, const Slots &slo
     return true;
   for (uint32_t number = instance.selection; number != 0;
        number = state.launch->selections[number].above)
-    if (!isTaken(state, state.launch->selections[number], slots))
+    if (!isTaken(state, number, slots))
       return false;
   return true;
 }

@@ -490,6 +490,22 @@ def graph():
     }
 
 
+def chance():
+    """A selector that draws numbers, behind objects whose classes have virtual functions in C++."""
+    scene = graph()
+    del scene["variables"]  # so named objects come before selectors
+    scene["materials"] = {
+        "inner": {"class": "Bright", "tint": [0.3, 0.6, 0.8]},
+        "outer": {"class": "Paint", "inner": "inner"},
+    }
+    scene["nodes"]["one"]["material"] = "outer"
+    scene["nodes"]["world"]["children"] = [
+        "dice",
+        {"child": "dice", "transform": {"translate": [3, 1, -2]}},
+    ]
+    return scene
+
+
 def spaces(transforms):
     """The functions between spaces, below transforms of all kinds or of one."""
     nodes = {
@@ -569,7 +585,7 @@ CASES = [
     ("clang++-22", ["-O0"], [], [photons()]),
     ("g++", ["-O0"], ["--undefined=nan"], [outputs()]),
     ("clang++-22", ["-O0"], ["--trace=recurse", "--exceptions"], [outputs()]),
-    ("g++", ["-O0"], ["--undefined=nan"], [graph()]),
+    ("g++", ["-O0"], ["--undefined=nan"], [graph(), chance()]),
     ("clang++-22", ["-O1"], ["--undefined=nan"], SPACES),
     ("clang++-22", ["-O0"], ["--trace=recurse"], SPACES),
     ("g++", ["-O0"], ["--trace=recurse"], [names()]),

@@ -5,7 +5,7 @@ import shutil
 import unittest
 
 from harness import EXAMPLES, GRAPH_ITEMS, deep
-from graph_case import CLUSTER, SHADERS, GraphCase, balls, scene
+from graph_case import CLUSTER, SHADERS, SQUASHED, GraphCase, balls, scene
 
 
 class EveryPath(GraphCase):
@@ -308,6 +308,37 @@ class Selectors(GraphCase):
             picture, _ = self.render_scene(scene(nodes, root="root", **extra))
             means.append(self.mean_of(picture))
         self.assertAlmostEqual(means[0] / means[1], 2 / 3, delta=0.02)
+
+    def test_chance_depends_on_no_other_object(self):
+        """Neither on records in front of the selector's, nor on their size or what is kept."""
+        shaders = SHADERS.read_text()
+        larger = shaders.replace("public float shine", "public vec4 more; public float shine")
+        self.assertNotEqual(larger, shaders)
+        nodes = {
+            "one": balls([0, 0, 0, 1.5]),
+            "two": balls([0, 1, 0, 0.5]),
+            "dice": {"selector": {"class": "Chance"}, "children": ["one", "two", "one"]},
+            "world": {"children": ["dice", {"child": "dice", "transform": SQUASHED}]},
+        }
+        paint = {"paint": {"class": "Paint", "shine": 0.5}}
+        before = {"another": {"class": "Paint", "tint": 0.5}}
+        alone, more = (
+            scene(nodes, root="world", materials=materials, variables={})
+            for materials in (paint, {**before, **paint})
+        )
+        expected, _ = self.render_scene(alone)
+        cases = (
+            (more, shaders, []),
+            (alone, larger, []),
+            (alone, larger, ["--keep=all"]),
+            (more, larger, ["--target=host-megakernel"]),
+            (alone, shaders, ["--keep=all"]),
+            (more, shaders, ["--traversal=device", "--trace=recurse"]),
+        )
+        for number, (one, text, options) in enumerate(cases):
+            self.write("Graph.rtsl", text)
+            picture, _ = self.render_scene(one, *options)
+            self.assert_same_bits(picture, expected, (number, options))
 
     def test_below_others(self):
         """An instance is seen if all selectors above it say so."""

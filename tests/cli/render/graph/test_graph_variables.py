@@ -75,7 +75,7 @@ class Variables(GraphCase):
         error = self.run_rtslc("render", path, "-o", "x.exr", status=1)[1]
         self.assertRegex(
             error,
-            r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, a "
+            r"error\[E0815\]: `bare` refers to nothing: set member `grain` of class `Bare`, an "
             r"`rt_Texture`, or " + places,
         )
 
