@@ -70,13 +70,15 @@ static void noteChannels(const std::string &className, const runtime::MemberInfo
          {}});
 }
 
+namespace {
+
 /// What a program does that shaders see in the state: rt_PDF begins as the density of illuminate(P)
 /// if some method that runs calls that, and LightColor is 0 where materials with `transmittance`
 /// let no light pass.
-namespace {
 struct SeenByShaders {
   bool lightPasses, samplesSurfaces;
 };
+
 } // namespace
 
 /// Of the program that would be if nothing were kept: what is kept must not change the picture.
