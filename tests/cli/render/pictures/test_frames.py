@@ -402,12 +402,12 @@ class FramesOfScenes(Parts):
         wrong = json.loads(json.dumps(MOVING))
         wrong["objects"][0]["material"]["frames"]["9"] = "cly"
         wrong["objects"][1]["transform"]["frames"]["20"]["scale"] = 0
-        wrong["background"] = "blue"
+        wrong["ambient"] = "blue"
         self.write("scene.json", json.dumps(wrong, indent=1))
         self.assertEqual(
             sorted((one["code"], one["message"]) for one in self.diagnose("check", "scene.json")),
             [
-                ("E0804", "`background` is a color, not a string"),
+                ("E0804", "`ambient` is a color, not a string"),
                 ("E0805", "this transform flattens its objects"),
                 ("E0806", "no texture or material is named `cly`"),
             ],
