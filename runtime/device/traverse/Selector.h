@@ -14,9 +14,9 @@
 namespace rtsl::device {
 
 /// The first dimension of the random numbers in `visit` of a selector: beyond those of any method
-/// that runs once per ray, and different for each selector. `first`: the
-/// selection of its child 0, which depends on the selectors of the scene alone, and not on where
-/// records lie. Multiples of the golden ratio are far apart, so that `visit` may draw many numbers.
+/// that runs once per ray, and different for each selector. `first` is the selection of its child
+/// 0, which depends on the selectors of the scene alone, and not on where records lie. Multiples of
+/// the golden ratio are far apart, so that `visit` may draw many numbers.
 inline uint32_t dimensionOfSelector(uint32_t first) {
   return 0xc0000000u | (first * 0x9e3779b9u) >> 4;
 }
