@@ -354,25 +354,13 @@ static void addUnrolling(llvm::PassBuilder &builder) {
       });
 }
 
-/// What a GPU computes in another way than LLVM expects: after LLVM's simplification, which would
-/// move a division after its select, and knows nothing of instructions of PTX.
-static void addGpuRewrites(llvm::PassBuilder &builder) {
-  builder.registerOptimizerLastEPCallback(
-      [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
-        if (level == llvm::OptimizationLevel::O0)
-          return;
-        passes.addPass(llvm::createModuleToFunctionPassAdaptor(DivideZerosPass()));
-        passes.addPass(llvm::createModuleToFunctionPassAdaptor(ConversionsPass()));
-        passes.addPass(llvm::createModuleToFunctionPassAdaptor(ApproximationsPass()));
-      });
-}
-
-/// Selects floats with the masks of AVX-512, on processors with masks for 128 bits.
-static void addMaskedSelects(llvm::PassBuilder &builder) {
+/// Adds passes of functions after LLVM's own, unless nothing is optimised.
+template <typename... Passes>
+static void addLast(llvm::PassBuilder &builder) {
   builder.registerOptimizerLastEPCallback(
       [](llvm::ModulePassManager &passes, llvm::OptimizationLevel level, llvm::ThinOrFullLTOPhase) {
         if (level != llvm::OptimizationLevel::O0)
-          passes.addPass(llvm::createModuleToFunctionPassAdaptor(SelectByMaskPass()));
+          (passes.addPass(llvm::createModuleToFunctionPassAdaptor(Passes())), ...);
       });
 }
 
@@ -400,10 +388,12 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
 
   addScalarization(builder);
   if (machine.getTargetTriple().isNVPTX()) {
-    addGpuRewrites(builder);
+    // What a GPU computes in another way than LLVM expects, which would move a division after its
+    // select, and knows nothing of instructions of PTX.
+    addLast<DivideZerosPass, ConversionsPass, ApproximationsPass>(builder);
     keepStatesInLoop(callbacks);
-  } else if (machine.getMCSubtargetInfo()->checkFeatures("+avx512vl")) {
-    addMaskedSelects(builder);
+  } else if (machine.getMCSubtargetInfo()->checkFeatures("+avx512vl")) { // masks for 128 bits
+    addLast<SelectByMaskPass>(builder);
   }
   if (options.optimization > 0)
     foldConstantFunctions(module, functions);

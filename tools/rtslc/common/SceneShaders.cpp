@@ -77,13 +77,20 @@ scene::SceneDescription readScene(const std::string &file,
 
 namespace {
 
+/// The classes of the library that the scene may name. Only the files of those that it uses are
+/// read.
+std::vector<std::string> classesOf(const std::vector<std::string> &libraryModules) {
+  std::vector<std::string> names;
+  for (const std::string &name : libraryModules)
+    names.push_back(lastPart(name));
+  return names;
+}
+
 /// Says which classes of the scene no file has, before any code is made.
 void refuseUnknownClasses(const std::vector<scene::LocatedName> &mentions,
                           const typed::Module &module,
                           const std::vector<std::string> &libraryModules, ErrorCollector &errors) {
-  std::vector<std::string> names;
-  for (const std::string &name : libraryModules) // files of unused classes are not read
-    names.push_back(lastPart(name));
+  std::vector<std::string> names = classesOf(libraryModules);
   for (const auto &one : module.classes)
     names.push_back(one->name);
   LibraryNames library;
@@ -109,20 +116,17 @@ Error unknownName(const Message &message, const scene::LocatedName &mention,
   return error;
 }
 
-/// Says which names of `render.editable` are not classes of the scene, or not their members. The
-/// files of library classes that nothing in the scene uses are not read, so they have no members.
+/// Says which names of `render.editable` are not classes of the scene, or not their members, which
+/// are not known of classes that nothing in the scene uses.
 void refuseUnknownEditable(const scene::SceneDescription &description, const typed::Module &module,
                            const std::vector<std::string> &libraryModules, ErrorCollector &errors) {
-  const auto isInLibrary = [&](const std::string &className) {
-    return std::any_of(libraryModules.begin(), libraryModules.end(),
-                       [&](const std::string &name) { return lastPart(name) == className; });
-  };
+  const std::vector<std::string> ofLibrary = classesOf(libraryModules);
   for (const scene::LocatedName &name : description.editable) {
     const std::size_t dot = name.text.find('.');
     const std::string className = name.text.substr(0, dot);
     std::vector<std::string> known;
     if (!module.findClass(className)) {
-      if (isInLibrary(className))
+      if (std::find(ofLibrary.begin(), ofLibrary.end(), className) != ofLibrary.end())
         continue;
       for (const auto &one : module.classes)
         known.push_back(one->name);

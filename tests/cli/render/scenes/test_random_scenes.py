@@ -18,7 +18,7 @@ WAYS = (
     ["-O1", "--traversal=device", "--trace=split", "--undefined=bytes"],
     ["-O0", "--keep=all"],
 )
-# With values in records instead of the code, and with shaders that end in another tree.
+# With the values of all classes in records instead of the code.
 WAYS_OF_RECORDS = (["-O2"], ["-O2", "--target=host-megakernel"], ["-O3", "--trace=split"])
 
 

@@ -1,52 +1,29 @@
 #include "codegen/emit/rewrites/SelectByMask.h"
-#include "codegen/emit/Jit.h"
-#include "tests/unit/codegen/emit/ParseLlvm.h"
-
-#include "llvm/Target/TargetMachine.h"
+#include "tests/unit/codegen/emit/RewrittenFunction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 using namespace rtsl::codegen;
 
 namespace {
 
-/// A function of three numbers after the pass.
-class Masked {
-public:
-  explicit Masked(const std::string &body) {
-    auto context = std::make_unique<llvm::LLVMContext>();
-    auto module =
-        parseLlvm("define float @f(float %a, float %b, float %c) {\n" + body + "}\n", *context);
-    llvm::FunctionAnalysisManager analyses;
-    hasChanged = !SelectByMaskPass().run(*module->getFunction("f"), analyses).areAllPreserved();
+/// For this processor, which may have masks.
+struct Masked : RewrittenFunction<SelectByMaskPass> {
+  explicit Masked(const std::string &body) : RewrittenFunction(body, processor()) {}
+
+  static MachineOptions processor() {
     MachineOptions options;
     options.hostCpu = true;
-    auto machine = llvm::cantFail(createTargetMachine(options));
-    module->setTargetTriple(machine->getTargetTriple());
-    module->setDataLayout(machine->createDataLayout());
-    jit =
-        llvm::cantFail(Jit::create(std::move(context), std::move(module), std::move(machine), {}));
+    return options;
   }
-  float operator()(float a, float b, float c) const {
-    return reinterpret_cast<float (*)(float, float, float)>(jit->lookup("f"))(a, b, c);
-  }
-  bool hasChanged = false;
-
-private:
-  std::unique_ptr<Jit> jit;
 };
 
 constexpr float infinite = std::numeric_limits<float>::infinity();
 const float numbers[] = {0.0f,   -0.0f,    1.0f,      -3.0f,         0.1f,     1e38f,
                          1e-40f, infinite, -infinite, std::nanf(""), -1.4e-45f};
-
-bool isSame(float a, float b) {
-  return (std::isnan(a) && std::isnan(b)) || std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 } // namespace
 
