@@ -11,7 +11,6 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Vector.h"
-#include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -67,7 +66,6 @@ inline bool isBehind(Vec3 normal, Vec3 direction) {
 __attribute__((noinline))
 #endif
 inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left, Vec3 side) {
-  const Together together;
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
   EmittedLight light;

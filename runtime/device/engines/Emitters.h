@@ -20,7 +20,6 @@
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Search.h"
-#include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -250,7 +249,6 @@ inline Vec3 pointOnInstance(RtslState &state, const RtslLaunch &launch,
 __attribute__((noinline))
 #endif
 inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, EmitterChoice choice) {
-  const Together together;
   const RtslLaunch &launch = *ray.launch;
   EmittedLight light;
   light.density = 0;

@@ -8,7 +8,6 @@
 #include "runtime/device/ray/Sampler.h"
 #include "runtime/device/ray/Spawn.h"
 #include "runtime/device/ray/Vector.h"
-#include "runtime/device/ray/Warp.h"
 #include "runtime/device/traverse/Surface.h"
 
 namespace rtsl::device {
@@ -104,7 +103,6 @@ struct PassingLight {
 __attribute__((noinline))
 #endif
 inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, float distance) {
-  const Together together;
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
   PassingLight light;

@@ -16,6 +16,10 @@ namespace rtsl::device {
 
 constexpr uint32_t lanesOfWarp = 32;
 
+/// What all lanes of a warp do at the same place. Nothing may wait for some lanes, such as those
+/// that began a function together: other parts of the warp run the function too, a GPU joins parts
+/// that are on the same side of a branch, and of lanes that it has joined, a barrier takes from one
+/// which lanes it waits for. Then some pass it too early, and others wait for them forever.
 namespace warp {
 constexpr uint32_t all = 0xffffffffu;
 
@@ -40,19 +44,6 @@ inline int lanesHere() {
   return __builtin_popcount(__nvvm_activemask());
 }
 
-/// The lanes that begin the scope of a variable of this type together end it together: those that
-/// return early wait for the others. Without it a GPU lets them run ahead, and from then on the
-/// warp runs the rest of the code once for each of its parts.
-class Together {
-public:
-  Together() : lanes(__nvvm_activemask()) {}
-  Together(const Together &) = delete;
-  ~Together() { __nvvm_bar_warp_sync(lanes); }
-
-private:
-  const uint32_t lanes;
-};
-
 #else
 
 constexpr uint32_t lanesOfWarp = 1;
@@ -67,25 +58,17 @@ inline int lanesHere() {
   return 1;
 }
 
-struct [[maybe_unused]] Together {};
-
 #endif
 
-/// Adds 1 to a counter that is shared with other lanes and threads, and returns its old value. On a
-/// GPU the lanes that call together add their number at once, because additions to one place run
-/// one after the other.
-inline uint64_t countUp(uint64_t *counter) {
+/// Adds 1 to a counter that is shared with other lanes and threads. On a GPU the lanes that call
+/// together add their number at once, because additions to one place run one after the other.
+inline void countUp(uint64_t *counter) {
 #ifdef __NVPTX__
-  const uint32_t lanes = __nvvm_activemask(), before = lanes & __nvvm_read_ptx_sreg_lanemask_lt();
-  uint64_t first = 0;
-  if (before == 0)
-    first = __atomic_fetch_add(counter, uint64_t(__builtin_popcount(lanes)), __ATOMIC_RELAXED);
-  const int leader = __builtin_ctz(lanes);
-  const auto low = uint32_t(__nvvm_shfl_sync_idx_i32(lanes, int32_t(first), leader, 31)),
-             high = uint32_t(__nvvm_shfl_sync_idx_i32(lanes, int32_t(first >> 32), leader, 31));
-  return (uint64_t(high) << 32 | low) + uint32_t(__builtin_popcount(before));
+  const uint32_t lanes = __nvvm_activemask();
+  if ((lanes & __nvvm_read_ptx_sreg_lanemask_lt()) == 0)
+    __atomic_fetch_add(counter, uint64_t(__builtin_popcount(lanes)), __ATOMIC_RELAXED);
 #else
-  return __atomic_fetch_add(counter, uint64_t(1), __ATOMIC_RELAXED);
+  __atomic_fetch_add(counter, uint64_t(1), __ATOMIC_RELAXED);
 #endif
 }
 

@@ -56,6 +56,19 @@ class Ptx(Case):
         )
         self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
+    def test_lanes_wait_for_all_of_the_warp_or_for_none(self):
+        """A barrier or vote of some lanes can hang a GPU (runtime/device/ray/Warp.h)."""
+        scenes = ("environment/scene", "product-shot/scene", "glass/scene", "smoke/smoke")
+        for number, scene in enumerate(scenes):
+            organisation = ("megakernel", "wavefront", "persistent")[number % 3]
+            with self.subTest(scene=scene, organisation=organisation):
+                file = EXAMPLES / f"{scene}.json"
+                options = ("--exceptions", "-O1", f"--organisation={organisation}")
+                text = self.ptx(file, *options, "-Wno-depth-limit")
+                waiting = re.findall(r"(?:bar\.warp|vote|shfl|match|redux|elect)\.sync.*;", text)
+                self.assertTrue(waiting)
+                self.assertEqual([one for one in waiting if not one.endswith(", -1;")], [])
+
     def test_the_last_line_is_the_limit_of_a_package(self):
         for name in ("glass", "metal"):
             scene = EXAMPLES / name / "scene.json"
