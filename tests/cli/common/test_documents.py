@@ -128,7 +128,7 @@ class Documents(Case):
     def test_packages(self):
         page = read("docs/packages.md")
         self.assertIn(
-            f"| version of the format: {constant('runtime/package/Package.cpp', 'formatVersion')} "
+            f"| version of the format: {constant('runtime/package/FileLayout.h', 'formatVersion')} "
             "|",
             page,
         )
