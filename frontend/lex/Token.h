@@ -15,6 +15,7 @@ struct Token {
   std::uint16_t depth = 0;     // open brackets around it; for a bracket, those outside it
   bool startsLine = false;     // the first token of its line
   bool isBroken = false;       // a literal that could not be read
+  bool isForeign = false;      // a qualifier of another language, with the type of RTSL's
   bool followsMistake = false; // text before it was rejected: a syntax error here is a consequence
 };
 

@@ -65,7 +65,10 @@ private:
                     const std::vector<Parser::DeclaratorContext *> &declarators, Place place,
                     std::vector<ast::VariableDecl> &variables);
   Qualifiers buildQualifiers(const std::vector<Parser::QualifierContext *> &contexts, Place place);
+  SourceRange removal(SourceRange where) const;
   void refuseQualifier(SourceRange where, const std::string &reason);
+  void refuseVariable(SourceRange where, const std::string &reason);
+  void refuseForeign(SourceRange where, const char *replacement);
   ast::TypeName buildType(Parser::TypeNameContext *context,
                           const std::vector<Parser::DimensionContext *> &outer = {});
   void addDimensions(const std::vector<Parser::DimensionContext *> &contexts,

@@ -1,6 +1,8 @@
 //===- AstDeclarations.cpp - parse tree to syntax tree: declarations ------===//
 #include "frontend/syntax/AstBuilder.h"
 
+#include <algorithm>
+
 namespace rtsl {
 
 using namespace ast;
@@ -110,21 +112,66 @@ void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
 // Qualifiers
 //===----------------------------------------------------------------------===//
 
-void AstBuilder::refuseQualifier(SourceRange where, const std::string &reason) {
-  // Including the space after it.
+/// The range of a qualifier, including the space after it.
+SourceRange AstBuilder::removal(SourceRange where) const {
   const std::string_view source = sources.text(file);
   std::uint32_t end = where.end;
   while (end < source.size() && source[end] == ' ')
     ++end;
+  return {file, where.begin, end};
+}
+
+void AstBuilder::refuseQualifier(SourceRange where, const std::string &reason) {
   diagnostics.report(Code::misplacedQualifier, where, sources.text(where), reason)
-      .fix({file, where.begin, end}, "");
+      .fix(removal(where), "");
+}
+
+/// Reports a qualifier that makes no sense without a class, of a variable at file scope: without
+/// the qualifier, it would be as wrong.
+void AstBuilder::refuseVariable(SourceRange where, const std::string &reason) {
+  diagnostics.report(Code::misplacedQualifier, where, sources.text(where), reason)
+      .note("a variable must be a member of a class, or local to a function");
+}
+
+/// Reports a qualifier of another language. `replacement` is that of RTSL for such a declaration;
+/// empty: it needs none.
+void AstBuilder::refuseForeign(SourceRange where, const char *replacement) {
+  Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, where, sources.text(where));
+  if (*replacement)
+    diagnostic.fix(where, replacement);
+  else
+    diagnostic.fix(removal(where), "");
 }
 
 /// Reads qualifiers; reports those that are not allowed at `place` and that the next stage could
 /// not see.
 Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContext *> &contexts,
                                        Place place) {
+  const auto isForeign = [&](const Parser::QualifierContext *context) {
+    return tokens[context->start->getTokenIndex()].isForeign;
+  };
+  const auto isAccess = [](std::size_t type) {
+    return type == Parser::PUBLIC || type == Parser::PRIVATE || type == Parser::SCRATCH;
+  };
+  const auto has = [&](const auto &isOne) {
+    return std::any_of(contexts.begin(), contexts.end(), isOne);
+  };
+  const bool isConst = has([](const auto *one) { return one->start->getType() == Parser::CONST; });
+  const bool hasConst = has(
+      [&](const auto *one) { return one->start->getType() == Parser::CONST && !isForeign(one); });
+  const bool hasAccess =
+      has([&](const auto *one) { return isAccess(one->start->getType()) && !isForeign(one); });
+  const bool isBrokenMember = place == Place::File && hasBrokenItem;
+  // Neither a constant nor a member: whatever else is wrong, it cannot be there.
+  const bool isVariableOfFile = place == Place::File && !hasBrokenItem && !isConst;
+  const auto refuse = [&](SourceRange where, const std::string &reason) {
+    if (isVariableOfFile)
+      refuseVariable(where, reason);
+    else
+      refuseQualifier(where, reason);
+  };
   Qualifiers result;
+  SourceRange direction; // the first one; not valid: absent
   for (auto *context : contexts) {
     const SourceRange where = range(context);
     const auto isSecond = [&](SourceRange first) {
@@ -135,6 +182,12 @@ Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContex
     };
     switch (const std::size_t type = context->start->getType()) {
     case Parser::CONST:
+      if (isForeign(context)) {
+        const bool isNeeded = place != Place::Field && !hasConst && !result.isConst;
+        refuseForeign(where, isNeeded ? "const" : "");
+        result.isConst |= isNeeded;
+        break;
+      }
       if (isSecond(result.constRange))
         break;
       result.constRange = where;
@@ -146,35 +199,52 @@ Qualifiers AstBuilder::buildQualifiers(const std::vector<Parser::QualifierContex
     case Parser::OPTIONAL:
       if (isSecond(result.optionalRange))
         break;
-      if (place != Place::Member)
-        refuseQualifier(where, "it is for members of classes");
-      else
+      if (place == Place::Member || place == Place::File)
         result.optionalRange = where;
+      if (place != Place::Member)
+        refuse(where, "it is for members of classes");
       break;
     case Parser::IN:
     case Parser::OUT:
     case Parser::INOUT:
-      if (isSecond(result.directionRange))
+      if (isSecond(direction))
         break;
-      result.directionRange = where;
+      direction = where;
+      if (place != Place::Member || type != Parser::IN)
+        result.directionRange = where;
       if (place != Place::Parameter && (place != Place::Member || type == Parser::IN))
-        refuseQualifier(where, type == Parser::IN ? "it is for parameters"
-                                                  : "it is for parameters and output buffers");
+        refuse(where, type == Parser::IN ? "it is for parameters"
+                                         : "it is for parameters and output buffers");
       else
         result.direction = type == Parser::OUT     ? Direction::Out
                            : type == Parser::INOUT ? Direction::InOut
                                                    : Direction::In;
       break;
     default: // access
-      if (isSecond(result.accessRange))
+      if (isForeign(context) && isVariableOfFile) {
+        diagnostics.report(Code::foreignQualifier, where, sources.text(where))
+            .note(type == Parser::PUBLIC
+                      ? "what a scene sets is a `public` member of a class"
+                      : "what `intersect` passes on is a `scratch` member of a class");
+        result.accessRange = where;
         break;
+      }
+      if (isForeign(context)) {
+        const bool isMissing = (place == Place::Member || isBrokenMember) && !isConst &&
+                               !hasAccess && !result.accessRange.isValid();
+        refuseForeign(where, !isMissing ? "" : type == Parser::PUBLIC ? "public" : "scratch");
+        if (!isMissing)
+          break;
+      } else if (isSecond(result.accessRange)) {
+        break;
+      }
       result.accessRange = where;
       if (place == Place::Member || place == Place::Local)
         result.access = type == Parser::PUBLIC    ? Access::Public
                         : type == Parser::PRIVATE ? Access::Private
                                                   : Access::Scratch;
-      else if (place != Place::File || !hasBrokenItem)
-        refuseQualifier(where, "it is for members of classes");
+      else if (!isBrokenMember)
+        refuse(where, "it is for members of classes");
     }
   }
   return result;

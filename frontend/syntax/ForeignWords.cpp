@@ -11,25 +11,55 @@ namespace {
 
 using generated::RtslLexer;
 
-/// Qualifiers of GLSL, HLSL, CUDA and C++, and the RTSL qualifier to use instead (empty: none).
+/// Qualifiers of GLSL, HLSL, CUDA and C++, and the type of the RTSL qualifier to use
+/// instead (0: none).
 struct ForeignQualifier {
-  std::string_view name, replacement;
+  std::string_view name;
+  std::uint16_t replacement = 0;
 };
 constexpr ForeignQualifier foreignQualifiers[] = {
-    {"uniform", "public"},   {"varying", "scratch"},  {"attribute", "scratch"},
-    {"constexpr", "const"},  {"static", ""},          {"inline", ""},
-    {"extern", ""},          {"volatile", ""},        {"flat", ""},
-    {"smooth", ""},          {"noperspective", ""},   {"nointerpolation", ""},
-    {"centroid", ""},        {"invariant", ""},       {"precise", ""},
-    {"coherent", ""},        {"restrict", ""},        {"readonly", ""},
-    {"writeonly", ""},       {"row_major", ""},       {"column_major", ""},
-    {"groupshared", ""},     {"virtual", ""},         {"override", ""},
-    {"register", ""},        {"mutable", ""},         {"explicit", ""},
-    {"friend", ""},          {"__host__", ""},        {"__device__", ""},
-    {"__global__", ""},      {"__constant__", ""},    {"__shared__", ""},
-    {"__forceinline__", ""}, {"__noinline__", ""},    {"__inline__", ""},
-    {"__restrict__", ""},    {"RT_PROGRAM", ""},      {"RT_CALLABLE_PROGRAM", ""},
-    {"rayPayloadEXT", ""},   {"rayPayloadInEXT", ""}, {"hitAttributeEXT", "scratch"},
+    {"uniform", RtslLexer::PUBLIC},
+    {"varying", RtslLexer::SCRATCH},
+    {"attribute", RtslLexer::SCRATCH},
+    {"constexpr", RtslLexer::CONST},
+    {"static"},
+    {"inline"},
+    {"extern"},
+    {"volatile"},
+    {"flat"},
+    {"smooth"},
+    {"noperspective"},
+    {"nointerpolation"},
+    {"centroid"},
+    {"invariant"},
+    {"precise"},
+    {"coherent"},
+    {"restrict"},
+    {"readonly"},
+    {"writeonly"},
+    {"row_major"},
+    {"column_major"},
+    {"groupshared"},
+    {"virtual"},
+    {"override"},
+    {"register"},
+    {"mutable"},
+    {"explicit"},
+    {"friend"},
+    {"__host__"},
+    {"__device__"},
+    {"__global__"},
+    {"__constant__"},
+    {"__shared__"},
+    {"__forceinline__"},
+    {"__noinline__"},
+    {"__inline__"},
+    {"__restrict__"},
+    {"RT_PROGRAM"},
+    {"RT_CALLABLE_PROGRAM"},
+    {"rayPayloadEXT"},
+    {"rayPayloadInEXT"},
+    {"hitAttributeEXT", RtslLexer::SCRATCH},
 };
 
 /// Tokens of which C forms the names of its types, such as `unsigned int`.
@@ -285,11 +315,13 @@ std::size_t ForeignWords::skipQualifier(std::size_t index) {
   for (const ForeignQualifier &foreign : foreignQualifiers) {
     if (word != foreign.name)
       continue;
-    Diagnostic &diagnostic = diagnostics.report(Code::foreignQualifier, rangeOf(token), word);
-    if (foreign.replacement.empty())
-      diagnostic.fix(removal(index, 1), "", true);
-    else
-      diagnostic.fix(rangeOf(token), std::string(foreign.replacement));
+    if (foreign.replacement != 0) { // which is right in some places, and reported there
+      in[index].type = foreign.replacement;
+      in[index].isForeign = true;
+      return 0;
+    }
+    diagnostics.report(Code::foreignQualifier, rangeOf(token), word)
+        .fix(removal(index, 1), "", true);
     return 1;
   }
   return 0;

@@ -2,8 +2,9 @@
 //
 // Qualifiers, attributes, namespaces, pointers, casts and the like are recognised by their tokens,
 // which would only confuse the parser. Each is reported once, with the RTSL equivalent, and removed
-// or rewritten, so that the rest can be parsed. Only what no RTSL program can contain is treated as
-// foreign: `a * b` is a product, whatever `a` is called.
+// or rewritten, so that the rest can be parsed. Qualifiers that have an equivalent become that, and
+// are reported with the declaration, on whose place the right word depends. Only what no RTSL
+// program can contain is treated as foreign: `a * b` is a product, whatever `a` is called.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -142,7 +142,11 @@ void Program::checkConstant(GlobalConstant &entry) {
       !declaration.type.dimensions.empty() && !declaration.type.dimensions.back().size;
   const Type *type = unsized ? checker.deduceUnsized(declaration, variable.init)
                              : checker.resolveType(declaration.type, &declaration.name);
-  if (!declaration.isConst)
+  // Qualifiers of members have been reported: they say the same.
+  const bool isReported = declaration.accessRange.isValid() ||
+                          declaration.directionRange.isValid() ||
+                          declaration.optionalRange.isValid();
+  if (!declaration.isConst && !isReported)
     diagnostics.report(Code::globalNotConst, variable.range, variable.name)
         .note("a variable must be a member of a class, or local to a function");
   if (type->is(TypeKind::Void)) {

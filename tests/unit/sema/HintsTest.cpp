@@ -196,6 +196,48 @@ TEST(Hints, NoSuggestionIsMisplaced) {
   EXPECT_GT(suggestions, 1000u);
 }
 
+/// A declaration with these qualifiers, in one place of each kind.
+std::vector<std::string> declarations(const std::string &qualifiers) {
+  const bool isConst = qualifiers.find("const") != std::string::npos;
+  const std::string value = isConst ? " = 1.0;" : ";", material = "class M : rt_Material";
+  return {qualifiers + "float k" + value + "\n",
+          material + ";\n" + qualifiers + "float k" + value + "\n",
+          material + ";\nvoid shade() { " + qualifiers + "float k = 1.0; k; }\n",
+          "struct S { " + qualifiers + "float k; };\n",
+          "float f(" + qualifiers + "float k) { return k; }\n",
+          qualifiers + "float f(float k) { return k; }\n"};
+}
+
+/// Whatever qualifiers stand before whatever declaration: no fix makes another one necessary, or
+/// contradicts it.
+TEST(Hints, FixesOfQualifiersAgree) {
+  std::vector<std::string> all = {""};
+  const std::vector<std::string> words = {"public",   "private", "scratch",   "const",
+                                          "optional", "in",      "out",       "inout",
+                                          "static",   "uniform", "attribute", "constexpr"};
+  for (const std::string &first : words) {
+    all.push_back(first + " ");
+    for (const std::string &second : words)
+      all.push_back(first + " " + second + " ");
+  }
+  const auto countErrors = [](const Checked &checked, const auto &isCounted) {
+    const std::vector<Diagnostic> &found = checked.diagnostics.all();
+    return std::count_if(found.begin(), found.end(), [&](const Diagnostic &one) {
+      return one.severity == Severity::Error && isCounted(one);
+    });
+  };
+  for (const std::string &qualifiers : all)
+    for (const std::string &text : declarations(qualifiers)) {
+      const std::unique_ptr<Checked> before = checkText(text);
+      const std::string after = withAllFixes(*before, text);
+      const std::unique_ptr<Checked> fixed = checkText(after);
+      const auto withoutFix =
+          countErrors(*before, [](const auto &one) { return one.fixes.empty(); });
+      EXPECT_LE(countErrors(*fixed, [](const auto &) { return true; }), withoutFix)
+          << text << render(*before) << after << render(*fixed);
+    }
+}
+
 TEST(Hints, ConversionsAreWrittenOut) {
   expectFix("int f(float x) { return x; }", "int f(float x) { return int(x); }");
   expectFix("vec2 f(vec4 v) { return v; }", "vec2 f(vec4 v) { return v.xy; }");
