@@ -55,6 +55,7 @@ struct LinkRequest {
   std::uint32_t features = 0; // RTSL_FEATURE_*: exceptions and prints
   bool isSampled =
       false; // the host calls the slots of SamplingSlots.def, which the program then has
+  bool isOnlySampled = false; // and nothing else of it: the program cannot render
   /// Items that remain in the program although the scene does not need them.
   ItemSet keep = {};
   /// Items that are omitted although the scene needs them, by Finding::subject: for tests, which

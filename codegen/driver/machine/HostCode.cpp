@@ -47,13 +47,18 @@ std::vector<std::string> sampleSymbols(const runtime::Program &program,
 }
 
 /// The functions of a linked program that the runtime looks up.
-std::vector<std::string> entries(const runtime::Program &program, const CompileOptions &options) {
-  std::vector<std::string> names = sampleSymbols(program, options);
+std::vector<std::string> entries(const Compilation &compilation) {
+  const runtime::Program &program = *compilation.program;
+  std::vector<std::string> names;
+#define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
+#include "language/SamplingSlots.def"
+  if (compilation.input.scene && compilation.input.scene->isOnlySampled)
+    return names;
+  for (const std::string &symbol : sampleSymbols(program, compilation.options))
+    names.push_back(symbol);
   names.push_back("rtsl_rt_Material_anyHit_payload");
 #define RTSL_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
 #include "language/Slots.def"
-#define RTSL_SAMPLING_SLOT(base, method) names.push_back("rtsl_" #base "_" #method);
-#include "language/SamplingSlots.def"
   for (const runtime::ClassInfo &info : program.classes) {
     names.push_back(initializeSymbol(info.name));
     names.push_back(constructSymbol(info.name));
@@ -290,7 +295,7 @@ void compileHostCode(Compilation &compilation) {
       symbols.push_back({name, reinterpret_cast<void *>(&rtsl_traverse)});
     symbols.push_back({"rtsl_machine_stack", reinterpret_cast<void *>(&rtsl_machine_stack)});
   }
-  std::vector<std::string> exports = entries(program, options);
+  std::vector<std::string> exports = entries(compilation);
   if (!compilation.isBound())
     addEmittedPower(program, exports);
   const std::vector<std::string_view> whole = {runtime::deviceBitcode()};

@@ -22,6 +22,11 @@ const std::string &libraryFolder() {
   return folder;
 }
 
+bool isLibraryFile(std::string_view name) {
+  std::error_code error;
+  return fs::weakly_canonical(name, error).string().rfind(libraryFolder() + "/", 0) == 0;
+}
+
 namespace {
 
 const char *const extension = ".rtsl";

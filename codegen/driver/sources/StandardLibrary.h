@@ -9,6 +9,7 @@
 #include "frontend/diagnostics/Diagnostics.h"
 
 #include <string>
+#include <string_view>
 #include <unordered_set>
 #include <vector>
 
@@ -17,6 +18,9 @@ namespace rtsl {
 /// Where the running program finds the library: share/rtslc/library beside the folder of programs,
 /// in an installation as in a build tree.
 const std::string &libraryFolder();
+
+/// Whether a file of this name, which may be relative or lead through links, is one of the library.
+bool isLibraryFile(std::string_view name);
 
 struct ModuleFiles {
   bool exists = false;

@@ -81,6 +81,14 @@ private:
   }
 
   void addRoots() {
+    if (!context.request.isOnlySampled)
+      addRootsOfRendering();
+    if (context.request.isSampled)
+      for (const Slot &slot : samplingSlots)
+        addMethods(slot.base, slot.method, {"called by the host", {}});
+  }
+
+  void addRootsOfRendering() {
     for (auto function : mlir::ModuleOp(context.ir).getOps<FuncOp>())
       if (ir::attr::hitError.isOn(function)) // only those that are needed have been derived
         add(function, {"bounds the error of a hit", {}});
@@ -94,10 +102,6 @@ private:
     addMethods("rt_Selector", "visit", {"decides what rays may hit", {}});
     if (context.request.features & RTSL_FEATURE_EXCEPTIONS)
       addMethods("rt_Exception", "exception", {"for samples that raise an exception", {}});
-    if (context.request.isSampled) {
-      for (const Slot &slot : samplingSlots)
-        addMethods(slot.base, slot.method, {"called by the host", {}});
-    }
   }
 
   void addClassicRays(const Cause &cause) {

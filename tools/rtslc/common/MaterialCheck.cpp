@@ -1,5 +1,6 @@
 #include "tools/rtslc/common/MaterialCheck.h"
 
+#include "codegen/driver/sources/StandardLibrary.h"
 #include "runtime/device/ray/Vector.h"
 #include "runtime/scene/Objects.h"
 #include "support/ErrorMessages.h"
@@ -130,9 +131,19 @@ bool hasSurfaceMethods(const LinkRequest &request, const runtime::Program &progr
          });
 }
 
+bool drawsByAuthors(const LinkRequest &request, const typed::Module &module,
+                    const SourceManager &sources) {
+  return std::any_of(request.classes.begin(), request.classes.end(), [&](const auto &name) {
+    const typed::Class *const used = module.findClass(name);
+    const typed::Function *const drawn = used ? used->findMethod("sampleBSDF") : nullptr;
+    return drawn && !isLibraryFile(sources.name(drawn->owner->range.file));
+  });
+}
+
 std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
                                   LinkRequest request, CompileOptions compile) {
   request.isSampled = true;
+  request.isOnlySampled = true;
   request.keep.add(ItemSet::ofMembers()); // the records of the objects stay as they are
   compile.target = Target::Host;
   compile.trace = TraceMode::Recurse;

@@ -179,10 +179,7 @@ private:
   }
 
   bool isOfLibrary(SourceRange range) const {
-    std::error_code error;
-    return fs::weakly_canonical(messages.sources.name(range.file), error)
-               .string()
-               .rfind(libraryFolder() + "/", 0) == 0;
+    return isLibraryFile(messages.sources.name(range.file));
   }
 
   /// The class to show. Null, and reported, if there is none.

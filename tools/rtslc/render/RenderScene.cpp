@@ -202,8 +202,7 @@ private:
 
   /// A frame was given for a scene without any; of --frames, the first one says so.
   void warnOfFrame() const {
-    const bool isFirst = !options.frames || options.frame == options.frames->first;
-    if (options.frame && isFirst && !input->description.isAnimated)
+    if (options.frame && isFirstFrame() && !input->description.isAnimated)
       messages.report(Warning{message::framesAlike(), {}});
   }
 
@@ -381,6 +380,19 @@ private:
                                   viewer->failure());
   }
 
+  bool isFirstFrame() const { return !options.frames || options.frame == options.frames->first; }
+
+  /// Says what methods of materials do wrong, as `rtslc check` does, if the picture showed that, or
+  /// may be wrong without showing it. The library's methods need no trial.
+  void warnOfMaterials() {
+    if (!hasSurfaceMethods(request, scene->program()))
+      return;
+    if (summary.statistics.samplesNotFinite ||
+        (isFirstFrame() && drawsByAuthors(request, *module, messages.sources)))
+      for (const Warning &warning : tryMaterials(*scene, *module, request, compileOptions))
+        messages.report(warning);
+  }
+
   /// Says what the rendering has met.
   void describe() {
     if (!summary.statistics.notFinite.empty())
@@ -394,9 +406,7 @@ private:
           summary.notFinite.push_back({sample, {}, std::nullopt});
       }
     warn(summary, messages);
-    if (summary.statistics.samplesNotFinite && hasSurfaceMethods(request, scene->program()))
-      for (const Warning &warning : tryMaterials(*scene, *module, request, compileOptions))
-        messages.report(warning);
+    warnOfMaterials();
     if (checkpoint)
       checkpoint->report(messages);
     finishShowing();
