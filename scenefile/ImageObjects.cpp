@@ -3,6 +3,8 @@
 #include "scenefile/SceneFile.h"
 #include "support/ErrorMessages.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace rtsl::scene {
@@ -28,6 +30,10 @@ static bool readsOfImages(const Program &program, const std::string &className,
   return member && member->isRead;
 }
 
+static std::string sliceOf(const runtime::Texels &texels, const runtime::NotFiniteTexels &found) {
+  return texels.depth == 1 ? std::string() : fmt::format(" of slice {}", found.slice);
+}
+
 ImageObjects::ImageObjects(const SceneDescription &description, runtime::Scene &scene)
     : description(description), scene(scene),
       files(
@@ -46,10 +52,11 @@ RtslRef ImageObjects::of(const JsonValue &image, const std::string &className,
   if (const auto found = made.find(number); found != made.end())
     return found->second;
   try {
-    std::size_t notFinite = 0;
-    runtime::Texels texels = files.take(number, notFinite);
-    if (notFinite != 0)
-      scene.addWarning({message::imageNotFinite(name, notFinite), image.place()});
+    runtime::Texels texels = files.take(number);
+    if (const runtime::NotFiniteTexels &found = files.notFinite(number); found.count != 0)
+      scene.addWarning({message::imageNotFinite(name, found.count, found.value, found.channel,
+                                                found.column, found.row, sliceOf(texels, found)),
+                        image.place()});
     return made[number] =
                scene.addObject(className,
                                runtime::samplerValues(

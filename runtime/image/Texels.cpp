@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace rtsl::runtime {
 
@@ -124,20 +125,50 @@ Texels readRawTexels(const std::string &path, Texels shape) {
   return texelsOfBytes(bytes.data(), std::move(shape));
 }
 
-std::size_t dropNotFinite(Texels &texels) {
-  std::size_t dropped = 0;
+static const char *channelName(std::uint32_t channel, std::uint32_t channels) {
+  constexpr const char *grey[] = {"grey", "alpha"}, *color[] = {"red", "green", "blue", "alpha"};
+  return channels <= 2 ? grey[channel] : color[channel];
+}
+
+NotFiniteTexels dropNotFinite(Texels &texels) {
+  NotFiniteTexels dropped;
+  const ChannelCodec codec(texels.format);
+  const std::size_t channelBytes = bytesOf(texels.format);
+  std::uint64_t first = std::numeric_limits<std::uint64_t>::max(); // in rows from the top
+  const auto add = [&](std::size_t number, const std::uint32_t &word) {
+    const std::uint64_t texel = number / texels.channels, line = texel / texels.width;
+    const auto slice = std::uint32_t(line / texels.height),
+               row = texels.height - 1 - std::uint32_t(line % texels.height),
+               column = std::uint32_t(texel % texels.width),
+               channel = std::uint32_t(number % texels.channels);
+    const std::uint64_t place =
+        ((std::uint64_t(slice) * texels.height + row) * texels.width + column) * texels.channels +
+        channel;
+    ++dropped.count;
+    if (place >= first)
+      return;
+    first = place;
+    const auto *bytes = reinterpret_cast<const std::uint8_t *>(&word);
+    const double value = codec.decode(bytes + number * channelBytes % sizeof word, false);
+    dropped = {dropped.count,
+               static_cast<float>(value),
+               channelName(channel, texels.channels),
+               column,
+               row,
+               slice};
+  };
   if (texels.format == TexelFormat::Float32) {
-    for (std::uint32_t &word : texels.words)
-      if ((word & 0x7f800000u) == 0x7f800000u) {
+    for (std::size_t i = 0; i < texels.words.size(); ++i)
+      if (std::uint32_t &word = texels.words[i]; (word & 0x7f800000u) == 0x7f800000u) {
+        add(i, word);
         word = 0;
-        ++dropped;
       }
   } else if (texels.format == TexelFormat::Float16) {
-    for (std::uint32_t &word : texels.words)
-      for (const std::uint32_t shift : {0u, 16u})
-        if ((word >> shift & 0x7c00u) == 0x7c00u) {
-          word &= ~(0xffffu << shift);
-          ++dropped;
+    for (std::size_t i = 0; i < texels.words.size(); ++i)
+      for (const std::uint32_t half : {0u, 1u})
+        if (std::uint32_t &word = texels.words[i]; (word >> 16 * half & 0x7c00u) == 0x7c00u) {
+          add(2 * i + half, word);
+          word &= ~(0xffffu << 16 * half);
         }
   }
   return dropped;

@@ -80,8 +80,16 @@ Texels texelsOfBytes(const void *bytes, Texels shape);
 /// or fewer, and the errors of reading a file.
 Texels readRawTexels(const std::string &path, Texels shape);
 
-/// Sets texels that are not finite to 0; returns how many channels of texels were.
-std::size_t dropNotFinite(Texels &texels);
+/// Channels of texels that are not finite: how many, and the first one, with its value, its name,
+/// such as "red", and its column and row from the upper left corner of its slice.
+struct NotFiniteTexels {
+  std::size_t count = 0;
+  float value = 0;
+  const char *channel = "";
+  std::uint32_t column = 0, row = 0, slice = 0;
+};
+/// Sets them to 0, and says which they were.
+NotFiniteTexels dropNotFinite(Texels &texels);
 
 /// Texels with a color (not alpha) below 0: how many, the lowest value, and the first one, by its
 /// column and row from the upper left corner.

@@ -333,11 +333,10 @@ ImageFiles::ImageFiles(const SceneDescription &description,
   });
 }
 
-runtime::Texels ImageFiles::take(std::size_t number, std::size_t &notFinite) {
+runtime::Texels ImageFiles::take(std::size_t number) {
   Result &result = results[number];
   if (result.failure)
     std::rethrow_exception(result.failure);
-  notFinite = result.notFinite;
   return std::move(result.texels);
 }
 

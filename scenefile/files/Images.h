@@ -63,9 +63,14 @@ public:
   /// The number of an image. Equal images have the same.
   std::size_t numberOf(const JsonValue &image) const { return numbers.at(&image); }
 
-  /// The texels, which can be taken once. `notFinite` gets the number of channels that were not
-  /// finite. Throws the errors of runtime::readPixels and runtime::texelsOf.
-  runtime::Texels take(std::size_t number, std::size_t &notFinite);
+  /// The texels, which can be taken once. Throws the errors of runtime::readPixels and
+  /// runtime::texelsOf.
+  runtime::Texels take(std::size_t number);
+
+  /// What of an image was not finite.
+  const runtime::NotFiniteTexels &notFinite(std::size_t number) const {
+    return results[number].notFinite;
+  }
 
   /// What of an image is below 0.
   const runtime::NegativeTexels &negative(std::size_t number) const {
@@ -75,7 +80,7 @@ public:
 private:
   struct Result {
     runtime::Texels texels;
-    std::size_t notFinite = 0;
+    runtime::NotFiniteTexels notFinite;
     runtime::NegativeTexels negative;
     std::exception_ptr failure;
   };

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
+#include <limits>
 #include <random>
+#include <set>
 #include <string>
 
 using namespace rtsl::runtime;
@@ -61,5 +64,48 @@ TEST(TexelChannels, WhatIsReadKeepsItsBitsOnAllLevels) {
               EXPECT_EQ(channelOf(kept, texel, channel), channelOf(all, texel, channel))
                   << channels << " " << read << " " << texel << " " << channel;
             }
+      }
+}
+
+/// Infinite values at random places of three slices: of those that were put in, the first one by
+/// slice, row from the top, column and channel.
+TEST(TexelChannels, TheFirstThatIsNotFiniteIsNamed) {
+  std::mt19937 random(2);
+  for (const TexelFormat format : {TexelFormat::Float16, TexelFormat::Float32})
+    for (const std::uint32_t channels : {1u, 2u, 4u})
+      for (unsigned count = 0; count < 8; ++count) {
+        Texels texels;
+        texels.format = format;
+        texels.width = 7;
+        texels.height = 5;
+        texels.depth = 3;
+        texels.channels = channels;
+        const unsigned bytes = bytesOf(format), all = 7 * 5 * 3 * channels;
+        texels.words.resize((all * bytes + 3) / 4);
+        std::set<std::array<unsigned, 4>> places;
+        while (places.size() < count) {
+          const std::array<unsigned, 4> place = {unsigned(random() % 3), unsigned(random() % 5),
+                                                 unsigned(random() % 7),
+                                                 unsigned(random() % channels)};
+          const auto [slice, row, column, channel] = place;
+          const std::uint32_t infinite = bytes == 2 ? 0x7c00 : 0x7f800000;
+          std::memcpy(reinterpret_cast<char *>(texels.words.data()) +
+                          (((slice * 5 + 4 - row) * 7 + column) * channels + channel) * bytes,
+                      &infinite, bytes);
+          places.insert(place);
+        }
+        const NotFiniteTexels found = dropNotFinite(texels);
+        EXPECT_EQ(found.count, count);
+        EXPECT_EQ(dropNotFinite(texels).count, 0u);
+        if (count == 0)
+          continue;
+        const auto [slice, row, column, channel] = *places.begin();
+        const std::array<unsigned, 3> place = {found.slice, found.row, found.column};
+        EXPECT_EQ(place, (std::array<unsigned, 3>{slice, row, column}));
+        EXPECT_EQ(found.channel,
+                  std::string(channels == 4  ? std::array{"red", "green", "blue", "alpha"}[channel]
+                              : channel == 0 ? "grey"
+                                             : "alpha"));
+        EXPECT_EQ(found.value, std::numeric_limits<float>::infinity());
       }
 }
