@@ -25,9 +25,9 @@ void declareSlots(mlir::ModuleOp ir) {
   });
   linking::numberRayTypes(ir);
   mlir::SymbolTable symbols(ir);
-  linking::replaceSlots(ir, symbols, [](const linking::SlotCall &, mlir::func::FuncOp declaration) {
-    declaration.setPrivate();
-  });
+  linking::replaceSlots(
+      ir, symbols, [](ir::CallMethodOp call) { return linking::slotOf(call).name(); },
+      [](ir::CallMethodOp, mlir::func::FuncOp declaration) { declaration.setPrivate(); });
 }
 
 } // namespace rtsl

@@ -47,7 +47,8 @@ void makeSlot(LinkContext &context, const Slot &slot) {
                                              builder.getFunctionType({object}, {}));
   ir::attr::slot.set(function, builder.getStringAttr(name));
   ir::insertForRuntime(context.symbols, function);
-  buildDispatch(context, function, classes, slot.method);
+  buildDispatch(context, function, std::string(slot.base) + "." + slot.method, classes,
+                slot.method);
   exportFunction(function);
 }
 

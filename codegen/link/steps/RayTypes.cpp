@@ -301,10 +301,11 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   for (const RayType &type : context.rayTypes) {
     if (methodsFor(context, type, method).empty())
       continue;
-    FuncOp target = create("dispatch." + base + "." + method + "." + type.name());
+    const std::string ofType = method + "." + type.name();
+    FuncOp target = create("dispatch." + base + "." + ofType);
     ir::attr::dispatch.set(target);
     target.setPrivate();
-    buildDispatch(context, target, classes, method + "." + type.name());
+    buildDispatch(context, target, base + "." + ofType, classes, ofType);
     targets.push_back(target);
     numbers.push_back({static_cast<std::int32_t>(type.number)});
   }

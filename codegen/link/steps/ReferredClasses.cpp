@@ -3,8 +3,8 @@
 //   %p = rtsl.load (rtsl.member %self "pattern")
 //   %c = rtsl.call_method "colorAt" on %p
 //
-// If all objects of the class refer to a Checker there, the call is a Checker's, whatever other
-// patterns the scene has. A method is lowered for each class that has it, so members of other
+// If all objects of the class refer to a Checker there, the call is a Checker's, whatever patterns
+// other members refer to. A method is lowered for each class that has it, so members of other
 // classes, including derived ones, are treated separately.
 //
 //===----------------------------------------------------------------------===//
@@ -56,27 +56,27 @@ const typed::Member *findMember(const LinkContext &context, ir::MemberOp member)
   return found;
 }
 
+Referred referredBy(ir::CallMethodOp call, const LinkContext &context,
+                    const llvm::StringSet<> &written) {
+  ir::MemberOp member = memberOf(call.getObject());
+  const typed::Member *info = member ? findMember(context, member) : nullptr;
+  if (!info || written.contains(member.getMember()))
+    return {};
+  const std::string owner =
+      llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str();
+  const auto classes = context.request.referredClasses.find({owner, info->name});
+  if (classes == context.request.referredClasses.end())
+    return {};
+  return {owner + "." + info->name, classes->second, info->isOptional};
+}
+
 } // namespace
 
-std::map<SlotCall, Referred> referredClasses(const LinkContext &context) {
+llvm::DenseMap<mlir::Operation *, Referred> referredClasses(const LinkContext &context) {
   const llvm::StringSet<> written = membersWritten(context.ir);
-  std::map<SlotCall, Referred> referred;
+  llvm::DenseMap<mlir::Operation *, Referred> referred;
   mlir::ModuleOp(context.ir).walk([&](ir::CallMethodOp call) {
-    Referred &all = referred[slotOf(call)];
-    ir::MemberOp member = memberOf(call.getObject());
-    const typed::Member *info = member ? findMember(context, member) : nullptr;
-    const auto classes =
-        info && !written.contains(member.getMember())
-            ? context.request.referredClasses.find(
-                  {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),
-                   info->name})
-            : context.request.referredClasses.end();
-    if (classes == context.request.referredClasses.end()) {
-      all.isKnown = false;
-      return;
-    }
-    all.classes.insert(classes->second.begin(), classes->second.end());
-    all.mayBeNone |= info->isOptional;
+    referred[call] = referredBy(call, context, written);
   });
   return referred;
 }

@@ -4,7 +4,8 @@
 // becomes a call of
 //   func.func private @dispatch.rt_Texture.weight(%object, %x) -> f32
 // which switches over the classes derived from rt_Texture that the scene uses; with one class it is
-// a direct call.
+// a direct call. Where it is known that a member refers only to some of them
+// (ReferredClasses.cpp), the function is @dispatch.Painted.pattern.weight.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
@@ -75,13 +76,10 @@ void makeEmpty(mlir::func::FuncOp function) {
 }
 
 void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
-                   const std::vector<const LinkedClass *> &classes, const std::string &method,
-                   bool mayBeNone) {
-  const llvm::StringRef base =
-      llvm::cast<ir::RefType>(function.getArgumentTypes().front()).getClassName();
-  if ((classes.size() > 1 || mayBeNone) &&
-      context.isWithout(Item::Dispatch, (base + "." + method).str()))
-    return buildDispatch(context, function, {classes.front()}, method, false);
+                   const std::string &subject, const std::vector<const LinkedClass *> &classes,
+                   const std::string &method, bool mayBeNone) {
+  if ((classes.size() > 1 || mayBeNone) && context.isWithout(Item::Dispatch, subject))
+    return buildDispatch(context, function, subject, {classes.front()}, method, false);
   std::vector<std::pair<const LinkedClass *, mlir::func::FuncOp>> targets;
   for (const LinkedClass *linked : classes)
     if (mlir::func::FuncOp target = findMethod(context, *linked, method))
@@ -115,24 +113,25 @@ SlotCall slotOf(ir::CallMethodOp call) {
 }
 
 void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
-                  llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define) {
+                  llvm::function_ref<std::string(ir::CallMethodOp)> nameOf,
+                  llvm::function_ref<void(ir::CallMethodOp, mlir::func::FuncOp)> define) {
   llvm::SmallVector<ir::CallMethodOp> calls;
   ir.walk([&](ir::CallMethodOp call) { calls.push_back(call); });
 
-  std::map<SlotCall, mlir::func::FuncOp> functions;
+  std::map<std::pair<SlotCall, std::string>, mlir::func::FuncOp> functions;
   for (ir::CallMethodOp call : calls) {
-    const SlotCall slot = slotOf(call);
     llvm::SmallVector<mlir::Value> arguments = {call.getObject()};
     llvm::append_range(arguments, call.getArguments());
-    mlir::func::FuncOp &function = functions[slot];
+    const std::string name = nameOf(call);
+    mlir::func::FuncOp &function = functions[{slotOf(call), name}];
     if (!function) {
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(ir.getBody());
       function = mlir::func::FuncOp::create(
-          builder, call.getLoc(), "dispatch." + slot.base + "." + slot.method,
+          builder, call.getLoc(), "dispatch." + name,
           builder.getFunctionType(mlir::ValueRange(arguments).getTypes(), call.getResultTypes()));
       ir::attr::dispatch.set(function);
       symbols.insert(function);
-      define(slot, function);
+      define(call, function);
     }
     mlir::OpBuilder builder(call);
     auto direct = mlir::func::CallOp::create(builder, call.getLoc(), function, arguments);
@@ -141,28 +140,80 @@ void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
   }
 }
 
-void resolveSlots(LinkContext &context) {
-  // then the function does nothing and returns zero
-  const bool anyMayBeNone = typed::mayReferToNothing(context.module);
-  const std::map<SlotCall, Referred> referred = referredClasses(context);
-  replaceSlots(context.ir, context.symbols, [&](const SlotCall &slot, mlir::func::FuncOp function) {
-    const Referred &objects = referred.at(slot);
-    std::vector<const LinkedClass *> classes;
+namespace {
+
+/// The calls of a slot that may reach objects of the same classes.
+struct Choice {
+  std::vector<const LinkedClass *> classes;
+  bool mayBeNone = false; // then the function does nothing and returns zero
+  /// The slot's name, or if calls of the slot differ in what they may reach, and it is known for
+  /// these: the name of the first member that they go through, and the method's.
+  std::string name;
+};
+
+class Choices {
+public:
+  explicit Choices(LinkContext &context)
+      : context(context), anyMayBeNone(typed::mayReferToNothing(context.module)) {
+    const auto referred = referredClasses(context);
+    mlir::ModuleOp(context.ir).walk([&](ir::CallMethodOp call) { add(call, referred.at(call)); });
+    for (auto &[slot, ofSlot] : bySlot)
+      if (ofSlot.size() == 1)
+        ofSlot.begin()->second.name = slot.name();
+  }
+
+  const Choice &of(ir::CallMethodOp call) const {
+    return bySlot.at(slotOf(call)).at(keys.at(call));
+  }
+
+private:
+  using Key = std::pair<std::vector<std::uint32_t>, bool>; // class ids, mayBeNone
+
+  void add(ir::CallMethodOp call, const Referred &objects) {
+    const SlotCall slot = slotOf(call);
+    auto [ofSlot, isFirst] = bySlot.try_emplace(slot);
+    Choice choice{{}, anyMayBeNone && objects.mayBeNone, slot.name()};
+    if (objects.isKnown())
+      choice.name = objects.member + "." + slot.method;
+    Key key{{}, choice.mayBeNone};
     for (const LinkedClass &linked : context.classes) {
       if (!derivesFrom(*linked.info, slot.base))
         continue;
-      if (linked.isUsed && (!objects.isKnown || objects.classes.count(linked.info->name)))
-        classes.push_back(&linked);
-      if (context.hasScene && linked.hasObjects && !findMethod(context, linked, slot.method))
+      if (linked.isUsed && (!objects.isKnown() || objects.classes.count(linked.info->name))) {
+        choice.classes.push_back(&linked);
+        key.first.push_back(linked.id);
+      }
+      if (isFirst && context.hasScene && linked.hasObjects &&
+          !findMethod(context, linked, slot.method))
         context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
                                    linked.info->name);
     }
-    const bool mayBeNone = anyMayBeNone && (!objects.isKnown || objects.mayBeNone);
-    if (!classes.empty())
-      context.dispatches[function.getSymName().str()] = describeDispatch(
-          slot.base + "." + slot.method, classes, ir::placeOf(function.getLoc()), mayBeNone);
-    buildDispatch(context, function, classes, slot.method, mayBeNone);
-  });
+    Choice &known = ofSlot->second.try_emplace(key, choice).first->second;
+    if (!objects.isKnown())
+      known.name = slot.name();
+    keys[call] = std::move(key);
+  }
+
+  LinkContext &context;
+  const bool anyMayBeNone;
+  std::map<SlotCall, std::map<Key, Choice>> bySlot;
+  llvm::DenseMap<mlir::Operation *, Key> keys;
+};
+
+} // namespace
+
+void resolveSlots(LinkContext &context) {
+  const Choices choices(context);
+  replaceSlots(
+      context.ir, context.symbols, [&](ir::CallMethodOp call) { return choices.of(call).name; },
+      [&](ir::CallMethodOp call, mlir::func::FuncOp function) {
+        const Choice &choice = choices.of(call);
+        if (!choice.classes.empty())
+          context.dispatches[function.getSymName().str()] = describeDispatch(
+              choice.name, choice.classes, ir::placeOf(function.getLoc()), choice.mayBeNone);
+        buildDispatch(context, function, choice.name, choice.classes, slotOf(call).method,
+                      choice.mayBeNone);
+      });
 }
 
 } // namespace rtsl::linking

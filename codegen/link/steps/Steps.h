@@ -8,6 +8,7 @@
 #include "codegen/passes/errors/ElementaryErrors.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/SymbolTable.h"
+#include "llvm/ADT/DenseMap.h"
 
 #include <cstdint>
 #include <map>
@@ -155,26 +156,30 @@ struct SlotCall {
   std::string base; // the class of the reference: "rt_Texture" or one of the source
   std::string method;
 
+  std::string name() const { return base + "." + method; }
   bool operator<(const SlotCall &other) const {
     return std::tie(base, method) < std::tie(other.base, other.method);
   }
 };
 SlotCall slotOf(ir::CallMethodOp call);
 
-/// The objects that the calls of a slot may reach.
+/// The objects that a call through a reference may reach.
 struct Referred {
-  bool isKnown = true; // if not, those of all classes that derive from the slot's
-  std::set<std::string> classes;
-  bool mayBeNone = false;
+  std::string member;            // that refers to them, "Painted.pattern"; empty: any object may
+  std::set<std::string> classes; // of these objects
+  bool mayBeNone = true;
+
+  bool isKnown() const { return !member.empty(); }
 };
 
-/// The classes by slot, as far as they follow from the members of the scene's objects.
-std::map<SlotCall, Referred> referredClasses(const LinkContext &context);
+/// Those of each `rtsl.call_method`, as far as they follow from the members of the scene's objects.
+llvm::DenseMap<mlir::Operation *, Referred> referredClasses(const LinkContext &context);
 
-/// Replaces every `rtsl.call_method` by a call of `@dispatch.<base>.<method>`, which has
-/// attr::dispatch. Calls `define` once for each such function, which has no body.
+/// Replaces every `rtsl.call_method` by a call of the function `@dispatch.<nameOf(call)>`, which
+/// has attr::dispatch. Calls `define` once for each such function, which has no body.
 void replaceSlots(mlir::ModuleOp ir, mlir::SymbolTable &symbols,
-                  llvm::function_ref<void(const SlotCall &, mlir::func::FuncOp)> define);
+                  llvm::function_ref<std::string(ir::CallMethodOp)> nameOf,
+                  llvm::function_ref<void(ir::CallMethodOp, mlir::func::FuncOp)> define);
 
 /// Whether a reference to `base` (an rt_ class or one of the source) may refer to objects of the
 /// class.
@@ -265,12 +270,12 @@ Finding describeDispatch(const std::string &subject,
 /// Fills `function` with a return of zeros.
 void makeEmpty(mlir::func::FuncOp function);
 
-/// Fills in the empty `function`, whose first argument is an object of class or base `base`: it
-/// calls `method` of the object's class, with the remaining arguments. For a class in `classes`
-/// that does not define the method it does nothing and returns zeros; so it does for a null
-/// reference, if the object `mayBeNone`.
+/// Fills in the empty `function`, whose first argument is an object: it calls `method` of the
+/// object's class, with the remaining arguments. For a class in `classes` that does not define the
+/// method it does nothing and returns zeros; so it does for a null reference, if the object
+/// `mayBeNone`. `subject` is that of the finding that describes it.
 void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
-                   const std::vector<const LinkedClass *> &classes, const std::string &method,
-                   bool mayBeNone = false);
+                   const std::string &subject, const std::vector<const LinkedClass *> &classes,
+                   const std::string &method, bool mayBeNone = false);
 
 } // namespace rtsl::linking

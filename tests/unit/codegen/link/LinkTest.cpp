@@ -1,6 +1,8 @@
 //===- LinkTest.cpp - linking classes into a program ----------------------===//
 #include "Linked.h"
 
+#include "codegen/link/UnrollRecursion.h"
+
 #include <algorithm>
 
 namespace rtsl {
@@ -39,6 +41,62 @@ TEST(Link, SeveralClassesAreASwitchOverThoseThatAreThere) {
   EXPECT_EQ(linked.callees("dispatch.rt_Texture.lookup"),
             (std::vector<std::string>{"Solid.lookup", "Stripes.lookup"}));
   EXPECT_EQ(linked.count<ir::SwitchOp>("dispatch.rt_Texture.lookup"), 1u);
+}
+
+TEST(Link, ACallReachesWhatItsMemberRefersTo) {
+  LinkRequest request{{"Solid", "Stripes", "Matte", "Painted"}, {}};
+  request.referredClasses = {{{"Matte", "albedo"}, {"Solid"}}};
+  Linked linked(textures + R"(
+class Painted : rt_Material {
+  public rt_Texture albedo;
+  void shade() { rt_SampleColor = albedo.lookup(); }
+};
+)",
+                request);
+  ASSERT_TRUE(linked.succeeded);
+  EXPECT_EQ(linked.callees("Matte.shade"),
+            std::vector<std::string>{"dispatch.Matte.albedo.lookup"});
+  EXPECT_EQ(linked.callees("dispatch.Matte.albedo.lookup"),
+            std::vector<std::string>{"Solid.lookup"});
+  // Nothing is known of the other member.
+  EXPECT_EQ(linked.callees("Painted.shade"),
+            std::vector<std::string>{"dispatch.rt_Texture.lookup"});
+  EXPECT_EQ(linked.callees("dispatch.rt_Texture.lookup"),
+            (std::vector<std::string>{"Solid.lookup", "Stripes.lookup"}));
+}
+
+TEST(Link, ObjectsOfOtherClassesInsideEndARecursion) {
+  const std::string source = R"(
+class Layer {
+  float at(float x) { return x; }
+};
+class Scaled : Layer {
+  public Layer inner;
+  float at(float x) { return 2.0 * inner.at(x); }
+};
+class Shifted : Layer {
+  public Layer inner;
+  float at(float x) { return 1.0 + inner.at(x); }
+};
+class Matte : rt_Material {
+  public Layer layer;
+  void shade() { rt_SampleColor = color(layer.at(rt_HitDistance)); }
+};
+)";
+  LinkRequest request{{"Layer", "Scaled", "Shifted", "Matte"}, {}};
+  request.referredClasses = {{{"Matte", "layer"}, {"Scaled", "Shifted"}},
+                             {{"Scaled", "inner"}, {"Shifted"}},
+                             {{"Shifted", "inner"}, {"Layer"}}};
+  Linked known(source, request);
+  ASSERT_TRUE(known.succeeded);
+  EXPECT_FALSE(recursiveFunction(*known.ir));
+  EXPECT_EQ(known.callees("dispatch.Matte.layer.at"),
+            (std::vector<std::string>{"Scaled.at", "Shifted.at"}));
+
+  request.referredClasses[{"Shifted", "inner"}].insert("Scaled");
+  Linked recursive(source, request);
+  ASSERT_TRUE(recursive.succeeded);
+  EXPECT_TRUE(recursiveFunction(*recursive.ir));
 }
 
 TEST(Link, ClassesWithoutObjectsDisappear) {
