@@ -76,6 +76,10 @@ void AstBuilder::addStruct(Parser::StructDeclarationContext *context) {
 }
 
 void AstBuilder::addClass(Parser::ClassDeclarationContext *context) {
+  if (!context->CLASS()) { // `default`, and something else
+    hasBrokenItem = true;  // members may follow
+    return;
+  }
   checkFollowsFileClass(range(context->CLASS()), "a class");
   const auto names = context->IDENTIFIER();
   const bool isHelper = !context->COLON();

@@ -267,6 +267,49 @@ TEST(DeclarationErrors, Qualifiers) {
             "E0121 3:1-3:7 `static` is not an RTSL qualifier\n");
 }
 
+TEST(DeclarationErrors, WhatFollowsDefaultIsAClass) {
+  EXPECT_EQ(messages("default A : rt_Material { float f() { return 1.0; } };\n"),
+            "E0111 1:9-1:10 expected `class`, found `A`\n");
+  EXPECT_EQ(messages("class A : rt_Material { };\ndefault const float x = 1.0;\n"),
+            "E0111 2:9-2:14 expected `class`, found `const`\n");
+  for (const std::string token :
+       {"struct S { float a; };", "import std.lights;", "void f() { }", "{ }", ";", ""})
+    EXPECT_NE(messages("default " + token + "\n").find("expected `class`"), std::string::npos)
+        << token;
+}
+
+/// All of the grammar, with a space between tokens, of which each is left out, written twice, or
+/// replaced: there is a message, or the text is right.
+TEST(DeclarationErrors, AnyTokenMayBeMissing) {
+  const std::string text =
+      "import std . lights ; import \"a.rtsl\" ; struct S { float a [ 2 ] ; } ; const int N = 2 ; "
+      "default class D : rt_Material { void shade ( ) ; float f ( in vec3 v , inout float y ) { "
+      "return v . x + y ; } } ; class H { float g ( ) { return 1.0 ; } } ; "
+      "class A : rt_Material ; public optional rt_Texture t ; public float k in [ 0 , 1 ] = 0.5 , "
+      "j = 1.0 ; void shade ( ) { float a [ ] = { 1.0 , 2.0 } ; for ( int i = 0 ; i < 2 ; ++ i ) "
+      "{ if ( i == 1 ) continue ; else a [ i ] += 1.0 ; } while ( true ) { break ; } do { } while "
+      "( "
+      "false ) ; switch ( N ) { case 1 : break ; default : } illuminance ( rt_HitPoint ) "
+      "rt_SampleColor = rt_LightColor * ( - a [ 0 ] ? 1.0 : 2.0 ) ; }";
+  std::vector<std::string> tokens;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    tokens.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  const std::vector<std::string> others = {
+      "",  "class", "default", "struct", "import", "public", "const", "return", "for", "x",
+      "1", "{",     "}",       "(",      ")",      "[",      "]",     ";",      ":",   ","};
+  for (std::size_t i = 0; i < tokens.size(); ++i)
+    for (const std::string &other : others)
+      for (const bool isReplaced : {true, false}) {
+        std::string changed;
+        for (std::size_t j = 0; j < tokens.size(); ++j)
+          changed += (j == i ? other + " " : "") + (j == i && isReplaced ? "" : tokens[j] + " ");
+        messages(changed); // which reads all that the message refers to
+      }
+}
+
 TEST(DeclarationErrors, Variables) {
   EXPECT_EQ(inFunction("float = 3;"), "") << "an assignment to something called float";
   EXPECT_EQ(inFunction("const float;"), "E0111 2:12-2:13 expected a name, found `;`\n");
