@@ -98,7 +98,7 @@ void SyntaxErrors::reportUnexpected(std::size_t index, const std::string &expect
   const bool followsName = type(1) == RtslLexer::IDENTIFIER && type(2) == RtslLexer::IDENTIFIER;
   if (type(0) == RtslLexer::ELSE)
     diagnostic.note("there is no `if` that it could belong to");
-  else if (type(0) == RtslLexer::STRUCT)
+  else if (type(0) == RtslLexer::STRUCT && type(1) != RtslLexer::DEFAULT)
     diagnostic.note("a struct cannot be declared in a function");
   else if (type(1) == RtslLexer::IF || type(1) == RtslLexer::WHILE || type(1) == RtslLexer::SWITCH)
     diagnostic.note("a condition is written in parentheses");

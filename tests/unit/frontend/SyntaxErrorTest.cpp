@@ -276,6 +276,8 @@ TEST(DeclarationErrors, WhatFollowsDefaultIsAClass) {
        {"struct S { float a; };", "import std.lights;", "void f() { }", "{ }", ";", ""})
     EXPECT_NE(messages("default " + token + "\n").find("expected `class`"), std::string::npos)
         << token;
+  EXPECT_EQ(Parsed("default struct S { float a; };\n").shown().find("in a function"),
+            std::string::npos);
 }
 
 /// All of the grammar, with a space between tokens, of which each is left out, written twice, or
