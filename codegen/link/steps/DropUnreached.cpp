@@ -69,7 +69,7 @@ private:
     if (!added.insert((root + " " + method).str()).second)
       return; // a function keeps its first cause
     for (const LinkedClass &linked : context.classes)
-      if (linked.isUsed && linked.info->root == root)
+      if (linked.isMet && linked.info->root == root)
         add(findMethod(context, linked, method), cause);
   }
 
@@ -178,6 +178,14 @@ bool isStartedByRays(llvm::StringRef method) {
   return name == "shade" || name == "miss" || name == "closestHit" || name == "anyHit";
 }
 
+/// Is it a method of a material that no surface has, but others refer to?
+bool isOfInnerMaterial(const LinkContext &context, FuncOp function) {
+  const auto name = ir::attr::className.of(function);
+  return name && llvm::any_of(context.classes, [&](const LinkedClass &linked) {
+           return linked.info->name == name.getValue() && linked.isUsed && !linked.isMet;
+         });
+}
+
 Item itemOf(llvm::StringRef method) {
   return isStartedByRays(method) ? Item::States : Item::Methods;
 }
@@ -274,8 +282,9 @@ void dropUnreached(LinkContext &context) {
         finding.reason = "runs only while the scene is built";
         ir::attr::whileBuilding.set(function);
       } else {
-        finding.reason = finding.item == Item::States ? "no ray of this scene starts it"
-                                                      : "nothing in this scene runs it";
+        finding.reason = finding.item != Item::States           ? "nothing in this scene runs it"
+                         : isOfInnerMaterial(context, function) ? "no surface has this material"
+                                                                : "no ray of this scene starts it";
       }
       if (!finding.place.isKnown())
         finding.place = ir::placeOf(function.getLoc());

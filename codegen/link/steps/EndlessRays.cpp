@@ -117,7 +117,7 @@ void check(LinkContext &context, const std::string &method, mlir::Type payload,
   std::string names;
   SourceRange range;
   for (const LinkedClass &linked : context.classes) {
-    if (linked.info->root != "rt_Material" || !linked.hasObjects || !linked.isUsed)
+    if (linked.info->root != "rt_Material" || !linked.hasObjects || !linked.isMet)
       continue;
     FuncOp program = findMethod(context, linked, method);
     if (!program || !alwaysTraces(program))

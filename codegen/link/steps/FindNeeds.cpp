@@ -135,7 +135,7 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
 
 bool lightPasses(const LinkContext &context) {
   return llvm::any_of(context.classes, [&](const LinkedClass &linked) {
-    return linked.isUsed && linked.info->root == "rt_Material" &&
+    return linked.isMet && linked.info->root == "rt_Material" &&
            findMethod(context, linked, "transmittance");
   });
 }

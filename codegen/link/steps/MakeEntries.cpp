@@ -27,7 +27,7 @@ void exportFunction(mlir::func::FuncOp function) {
 void makeSlot(LinkContext &context, const Slot &slot) {
   std::vector<const LinkedClass *> classes;
   for (const LinkedClass &linked : context.classes)
-    if (linked.isUsed && linked.info->root == slot.base)
+    if (linked.isMet && linked.info->root == slot.base)
       classes.push_back(&linked);
   const std::string name = ir::slotName(slot.base, slot.method);
   const bool isNoted = llvm::any_of(

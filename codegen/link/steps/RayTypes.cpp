@@ -37,7 +37,7 @@ std::vector<FuncOp> methodsFor(const LinkContext &context, const RayType &type,
   std::vector<FuncOp> programs;
   for (const LinkedClass &linked : context.classes)
     if (FuncOp program =
-            linked.isUsed ? findMethod(context, linked, method + "." + type.name()) : FuncOp())
+            linked.isMet ? findMethod(context, linked, method + "." + type.name()) : FuncOp())
       programs.push_back(program);
   return programs;
 }
@@ -142,7 +142,7 @@ bool endsAlike(FuncOp anyHit, std::optional<ConstantStores> &stores) {
 bool writesHideOrder(const LinkContext &context, const std::vector<FuncOp> &anyHits) {
   const auto materials =
       std::count_if(context.classes.begin(), context.classes.end(), [](const LinkedClass &linked) {
-        return linked.isUsed && linked.info->root == "rt_Material";
+        return linked.isMet && linked.info->root == "rt_Material";
       });
   if (static_cast<std::size_t>(materials) != anyHits.size())
     return false; // some material accepts without writing
@@ -250,7 +250,7 @@ void reportUnanswered(const LinkContext &context, const RayType &type) {
   const std::vector<std::set<std::string>> requirements = requirementsFor(context, type);
   for (const LinkedClass &linked : context.classes) {
     // No object is of a default class, which is used if all classes are kept.
-    if (!linked.isUsed || linked.info->root != "rt_Material" || !requiredBy(linked.info).empty())
+    if (!linked.isMet || linked.info->root != "rt_Material" || !requiredBy(linked.info).empty())
       continue;
     const bool isHandled = findMethod(context, linked, "closestHit." + type.name()) ||
                            findMethod(context, linked, "anyHit." + type.name());
@@ -293,7 +293,7 @@ void makePayloadSlot(LinkContext &context, const std::string &base, const std::s
   };
   std::vector<const LinkedClass *> classes;
   for (const LinkedClass &linked : context.classes)
-    if (linked.isUsed && linked.info->root == base)
+    if (linked.isMet && linked.info->root == base)
       classes.push_back(&linked);
 
   std::vector<FuncOp> targets;

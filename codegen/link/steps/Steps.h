@@ -25,6 +25,9 @@ struct LinkedClass {
   bool hasObjects = true; // if not, it is kept only on request
   // a ray can reach an object of it; otherwise only its constructor is used
   bool isUsed = true;
+  // and the engine may call its methods: of a material if a surface has it, and not only others
+  // that refer to it
+  bool isMet = true;
   ir::ClassOp record;
   std::uint32_t id = 0;      // from 1, in the order of the module
   ir::StructType parameters; // packed arguments of the constructor; null: it has none
@@ -80,7 +83,8 @@ struct LinkContext {
 /// Keeps the requested classes: fills in `context.classes` and erases the functions of the others.
 void dropUnusedClasses(LinkContext &context);
 
-/// UsedObjects.cpp: finds the objects of the scene that something refers to: LinkedClass::isUsed.
+/// UsedObjects.cpp: finds the objects of the scene that something refers to, and the materials of
+/// surfaces: LinkedClass::isUsed and isMet.
 void findUsedObjects(LinkContext &context);
 
 /// Whether an operation lights a point with lights of the scene, and not with a surface that

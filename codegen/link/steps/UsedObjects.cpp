@@ -3,7 +3,8 @@
 // A scene may contain materials and textures that nothing refers to, and lights that no shader
 // uses. They are made, because mistakes in them should be found, and records and the random numbers
 // of constructors should not change; but they are never called. A class without other objects is
-// not part of dispatch, and its methods are not reached.
+// not part of dispatch, and its methods are not reached. Of a material that no surface has, rays
+// run no methods; only those run that other materials call.
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/link/steps/Steps.h"
@@ -60,9 +61,7 @@ private:
   std::vector<std::size_t> users; // the first part that refers to it
 };
 
-} // namespace
-
-void findUsedObjects(LinkContext &context) {
+void findUsed(LinkContext &context) {
   for (LinkedClass &linked : context.classes)
     linked.isUsed = !context.isWithout(Item::Classes, linked.info->name);
   const std::vector<ScenePart> &parts = context.request.parts;
@@ -91,6 +90,23 @@ void findUsedObjects(LinkContext &context) {
   if (context.request.keep.has(Item::Objects))
     for (LinkedClass &linked : context.classes)
       linked.isUsed = true;
+}
+
+/// May a surface have a material of this class?
+bool isOnSurface(const LinkContext &context, const LinkedClass &linked) {
+  const LinkRequest &request = context.request;
+  return request.surfaces.empty() || !linked.hasObjects || request.isSampled ||
+         request.keep.has(Item::Objects) || request.keep.has(Item::States) ||
+         llvm::is_contained(llvm::make_second_range(request.surfaces), linked.info->name);
+}
+
+} // namespace
+
+void findUsedObjects(LinkContext &context) {
+  findUsed(context);
+  for (LinkedClass &linked : context.classes)
+    linked.isMet =
+        linked.isUsed && (linked.info->root != "rt_Material" || isOnSurface(context, linked));
 }
 
 } // namespace rtsl::linking

@@ -437,6 +437,36 @@ class Papered : rt_Material { public rt_Texture paper; void shade() { rt_SampleC
         )
         self.assertEqual(objects["texture a"][1], "referred to by texture b")
 
+    def test_what_members_refer_to_decides_what_is_called(self):
+        self.write(
+            "all.rtsl",
+            SHADERS
+            + """
+class Layer : rt_Material { color at() { return color(0.5); } void shade() { rt_SampleColor = at(); } };
+class Red : Layer { color at() { return color(0.5, 0.0, 0.0); } };
+class Coat : Layer { public Layer inner; color at() { return 0.5 * inner.at(); } };
+""",
+        )
+        inner = {"class": "Coat", "inner": {"class": "Red"}}
+        self.write("scene.json", json.dumps({**SCENE, "materials": {"red": inner}}))
+        entries = self.entries()
+        self.assertEqual(entries["states"]["Coat.shade"][0], True)
+        self.assertEqual(
+            entries["states"]["Red.shade"][:2], (False, "no surface has this material")
+        )
+        self.assertEqual(
+            entries["dispatch"]["Layer.at"][:2], (False, "always `Red`, called directly")
+        )
+
+        inner["inner"] = {"class": "Coat", "inner": {"class": "Layer"}}
+        scene = {**SCENE, "materials": {"red": inner, "blue": {"class": "Red"}}}
+        first, *rest = SCENE["objects"]
+        scene["objects"] = [{**first, "material": "red"}, {**first, "material": "blue"}, *rest]
+        self.write("scene.json", json.dumps(scene))
+        entries = self.entries()
+        self.assertEqual(entries["states"]["Red.shade"][0], True)
+        self.assertEqual(entries["dispatch"]["Layer.at"][:2], (True, "one of `Layer`, `Coat`"))
+
     def test_what_is_left_out_is_checked_all_the_same(self):
         self.write_scene(
             materials={**SCENE["materials"], "blue": {"class": "Paint", "tnt": [0, 0, 1]}}

@@ -99,6 +99,32 @@ class Matte : rt_Material {
   EXPECT_TRUE(recursiveFunction(*recursive.ir));
 }
 
+TEST(Link, RaysMeetOnlyMaterialsOfSurfaces) {
+  const std::string source = R"(
+class Layer : rt_Material {
+  public optional Layer below;
+  color at() { return color(0.5); }
+  void shade() { rt_SampleColor = at(); }
+};
+class Lacquer : Layer {
+  color at() { return below ? 0.9 * below.at() : color(1.0); }
+};
+)";
+  LinkRequest request{{"Layer", "Lacquer"}, {}};
+  request.surfaces = {{"", "Lacquer"}};
+  Linked linked(source, request);
+  ASSERT_TRUE(linked.succeeded);
+  EXPECT_EQ(linked.callees("rtsl_rt_Material_shade"), std::vector<std::string>{"Lacquer.shade"});
+  EXPECT_FALSE(linked.function("Layer.shade"));
+  EXPECT_TRUE(linked.function("Layer.at")); // the lacquer calls it
+
+  request.surfaces.emplace_back("", "Layer");
+  Linked both(source, request);
+  ASSERT_TRUE(both.succeeded);
+  EXPECT_EQ(both.callees("rtsl_rt_Material_shade"),
+            (std::vector<std::string>{"Lacquer.shade", "Layer.shade"}));
+}
+
 TEST(Link, ClassesWithoutObjectsDisappear) {
   Linked linked(textures, {{"Solid", "Matte"}, {}});
   ASSERT_TRUE(linked.succeeded);
