@@ -122,7 +122,7 @@ class Lacquer : Layer {
   Linked both(source, request);
   ASSERT_TRUE(both.succeeded);
   EXPECT_EQ(both.callees("rtsl_rt_Material_shade"),
-            (std::vector<std::string>{"Lacquer.shade", "Layer.shade"}));
+            (std::vector<std::string>{"Layer.shade", "Lacquer.shade"}));
 }
 
 TEST(Link, ClassesWithoutObjectsDisappear) {
