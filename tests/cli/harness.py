@@ -52,10 +52,12 @@ GRAPH_ITEMS = (
 
 
 def example_scenes(part=None, parts=4):
-    """The scenes of the examples; with a part, 0 to parts - 1, that share of them, but for `make
-    deep`, which sets RTSL_DEEP. A scene takes seconds, and tests of the same code take different
-    ones."""
-    scenes = sorted(EXAMPLES.glob("*/scene.json"))
+    """The scenes of the examples that `rtslc render` takes, which have no passes; with a part, 0 to
+    parts - 1, that share of them, but for `make deep`, which sets RTSL_DEEP. A scene takes seconds,
+    and tests of the same code take different ones."""
+    scenes = [
+        file for file in sorted(EXAMPLES.glob("*/*.json")) if '"passes"' not in file.read_text()
+    ]
     return scenes if part is None or "RTSL_DEEP" in os.environ else scenes[part::parts]
 
 
