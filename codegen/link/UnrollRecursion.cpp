@@ -19,6 +19,7 @@
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rays.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/ir/WithoutCasts.h"
 #include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 
@@ -70,8 +71,7 @@ bool isDispatch(mlir::Operation *function) {
 enum class Reached { AsItself, ByMember, Otherwise };
 
 Reached howReached(mlir::Value object, FuncOp function) {
-  while (auto cast = object.getDefiningOp<ir::CastRefOp>())
-    object = cast.getObject();
+  object = ir::withoutCasts(object);
   if (function.getNumArguments() != 0 && object == function.getArgument(0))
     return Reached::AsItself;
   auto load = object.getDefiningOp<ir::LoadOp>();

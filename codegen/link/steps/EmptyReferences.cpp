@@ -11,6 +11,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/WithoutCasts.h"
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 
@@ -75,9 +76,7 @@ bool emptyLoads(Value address) {
 }
 
 bool isNull(Value reference) {
-  while (auto cast = reference.getDefiningOp<ir::CastRefOp>())
-    reference = cast.getObject();
-  return reference.getDefiningOp<ir::NullRefOp>() != nullptr;
+  return ir::withoutCasts(reference).getDefiningOp<ir::NullRefOp>() != nullptr;
 }
 
 /// The value of a condition, as far as it follows from empty references.

@@ -47,8 +47,7 @@ void makeSlot(LinkContext &context, const Slot &slot) {
                                              builder.getFunctionType({object}, {}));
   ir::attr::slot.set(function, builder.getStringAttr(name));
   ir::insertForRuntime(context.symbols, function);
-  buildDispatch(context, function, std::string(slot.base) + "." + slot.method, classes,
-                slot.method);
+  buildDispatch(context, function, name, classes, slot.method);
   exportFunction(function);
 }
 

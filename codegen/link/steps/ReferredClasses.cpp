@@ -9,6 +9,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/WithoutCasts.h"
 #include "codegen/link/Members.h"
 #include "codegen/link/steps/Steps.h"
 
@@ -34,9 +35,7 @@ llvm::StringSet<> membersWritten(mlir::ModuleOp ir) {
 /// The member that a reference is loaded from; null if it comes from elsewhere, an element of an
 /// array included: which object that is may depend on the ray.
 ir::MemberOp memberOf(mlir::Value reference) {
-  while (auto cast = reference.getDefiningOp<ir::CastRefOp>())
-    reference = cast.getObject();
-  auto load = reference.getDefiningOp<ir::LoadOp>();
+  auto load = ir::withoutCasts(reference).getDefiningOp<ir::LoadOp>();
   return load ? load.getAddress().getDefiningOp<ir::MemberOp>() : nullptr;
 }
 

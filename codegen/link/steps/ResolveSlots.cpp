@@ -172,26 +172,31 @@ private:
   void add(ir::CallMethodOp call, const Referred &objects) {
     const SlotCall slot = slotOf(call);
     auto [ofSlot, isFirst] = bySlot.try_emplace(slot);
+    if (isFirst)
+      reportUnfilled(slot);
     Choice choice{{}, anyMayBeNone && objects.mayBeNone, slot.name()};
     if (objects.isKnown())
       choice.name = objects.member + "." + slot.method;
     Key key{{}, choice.mayBeNone};
-    for (const LinkedClass &linked : context.classes) {
-      if (!derivesFrom(*linked.info, slot.base))
-        continue;
-      if (linked.isUsed && (!objects.isKnown() || objects.classes.count(linked.info->name))) {
+    for (const LinkedClass &linked : context.classes)
+      if (linked.isUsed && derivesFrom(*linked.info, slot.base) &&
+          (!objects.isKnown() || objects.classes.count(linked.info->name))) {
         choice.classes.push_back(&linked);
         key.first.push_back(linked.id);
       }
-      if (isFirst && context.hasScene && linked.hasObjects &&
-          !findMethod(context, linked, slot.method))
-        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
-                                   linked.info->name);
-    }
     Choice &known = ofSlot->second.try_emplace(key, choice).first->second;
     if (!objects.isKnown())
       known.name = slot.name();
     keys[call] = std::move(key);
+  }
+
+  /// Reports objects that have no such method.
+  void reportUnfilled(const SlotCall &slot) {
+    for (const LinkedClass &linked : context.classes)
+      if (context.hasScene && linked.hasObjects && derivesFrom(*linked.info, slot.base) &&
+          !findMethod(context, linked, slot.method))
+        context.diagnostics.report(Code::slotNotFilled, linked.info->range, slot.method,
+                                   linked.info->name);
   }
 
   LinkContext &context;

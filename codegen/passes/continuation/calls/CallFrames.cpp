@@ -16,6 +16,7 @@
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Layout.h"
+#include "codegen/ir/WithoutCasts.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 #include "codegen/passes/continuation/common/Names.h"
 #include "runtime/device/ray/Abi.h"
@@ -123,20 +124,11 @@ unsigned FrameCounter::numberOf(llvm::StringRef name) {
 
 /// Is the object loaded from a member of the function's own object?
 bool isOfMember(mlir::Value object, FuncOp state) {
-  auto load = object.getDefiningOp<ir::LoadOp>();
-  while (auto cast = object.getDefiningOp<ir::CastRefOp>()) {
-    object = cast.getObject();
-    load = object.getDefiningOp<ir::LoadOp>();
-  }
+  auto load = ir::withoutCasts(object).getDefiningOp<ir::LoadOp>();
   if (!load)
     return false;
   auto member = llvm::dyn_cast_or_null<ir::MemberOp>(ir::variableOperation(load.getAddress()));
-  if (!member)
-    return false;
-  mlir::Value owner = member.getObject();
-  while (auto cast = owner.getDefiningOp<ir::CastRefOp>())
-    owner = cast.getObject();
-  return owner == objectOf(state);
+  return member && ir::withoutCasts(member.getObject()) == objectOf(state);
 }
 
 void FrameCounter::read(FuncOp state) {

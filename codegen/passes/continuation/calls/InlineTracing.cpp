@@ -9,6 +9,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "codegen/ir/Attributes.h"
+#include "codegen/ir/WithoutCasts.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/continuation/calls/Steps.h"
 
@@ -62,10 +63,7 @@ bool Inliner::isTail(CallOp call, FuncOp callee) {
   if (callee.getNumResults() != 0 || caller.getNumResults() != 0 || call.getNumOperands() != 1 ||
       !object || !objectOf(callee))
     return false;
-  mlir::Value passed = call.getOperand(0);
-  while (auto cast = passed.getDefiningOp<ir::CastRefOp>())
-    passed = cast.getObject();
-  if (passed != object)
+  if (ir::withoutCasts(call.getOperand(0)) != object)
     return false;
   mlir::Operation *next = call->getNextNode();
   llvm::SmallPtrSet<mlir::Block *, 4> seen;

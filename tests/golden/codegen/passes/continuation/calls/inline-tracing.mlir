@@ -77,5 +77,5 @@ func.func private @about(%d: vector<3xf32>) {
 }
 
 // MUTATION inline-tracing of calls/InlineTracing.cpp: a call on another object counts as the caller's own
-// -   if (passed != object)
+// -   if (ir::withoutCasts(call.getOperand(0)) != object)
 // -     return false;
