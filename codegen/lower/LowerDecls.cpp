@@ -126,6 +126,8 @@ mlir::func::FuncOp ModuleLowering::function(const FunctionKey &key) {
     if (options.source && source.sends.traced)
       ir::attr::states.set(function);
   }
+  if (source.mayRunInLookup)
+    ir::attr::inLookup.set(function);
   functions[key] = function;
   pending.push_back(key);
   return function;

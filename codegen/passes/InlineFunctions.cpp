@@ -42,6 +42,18 @@ bool traces(mlir::func::FuncOp function) {
          });
 }
 
+/// Does a function look up textures by code that was not inlined? Equal calls of it are shared
+/// (calls/ShareCalls.h), which those of the textures cannot be.
+bool looksUp(mlir::func::FuncOp function) {
+  return !ir::attr::inLookup.isOn(function) && ir::anyOperation(function, [&](mlir::Operation *op) {
+    auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
+    auto callee = call ? mlir::SymbolTable::lookupNearestSymbolFrom<mlir::func::FuncOp>(
+                             call, call.getCalleeAttr())
+                       : nullptr;
+    return callee && ir::attr::inLookup.isOn(callee);
+  });
+}
+
 /// Finds functions without which no cycle of calls is left: those at which a depth-first walk
 /// closes one. They are not inlined ("loop breakers" of Peyton Jones and Marlow, Secrets of the
 /// Glasgow Haskell Compiler inliner, 2002): if all functions of a cycle were, a caller would unroll
@@ -144,7 +156,7 @@ private:
     const unsigned limit = isDouble         ? smallFunctionInDouble
                            : traces(callee) ? smallTracingFunction
                                             : smallFunction;
-    return operationCount(callee, limit) <= limit;
+    return operationCount(callee, limit) <= limit && !looksUp(callee);
   }
 
   bool inlinesAll;

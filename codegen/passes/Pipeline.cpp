@@ -7,12 +7,13 @@
 #include "codegen/passes/ForwardPayloads.h"
 #include "codegen/passes/InlineFunctions.h"
 #include "codegen/passes/PropagateConstants.h"
-#include "codegen/passes/ShareCalls.h"
 #include "codegen/passes/ShareExpressions.h"
 #include "codegen/passes/Simplify.h"
 #include "codegen/passes/ToControlFlow.h"
+#include "codegen/passes/calls/ShareCalls.h"
 #include "codegen/passes/variables/ExpandCopies.h"
 #include "codegen/passes/variables/HoistVariables.h"
+#include "codegen/passes/variables/LocalizeLookups.h"
 #include "codegen/passes/variables/PromoteVariables.h"
 
 #include "mlir/Dialect/Func/Extensions/InlinerExtension.h"
@@ -53,6 +54,7 @@ void buildSsaPipeline(mlir::OpPassManager &module) {
   // nothing calls would count as a caller.
   module.addPass(mlir::createSymbolDCEPass());
   module.addPass(createInlineFunctionsPass());
+  module.addPass(createLocalizeLookupsPass());
   auto &promoted = module.nest<mlir::func::FuncOp>();
   addPromotion(promoted);
   promoted.addPass(createPropagateConstantsPass());
@@ -90,6 +92,7 @@ void registerPasses() {
   mlir::registerPass(createExpandCopiesPass);
   mlir::registerPass(createForgetArgumentsPass);
   mlir::registerPass(createForwardPayloadsPass);
+  mlir::registerPass(createLocalizeLookupsPass);
   mlir::registerPass([] { return createInlineFunctionsPass(); });
   mlir::registerPass(createShareCallsPass);
   mlir::registerPass(createShareExpressionsPass);

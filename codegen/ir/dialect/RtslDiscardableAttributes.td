@@ -110,6 +110,12 @@ def separate : DiscardableAttribute<"separate", Unit, ["func.func"]> {
   let readBy = "passes/InlineFunctions, emit";
 }
 
+def inLookup : DiscardableAttribute<"in_lookup", Unit, ["func.func"]> {
+  let meaning = "a texture's `lookup` may run it: its caller reads the results that it stores";
+  let setBy = "lower, link/ResolveSlots";
+  let readBy = "passes/InlineFunctions, variables/LocalizeLookups, calls/FunctionEffects";
+}
+
 def states : DiscardableAttribute<"states", Unit, ["func.func"]> {
   let meaning = "becomes states even if it does not trace";
   let setBy = "lower";

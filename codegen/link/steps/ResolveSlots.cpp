@@ -84,6 +84,9 @@ void buildDispatch(const LinkContext &context, mlir::func::FuncOp function,
   for (const LinkedClass *linked : classes)
     if (mlir::func::FuncOp target = findMethod(context, *linked, method))
       targets.push_back({linked, target});
+  if (llvm::any_of(targets,
+                   [](const auto &target) { return ir::attr::inLookup.isOn(target.second); }))
+    ir::attr::inLookup.set(function);
 
   mlir::Block *entry = function.addEntryBlock();
   mlir::OpBuilder builder = mlir::OpBuilder::atBlockEnd(entry);

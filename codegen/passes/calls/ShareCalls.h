@@ -14,8 +14,13 @@
 //
 // A function can be shared if it reads only members, and state that its caller does not write, and
 // writes only its result. The one call that remains stands where each path to an end of the caller
-// comes to one of the others, and no ray is sent between it and them: a result would have to be
-// saved across a trace.
+// comes to one of the others, in front of a loop if some of them are in it. No ray is sent between
+// it and them: a result would have to be saved across a trace. Only across rays to lights, which
+// are not awaited in another state, results are kept that take more than a few operations.
+//
+// Functions come after those that they call. So before a call is shared, what its callee computes
+// wherever it is called has become calls of the caller's (LiftCalls.h), and what it reads of
+// aggregates has become arguments (PassParts.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
