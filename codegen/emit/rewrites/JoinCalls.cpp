@@ -1,6 +1,8 @@
 //===- JoinCalls.cpp - a program as one function --------------------------===//
 #include "codegen/emit/rewrites/JoinCalls.h"
 
+#include "codegen/emit/rewrites/PassLaunches.h"
+
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/STLExtras.h"
 #include "llvm/IR/InstIterator.h"
@@ -21,7 +23,7 @@ constexpr std::uint64_t mostInstructions = 150'000;
 bool takesAddress(const llvm::Function &function) {
   return llvm::any_of(function.args(), [](const llvm::Argument &argument) {
     return argument.getType()->isPointerTy() && !argument.hasByValAttr() &&
-           !argument.hasStructRetAttr();
+           !argument.hasStructRetAttr() && !isLaunch(argument);
   });
 }
 
@@ -59,6 +61,10 @@ private:
 } // namespace
 
 bool joinCalls(llvm::Module &module) {
+  // The kernels of a wavefront are small without shading code that reads nothing of the ray; in a
+  // megakernel, which has few registers, it is better inlined.
+  if (module.getFunction("rtsl_record_store"))
+    passLaunches(module);
   llvm::SmallVector<llvm::Function *> joined;
   Sizes sizes;
   for (llvm::Function &function : module) {

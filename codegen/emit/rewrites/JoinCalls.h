@@ -14,6 +14,9 @@ class Module;
 
 namespace rtsl::codegen {
 
+/// In programs whose rays lie in records between their steps, first passes the launch to functions
+/// that read nothing of the ray (PassLaunches.h); these remain.
+///
 /// Marks the functions that take addresses so that LLVM inlines all calls of them, before any other
 /// pass. Does nothing in programs with separate functions (codegen/ir/Separate.h), and in those
 /// that would become larger than LLVM handles in reasonable time. Returns whether any function is
