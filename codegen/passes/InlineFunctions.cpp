@@ -42,8 +42,7 @@ bool traces(mlir::func::FuncOp function) {
          });
 }
 
-/// Does a function look up textures by code that was not inlined? Equal calls of it are shared
-/// (calls/ShareCalls.h), which those of the textures cannot be.
+/// Does a function look up textures by code that was not inlined?
 bool looksUp(mlir::func::FuncOp function) {
   return !ir::attr::inLookup.isOn(function) && ir::anyOperation(function, [&](mlir::Operation *op) {
     auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
@@ -131,7 +130,8 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
       auto callee = resolved.targetNode->getCallableRegion()->getParentOfType<mlir::func::FuncOp>();
       auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
       if (!callee || !caller || breakers.contains(resolved.targetNode) ||
-          !isAllowed(callee, caller) || !(uses.isOne(callee) || isSmall(callee)))
+          !isAllowed(callee, caller) ||
+          !(isSmall(callee) ? !isBetterShared(callee) : uses.isOne(callee)))
         return false;
       uses.inlineCall(callee);
       return true;
@@ -152,12 +152,18 @@ private:
   bool isSmall(mlir::func::FuncOp callee) {
     if (inlinesAll)
       return true;
-    const bool isDouble = ir::attr::inDouble.isOn(getOperation());
-    const unsigned limit = isDouble         ? smallFunctionInDouble
+    const unsigned limit = isDouble()       ? smallFunctionInDouble
                            : traces(callee) ? smallTracingFunction
                                             : smallFunction;
-    return operationCount(callee, limit) <= limit && !looksUp(callee);
+    return operationCount(callee, limit) <= limit;
   }
+
+  /// Equal calls of what looks up textures by code that was not inlined are shared
+  /// (calls/ShareCalls.h), which those of the textures cannot be.
+  bool isBetterShared(mlir::func::FuncOp callee) {
+    return !inlinesAll && !isDouble() && looksUp(callee);
+  }
+  bool isDouble() { return ir::attr::inDouble.isOn(getOperation()); }
 
   bool inlinesAll;
 };
