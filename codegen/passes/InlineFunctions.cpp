@@ -13,6 +13,8 @@
 #include "mlir/Transforms/Inliner.h"
 #include "llvm/ADT/DenseSet.h"
 
+#include <algorithm>
+
 namespace rtsl::codegen {
 
 namespace {
@@ -22,6 +24,9 @@ constexpr unsigned smallFunction = 60;
 /// With arithmetic in double, values that cross a call in memory are rounded: calls remain only
 /// where inlining would make programs grow without bound.
 constexpr unsigned smallFunctionInDouble = 20000;
+/// Functions that are used once are moved into each other up to this depth: the inliner adds a call
+/// to the location of each operation each time, in a time that grows with the depth.
+constexpr unsigned mostCallsMoved = 64;
 /// A function that traces: up to this many operations, copies of its code cost less than a frame of
 /// its own.
 constexpr unsigned smallTracingFunction = 1000;
@@ -119,6 +124,7 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
     auto &graph = getAnalysis<mlir::CallGraph>();
     const CycleBreakers breakers(graph);
     UseCounts uses(getOperation().getBodyRegion());
+    llvm::DenseMap<mlir::Operation *, unsigned> depths; // of calls that were inlined in a function
 
     mlir::InlinerConfig config;
     config.setMaxInliningIterations(4);
@@ -131,9 +137,11 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
       auto caller = resolved.call->getParentOfType<mlir::func::FuncOp>();
       if (!callee || !caller || breakers.contains(resolved.targetNode) ||
           !isAllowed(callee, caller) ||
-          !(isSmall(callee) ? !isBetterShared(callee) : uses.isOne(callee)))
+          !(isSmall(callee) ? !isBetterShared(callee)
+                            : uses.isOne(callee) && depths.lookup(callee) < mostCallsMoved))
         return false;
       uses.inlineCall(callee);
+      depths[caller] = std::max(depths[caller], depths.lookup(callee) + 1);
       return true;
     };
     mlir::Inliner inliner(getOperation(), graph, *this, getAnalysisManager(), runNothing, config,

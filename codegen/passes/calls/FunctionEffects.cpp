@@ -8,6 +8,8 @@
 
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 
+#include <algorithm>
+
 namespace rtsl::codegen {
 
 namespace {
@@ -15,6 +17,9 @@ namespace {
 using mlir::func::CallOp;
 using mlir::func::FuncOp;
 using Kind = ir::MemoryLocation::Kind;
+
+/// Functions that call each other in a chain, twice each, have more than can be counted.
+constexpr unsigned mostOperations = 1 << 20;
 
 FunctionEffects unknownEffects() {
   FunctionEffects effects;
@@ -77,7 +82,7 @@ private:
     effects.isPure &= callee.isPure;
     effects.sendsRays |= callee.sendsRays;
     effects.traces |= callee.traces;
-    effects.operations += callee.operations;
+    effects.operations = std::min(effects.operations + callee.operations, mostOperations);
     effects.writesAny |= callee.writesAny;
     for (const auto &entry : callee.reads)
       addState(effects.reads, entry.getKey());
