@@ -47,17 +47,6 @@ bool traces(mlir::func::FuncOp function) {
          });
 }
 
-/// Does a function look up textures by code that was not inlined?
-bool looksUp(mlir::func::FuncOp function) {
-  return !ir::attr::inLookup.isOn(function) && ir::anyOperation(function, [&](mlir::Operation *op) {
-    auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
-    auto callee = call ? mlir::SymbolTable::lookupNearestSymbolFrom<mlir::func::FuncOp>(
-                             call, call.getCalleeAttr())
-                       : nullptr;
-    return callee && ir::attr::inLookup.isOn(callee);
-  });
-}
-
 /// Finds functions without which no cycle of calls is left: those at which a depth-first walk
 /// closes one. They are not inlined ("loop breakers" of Peyton Jones and Marlow, Secrets of the
 /// Glasgow Haskell Compiler inliner, 2002): if all functions of a cycle were, a caller would unroll
@@ -121,6 +110,10 @@ struct InlineFunctions : mlir::PassWrapper<InlineFunctions, mlir::OperationPass<
   llvm::StringRef getDescription() const override { return "inlines calls"; }
 
   void runOnOperation() override {
+    inLookup.clear();
+    for (auto function : getOperation().getOps<mlir::func::FuncOp>())
+      if (ir::attr::inLookup.isOn(function))
+        inLookup.insert(function.getSymNameAttr());
     auto &graph = getAnalysis<mlir::CallGraph>();
     const CycleBreakers breakers(graph);
     UseCounts uses(getOperation().getBodyRegion());
@@ -169,11 +162,16 @@ private:
   /// Equal calls of what looks up textures by code that was not inlined are shared
   /// (calls/ShareCalls.h), which those of the textures cannot be.
   bool isBetterShared(mlir::func::FuncOp callee) {
-    return !inlinesAll && !isDouble() && looksUp(callee);
+    return !inlinesAll && !isDouble() && !ir::attr::inLookup.isOn(callee) &&
+           ir::anyOperation(callee, [&](mlir::Operation *op) {
+             auto call = llvm::dyn_cast<mlir::func::CallOp>(op);
+             return call && inLookup.contains(call.getCalleeAttr().getAttr());
+           });
   }
   bool isDouble() { return ir::attr::inDouble.isOn(getOperation()); }
 
   bool inlinesAll;
+  llvm::DenseSet<mlir::StringAttr> inLookup; // functions that a texture's `lookup` may run
 };
 
 } // namespace

@@ -31,10 +31,9 @@ bool isLoadOfLaunch(const llvm::User *user) {
 
 /// Are all calls of the function known?
 bool isPrivate(const llvm::Function &function) {
-  return function.hasLocalLinkage() && llvm::all_of(function.uses(), [](const llvm::Use &use) {
-           auto *call = llvm::dyn_cast<llvm::CallBase>(use.getUser());
-           return call && call->isCallee(&use);
-         });
+  return function.hasLocalLinkage() &&
+         !function.hasAddressTaken(nullptr, /*IgnoreCallbackUses=*/false,
+                                   /*IgnoreAssumeLikeCalls=*/false);
 }
 
 /// The arguments of which only the launch is loaded.

@@ -128,7 +128,7 @@ EffectsOfFunctions::EffectsOfFunctions(mlir::ModuleOp module) : symbols(module) 
     if (receiveState.insert(function).second)
       pending.push_back(function);
   };
-  /// What a call passes on of its caller's arguments.
+  // What a call passes on of its caller's arguments.
   llvm::DenseMap<mlir::Operation *, llvm::SmallVector<FuncOp>> passedOn;
   module.walk([&](CallOp call) {
     for (const mlir::Value operand : call.getOperands()) {

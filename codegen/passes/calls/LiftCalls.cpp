@@ -59,9 +59,7 @@ private:
     for (mlir::OpOperand &operand : call->getOpOperands()) {
       if (!llvm::isa<ir::PtrType>(operand.get().getType()))
         continue;
-      auto parts = partsRead(operand.get(), [&](mlir::Operation *user) {
-        return user == call || llvm::isa<ir::ClearOp>(user);
-      });
+      auto parts = partsOfResult(operand.get(), call);
       if (!parts)
         return std::nullopt;
       results.push_back({operand.getOperandNumber(), std::move(*parts)});

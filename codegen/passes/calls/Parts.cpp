@@ -51,15 +51,25 @@ private:
   llvm::function_ref<bool(mlir::Operation *)> other;
 };
 
-} // namespace
-
-std::optional<std::vector<Part>> partsRead(Value aggregate,
-                                           llvm::function_ref<bool(mlir::Operation *)> other) {
+std::optional<std::vector<Part>> collectParts(Value aggregate,
+                                              llvm::function_ref<bool(mlir::Operation *)> other) {
   PartsOfAggregate collector(other);
   llvm::SmallVector<mlir::Attribute, 2> path;
   if (!collector.add(aggregate, path))
     return std::nullopt;
   return std::move(collector.parts);
+}
+
+} // namespace
+
+std::optional<std::vector<Part>> partsRead(Value aggregate) {
+  return collectParts(aggregate, [](mlir::Operation *) { return false; });
+}
+
+std::optional<std::vector<Part>> partsOfResult(Value variable, mlir::func::CallOp call) {
+  return collectParts(variable, [&](mlir::Operation *user) {
+    return user == call || llvm::isa<ir::ClearOp>(user);
+  });
 }
 
 Value loadPart(mlir::OpBuilder &builder, mlir::Location location, Value aggregate,

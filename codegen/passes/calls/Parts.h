@@ -27,10 +27,11 @@ struct Part {
 };
 
 /// The parts that are loaded, in the order of their first loads. None if something else is done
-/// with the aggregate, but for `other`, or if it is not known which part is loaded.
-std::optional<std::vector<Part>> partsRead(
-    mlir::Value aggregate,
-    llvm::function_ref<bool(mlir::Operation *)> other = [](mlir::Operation *) { return false; });
+/// with the aggregate, or if it is not known which part is loaded.
+std::optional<std::vector<Part>> partsRead(mlir::Value aggregate);
+
+/// The same of a variable that is cleared and that the call writes.
+std::optional<std::vector<Part>> partsOfResult(mlir::Value variable, mlir::func::CallOp call);
 
 /// Loads the part of an aggregate.
 mlir::Value loadPart(mlir::OpBuilder &builder, mlir::Location location, mlir::Value aggregate,

@@ -2,6 +2,7 @@
 
 #include "codegen/ir/Attributes.h"
 #include "codegen/ir/BaseAddress.h"
+#include "codegen/passes/Components.h"
 #include "codegen/passes/calls/FunctionEffects.h"
 #include "codegen/passes/calls/LiftCalls.h"
 #include "codegen/passes/calls/Operands.h"
@@ -13,7 +14,6 @@
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/Dominance.h"
 #include "mlir/Pass/Pass.h"
-#include "llvm/ADT/DenseSet.h"
 
 #include <vector>
 
@@ -183,9 +183,7 @@ private:
 
   /// Each part of the result is loaded once, after the call.
   static void loadOnce(mlir::Value variable, CallOp call) {
-    const auto parts = partsRead(variable, [&](mlir::Operation *user) {
-      return user == call || llvm::isa<ir::ClearOp>(user);
-    });
+    const auto parts = partsOfResult(variable, call);
     if (!parts)
       return;
     mlir::OpBuilder builder(call);
@@ -225,50 +223,38 @@ private:
   mlir::DominanceInfo dominance;
 };
 
-/// Functions after those that they call.
-class InOrder {
-public:
-  InOrder(mlir::ModuleOp module, EffectsOfFunctions &effects) : effects(effects) {
-    module.walk([&](CallOp call) { callers[effects.calleeOf(call)].push_back(call); });
-    for (auto function : module.getOps<FuncOp>())
-      visit(function);
-  }
-
-private:
-  void visit(FuncOp function) {
-    if (function.isExternal() || !visited.insert(function).second)
-      return;
-    open.insert(function);
-    llvm::SmallVector<CallOp> calls;
-    function.walk([&](CallOp call) { calls.push_back(call); });
-    for (CallOp call : calls) {
-      FuncOp callee = effects.calleeOf(call);
-      if (open.contains(callee))
-        recursive.insert(callee);
-      visit(callee);
-    }
-    open.erase(function);
-    if (!ir::attr::constructor.isOn(function))
-      SharedCalls(function, effects).run();
-    if (!knowsCallers(function))
-      return;
-    passParts(function, callers[function], effects.of(function));
-    if (callers[function].size() > 1 && !effects.of(function).traces)
-      liftCalls(function, callers[function], effects);
-  }
-
-  /// Are all calls known, and as they were at first? Not those of a function that calls itself.
-  bool knowsCallers(FuncOp function) {
-    return function.isPrivate() && !recursive.contains(function) &&
-           llvm::none_of(callers[function], [](CallOp call) {
-             return ir::attr::constructor.isOn(call->getParentOfType<FuncOp>());
-           });
-  }
-
-  EffectsOfFunctions &effects;
+/// Shares the calls of functions after those of functions that they call.
+void shareInOrder(mlir::ModuleOp module, EffectsOfFunctions &effects) {
   llvm::DenseMap<mlir::Operation *, llvm::SmallVector<CallOp>> callers;
-  llvm::DenseSet<mlir::Operation *> visited, open, recursive;
-};
+  module.walk([&](CallOp call) { callers[effects.calleeOf(call)].push_back(call); });
+  Components<mlir::Operation *>::Part functions;
+  for (auto function : module.getOps<FuncOp>())
+    if (!function.isExternal())
+      functions.insert(function);
+  const auto forEachCallee = [&](mlir::Operation *function,
+                                 llvm::function_ref<void(mlir::Operation *)> visit) {
+    function->walk([&](CallOp call) { visit(effects.calleeOf(call)); });
+  };
+
+  for (const auto &component : Components<mlir::Operation *>::of(functions, forEachCallee))
+    for (mlir::Operation *op : component) {
+      auto function = llvm::cast<FuncOp>(op);
+      const llvm::SmallVector<CallOp> &calls = callers[function];
+      // Those of a function that calls itself change when its own calls, or theirs, are shared.
+      const bool areKnown =
+          component.size() == 1 && function.isPrivate() && llvm::none_of(calls, [&](CallOp call) {
+            auto caller = call->getParentOfType<FuncOp>();
+            return caller == function || ir::attr::constructor.isOn(caller);
+          });
+      if (!ir::attr::constructor.isOn(function))
+        SharedCalls(function, effects).run();
+      if (!areKnown)
+        continue;
+      passParts(function, calls, effects.of(function));
+      if (calls.size() > 1 && !effects.of(function).traces)
+        liftCalls(function, calls, effects);
+    }
+}
 
 struct ShareCalls : mlir::PassWrapper<ShareCalls, mlir::OperationPass<mlir::ModuleOp>> {
   MLIR_DEFINE_EXPLICIT_INTERNAL_INLINE_TYPE_ID(ShareCalls)
@@ -277,7 +263,7 @@ struct ShareCalls : mlir::PassWrapper<ShareCalls, mlir::OperationPass<mlir::Modu
 
   void runOnOperation() override {
     EffectsOfFunctions effects(getOperation());
-    InOrder(getOperation(), effects);
+    shareInOrder(getOperation(), effects);
   }
 };
 

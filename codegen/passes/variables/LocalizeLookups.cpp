@@ -48,10 +48,6 @@ private:
   llvm::DenseMap<mlir::Operation *, bool> known;
 };
 
-mlir::Type typeAt(mlir::Value address) {
-  return llvm::cast<ir::PtrType>(address.getType()).getPointee();
-}
-
 void copyValue(mlir::OpBuilder &builder, mlir::Location location, mlir::Value from,
                mlir::Value to) {
   ir::StoreOp::create(builder, location, ir::LoadOp::create(builder, location, from), to);
@@ -76,8 +72,8 @@ void localize(FuncOp function, Lookups &lookups) {
     mlir::Value &variable = variables[state.getNameAttr()];
     if (!variable) {
       mlir::OpBuilder builder = mlir::OpBuilder::atBlockBegin(&entry);
-      variable =
-          ir::VarOp::create(builder, state.getLoc(), state.getName(), typeAt(state.getResult()));
+      variable = ir::VarOp::create(builder, state.getLoc(), state.getName(),
+                                   ir::pointee(state.getResult()));
     }
     state.getResult().replaceAllUsesWith(variable);
   }
@@ -86,7 +82,7 @@ void localize(FuncOp function, Lookups &lookups) {
     for (const auto &[name, variable] : variables) {
       builder.setInsertionPoint(call);
       const mlir::Value state =
-          ir::StateOp::create(builder, call.getLoc(), name.getValue(), typeAt(variable));
+          ir::StateOp::create(builder, call.getLoc(), name.getValue(), ir::pointee(variable));
       copyValue(builder, call.getLoc(), variable, state);
       builder.setInsertionPointAfter(call);
       copyValue(builder, call.getLoc(), state, variable);
