@@ -203,25 +203,25 @@ RtslPixelSums GpuRenderer::placeSums(PixelSums &sums) {
   return sumsOnDevice;
 }
 
-void GpuRenderer::uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) {
-  const auto upload = [&](const auto &values, auto *address) {
-    const std::size_t ofPixel = values.size() / sums.pixels();
-    if (ofPixel > 0)
-      device.upload(reinterpret_cast<Address>(address + first * ofPixel),
-                    values.data() + first * ofPixel, count * ofPixel * sizeof values[0]);
+void GpuRenderer::clearSums(const PixelSums &sums, std::size_t first, std::size_t count) {
+  const auto clear = [&](const void *, void *there, std::size_t bytes) {
+    device.clear(reinterpret_cast<Address>(there), bytes);
   };
-  forEachList(upload, sums, sumsOnDevice);
+  forEachPart(clear, sums, sumsOnDevice, first, count);
+}
+
+void GpuRenderer::uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) {
+  const auto upload = [&](const void *here, void *there, std::size_t bytes) {
+    device.upload(reinterpret_cast<Address>(there), here, bytes);
+  };
+  forEachPart(upload, sums, sumsOnDevice, first, count);
 }
 
 void GpuRenderer::fetchSums(PixelSums &sums, std::size_t first, std::size_t count) {
-  const auto fetch = [&](auto &values, auto *address) {
-    const std::size_t ofPixel = values.size() / sums.pixels();
-    if (ofPixel > 0)
-      device.download(values.data() + first * ofPixel,
-                      reinterpret_cast<Address>(address + first * ofPixel),
-                      count * ofPixel * sizeof values[0]);
+  const auto fetch = [&](void *here, void *there, std::size_t bytes) {
+    device.download(here, reinterpret_cast<Address>(there), bytes);
   };
-  forEachList(fetch, sums, sumsOnDevice);
+  forEachPart(fetch, sums, sumsOnDevice, first, count);
 }
 
 RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {

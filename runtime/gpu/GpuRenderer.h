@@ -63,6 +63,7 @@ private:
   std::uint64_t sliceBytes() override;
   double launchSeconds() const override;
   RtslPixelSums placeSums(PixelSums &sums) override;
+  void clearSums(const PixelSums &sums, std::size_t first, std::size_t count) override;
   void uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) override;
   void fetchSums(PixelSums &sums, std::size_t first, std::size_t count) override;
   RtslPixelSums clearedSums(std::uint64_t pixels) override;

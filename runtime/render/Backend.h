@@ -81,9 +81,9 @@ private:
   /// Copies the pixels to `picture`, unless there are sums, and returns the statistics of the last
   /// run, without the times and isUnfinished.
   virtual RenderStatistics finish() = 0;
-  /// Copies `sums` to where run() continues them, and back. Backends that use them where they are
-  /// have nothing to do.
-  virtual void uploadSums() {}
+  /// Copies `sums`, which have so many samples, to where run() continues them, and back. Backends
+  /// that use them where they are have nothing to do.
+  virtual void uploadSums(const SampleCounts &) {}
   virtual void fetchSums() {}
 
   /// render(); `watched`: the options for what stops it.

@@ -280,11 +280,13 @@ RenderStatistics Megakernel::finish() {
   return statistics;
 }
 
-void Megakernel::uploadSums() {
+void Megakernel::uploadSums(const SampleCounts &counts) {
   placedSums = placeSums(*sums);
   for (const Rows &rows : keptRows)
-    uploadRows(rows);
-  const SampleCounts counts = countSamples(*sums);
+    if (counts.samples == 0)
+      clearSums(*sums, firstPixel(rows), pixelsOf(rows));
+    else
+      uploadRows(rows);
   leastTaken = counts.least;
   isUneven = counts.least < counts.most;
   placeOpenPixels();
@@ -296,13 +298,11 @@ void Megakernel::fetchSums() {
 }
 
 void Megakernel::uploadRows(const Rows &rows) {
-  const std::size_t width = job.width;
-  uploadSums(*sums, rows.y0 * width, rows.height() * width);
+  uploadSums(*sums, firstPixel(rows), pixelsOf(rows));
 }
 
 void Megakernel::fetchRows(const Rows &rows) {
-  const std::size_t width = job.width;
-  fetchSums(*sums, rows.y0 * width, rows.height() * width);
+  fetchSums(*sums, firstPixel(rows), pixelsOf(rows));
 }
 
 /// Lists the pixels that take samples, if others do not.
@@ -310,7 +310,7 @@ void Megakernel::placeOpenPixels() {
   job.places = nullptr;
   ownPixels = 0;
   for (const Rows &rows : keptRows)
-    ownPixels += std::uint64_t(rows.height()) * job.width;
+    ownPixels += pixelsOf(rows);
   openPixels = ownPixels;
   if (ownPixels == windowPixels && !sums->isAdaptive())
     return;
@@ -318,7 +318,7 @@ void Megakernel::placeOpenPixels() {
   places.reserve(ownPixels);
   for (const Rows &rows : keptRows)
     for (std::uint32_t place = rows.y0 * job.width; place < rows.y1 * job.width; ++place)
-      if (sums->isOpen(device::pixelAt(job, place).number(job)))
+      if (!sums->isAdaptive() || sums->isOpen(device::pixelAt(job, place).number(job)))
         places.push_back(place);
   openPixels = places.size();
   if (openPixels == windowPixels || openPixels == 0)

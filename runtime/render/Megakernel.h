@@ -45,7 +45,7 @@ public:
   void keepRows(std::vector<Rows> rows);
   /// Renders until each pixel of these rows has so many samples. Throws as renderPart.
   RenderStatistics renderKept(std::uint32_t samplesOfPixel, Watch &watch);
-  void uploadSums() final;
+  void uploadSums(const SampleCounts &counts) final;
   void fetchSums() final;
   void uploadRows(const Rows &rows);
   void fetchRows(const Rows &rows);
@@ -105,7 +105,8 @@ private:
   virtual double launchSeconds() const = 0;
   /// Where sums of so many pixels are on the device.
   virtual RtslPixelSums placeSums(PixelSums &sums) = 0;
-  /// Copy those of `count` pixels from `first` on there, and back.
+  /// Set those of `count` pixels from `first` on to 0 there, copy them there, and back.
+  virtual void clearSums(const PixelSums &sums, std::size_t first, std::size_t count) = 0;
   virtual void uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) = 0;
   virtual void fetchSums(PixelSums &sums, std::size_t first, std::size_t count) = 0;
   /// The addresses of sums on the device without samples, and without squares.
@@ -125,6 +126,8 @@ private:
   void setWindow(const Window &window);
   /// `share` gives what is done of the run, for a number of samples of the slice.
   void runSlice(Watch &watch, const std::function<double(std::uint64_t)> &share);
+  std::size_t firstPixel(const Rows &rows) const { return std::size_t(rows.y0) * job.width; }
+  std::size_t pixelsOf(const Rows &rows) const { return std::size_t(rows.height()) * job.width; }
   void placeOpenPixels();
   void allocatePrinted();
   void takePrinted();

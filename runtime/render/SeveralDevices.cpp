@@ -124,13 +124,12 @@ Window SeveralDevices::takeRows() {
   return rowsLeft.take();
 }
 
-void SeveralDevices::uploadSums() {
-  const SampleCounts counts = countSamples(*sums);
+void SeveralDevices::uploadSums(const SampleCounts &counts) {
   mayMove = mayMove && counts.least == counts.most;
   forEachInParallel(unsigned(devices.size()), devices.size(), [&](std::size_t i) {
     Megakernel &backend = on(i);
     backend.keepSums(*sums, stripes.of(i));
-    backend.uploadSums();
+    backend.uploadSums(counts);
   });
 }
 
@@ -153,8 +152,8 @@ void SeveralDevices::moveStripes() {
     on(move.to).uploadRows(move.rows);
   }
   if (!moves.empty())
-    for (std::size_t i = 0; i < devices.size(); ++i)
-      on(i).keepRows(stripes.of(i));
+    forEachInParallel(unsigned(devices.size()), devices.size(),
+                      [&](std::size_t i) { on(i).keepRows(stripes.of(i)); });
 }
 
 /// Adds what a device has rendered and met.

@@ -62,7 +62,7 @@ private:
   void begin() override;
   void run(Watch &watch) override;
   RenderStatistics finish() override { return met; }
-  void uploadSums() override;
+  void uploadSums(const SampleCounts &counts) override;
   void fetchSums() override;
 
   Megakernel &on(std::size_t i);

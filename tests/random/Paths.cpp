@@ -26,9 +26,10 @@ struct Path {
   bool checked;    // indices out of range are defined
   bool forTracing; // redundant for programs that do not trace
   Compile compile;
-  bool isAsked = false;   // only by name, for it takes long
-  bool renders = false;   // whole pictures, and no single samples
-  bool isPrinted = false; // and runs only if there is a compiler
+  bool isAsked = false;      // only by name, for it takes long
+  bool renders = false;      // whole pictures, and no single samples
+  bool isPrinted = false;    // and runs only if there is a compiler
+  bool mixesSamples = false; // runs many samples at a time, step by step
 };
 
 Compile compileWith(const CompileOptions &options) {
@@ -58,10 +59,11 @@ Compile structuredJit() {
 }
 
 /// The GPU's whole program, traversal included.
-Compile megakernel(unsigned optimization) {
+Compile megakernel(unsigned optimization, Organisation organisation = Organisation::Megakernel) {
   CompileOptions options;
   options.optimization = optimization;
   options.target = Target::HostMegakernel;
+  options.organisation = organisation;
   return compileWith(options);
 }
 
@@ -88,6 +90,10 @@ const std::vector<Path> &allPaths() {
       {"jit-O2-split-unchecked", false, true, jit(2, false, split)},
       {"megakernel-O0", true, false, megakernel(0), /*isAsked=*/true, /*renders=*/true},
       {"megakernel-O2", true, false, megakernel(2), /*isAsked=*/true, /*renders=*/true},
+      {"wavefront-O1", true, false, megakernel(1, Organisation::Wavefront), /*isAsked=*/true,
+       /*renders=*/true, /*isPrinted=*/false, /*mixesSamples=*/true},
+      {"persistent-O1", true, false, megakernel(1, Organisation::Persistent), /*isAsked=*/true,
+       /*renders=*/true, /*isPrinted=*/false, /*mixesSamples=*/true},
       {"cpp-recurse", true, false, printedCpp(true, recurse), /*isAsked=*/true, /*renders=*/false,
        /*isPrinted=*/true},
       {"cpp-recurse-unchecked", false, false, printedCpp(false, recurse), /*isAsked=*/true,
@@ -98,11 +104,14 @@ const std::vector<Path> &allPaths() {
   return paths;
 }
 
-/// The paths on which programs of this kind are run, the first one first.
-std::vector<const Path *> choosePaths(const PathOptions &options, bool needsChecks, bool traces) {
+/// The paths on which programs of this kind are run, the first one first. A ray generation of the
+/// program's own reads output buffers in which other samples have written.
+std::vector<const Path *> choosePaths(const PathOptions &options, bool needsChecks, bool traces,
+                                      bool generates) {
   std::vector<const Path *> possible;
   for (const Path &path : allPaths())
-    if ((!needsChecks || path.checked) && (traces || !path.forTracing))
+    if ((!needsChecks || path.checked) && (traces || !path.forTracing) &&
+        !(generates && path.mixesSamples))
       possible.push_back(&path);
   const Path *farthest = *std::find_if(possible.rbegin(), possible.rend(),
                                        [](const Path *path) { return !path->isAsked; });
@@ -317,7 +326,8 @@ std::vector<Finding> Comparison::run() {
       std::any_of(programs.begin(), programs.end(),
                   [](const Program *program) { return program->raises || !program->inRange; }),
       std::any_of(programs.begin(), programs.end(),
-                  [](const Program *program) { return program->traces; }));
+                  [](const Program *program) { return program->traces; }),
+      generates(programs.front()->seed));
   try {
     runReference(paths, all);
     for (std::size_t i = 1; i != paths.size() && samples.size() == all.size(); ++i)
@@ -339,7 +349,8 @@ std::vector<std::string> pathNames() {
 
 std::vector<std::string> pathsOf(std::uint32_t seed, const PathOptions &options) {
   std::vector<std::string> names;
-  for (const Path *path : choosePaths(options, raises(seed) || !isInRange(seed), hasTraces(seed)))
+  for (const Path *path :
+       choosePaths(options, raises(seed) || !isInRange(seed), hasTraces(seed), generates(seed)))
     names.emplace_back(path->name);
   return names;
 }

@@ -2,6 +2,7 @@
 
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
+#include "support/Parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,9 +79,10 @@ SampleCounts countSamples(const PixelSums &sums) {
   return counts;
 }
 
-void resolve(const PixelSums &sums, float withoutSample, Image &picture) {
+void resolve(const PixelSums &sums, float withoutSample, Image &picture, unsigned threads) {
+  constexpr std::size_t atOnce = 4096;
   const std::uint32_t components = picture.channels, halves = sums.halves();
-  for (std::size_t pixel = 0; pixel < sums.pixels(); ++pixel)
+  forEachInParallel(threads, sums.pixels(), atOnce, [&](std::size_t pixel) {
     for (std::uint32_t c = 0; c < components; ++c) {
       double means = 0;
       std::uint32_t count = 0;
@@ -93,6 +95,7 @@ void resolve(const PixelSums &sums, float withoutSample, Image &picture) {
                                                : sums.taken[pixel] ? withoutSample
                                                                    : 0.0f;
     }
+  });
 }
 
 double relativeError(const PixelSums &sums, std::uint32_t components) {

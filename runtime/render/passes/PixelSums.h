@@ -55,6 +55,20 @@ void forEachList(Visit visit, Sums &...sums) {
   visit(sums.closed...);
 }
 
+/// Calls visit(elements, those of `copy`, bytes) for `count` pixels from `first` on of each list
+/// that there is. `copy` may be in the memory of a device.
+template <typename Visit, typename Sums>
+void forEachPart(Visit visit, Sums &sums, const RtslPixelSums &copy, std::size_t first,
+                 std::size_t count) {
+  const auto ofList = [&](auto &values, auto *there) {
+    const std::size_t ofPixel = values.size() / sums.pixels();
+    const std::size_t from = first * ofPixel;
+    if (ofPixel > 0)
+      visit(values.data() + from, there + from, count * ofPixel * sizeof values[0]);
+  };
+  forEachList(ofList, sums, copy);
+}
+
 /// How many samples have been taken.
 struct SampleCounts {
   std::uint64_t samples = 0, notFinite = 0, pixelsWithoutSample = 0;
@@ -67,8 +81,8 @@ SampleCounts countSamples(const PixelSums &sums);
 
 /// Writes the means of the pixels to a picture of the same size: black where there is no sample,
 /// `withoutSample` where none was finite. The mean of two halves is that of their means, so that
-/// it does not depend on which one has more samples.
-void resolve(const PixelSums &sums, float withoutSample, Image &picture);
+/// it does not depend on which one has more samples. On so many threads; 0: one per core.
+void resolve(const PixelSums &sums, float withoutSample, Image &picture, unsigned threads);
 
 /// The estimate of PassState::error. Infinite if no pixel has two samples; 0 for a black picture
 /// without variance.

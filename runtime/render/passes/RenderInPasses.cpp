@@ -184,7 +184,7 @@ void Backend::measure(const PassOptions &passes, PartialRendering &rendering) {
     return;
   }
   rendering.state.error = closeHalves(rendering.sums, windowOf(options).width(), passes.error);
-  uploadSums();
+  uploadSums(countSamples(rendering.sums));
 }
 
 void Backend::runPasses(const PassOptions &passes,
@@ -196,7 +196,7 @@ void Backend::runPasses(const PassOptions &passes,
   const double secondsBefore = state.seconds;
   const Clock::time_point start = Clock::now();
   Clock::time_point shown = start, saved = start;
-  uploadSums();
+  uploadSums(before);
   if (triesWhole(passes, rendering)) {
     if (tryWhole(passes, rendering))
       state.samplesPerPixel = next = options.samplesPerPixel;
@@ -227,7 +227,7 @@ void Backend::runPasses(const PassOptions &passes,
       if (progress)
         progress(state);
       if (isShown) {
-        resolve(rendering.sums, options.withoutSample, picture);
+        resolve(rendering.sums, options.withoutSample, picture, options.threads);
         passes.picture(picture);
         shown = Clock::now();
       }
@@ -262,7 +262,7 @@ Image Backend::renderInPasses(const PassOptions &passes,
   }
   sums = nullptr;
   const double processor = processorSeconds() - processorStart;
-  resolve(rendering.sums, options.withoutSample, picture);
+  resolve(rendering.sums, options.withoutSample, picture, options.threads);
 
   RenderStatistics said = rendering.met;
   const SampleCounts counts = countSamples(rendering.sums);

@@ -7,9 +7,11 @@
 #include "runtime/device/traverse/Traverse.h"
 #include "runtime/program/ProgramHost.h"
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <map>
 
 namespace rtsl::random {
 
@@ -22,28 +24,31 @@ static std::uint32_t hashOf(const runtime::PrintFormat &format) {
 
 } // namespace rtsl::random
 
-/// All that was printed, as one number.
-static std::uint32_t printed = 0;
+/// All that each sample printed, as one number, by the sample. Some paths run many at a time.
+static std::map<std::array<std::uint32_t, 3>, std::uint32_t> printed;
 // of the program that runs, each as a number that every path gives it
 static std::vector<std::uint32_t> formats;
 static std::uint32_t raysThatHit = 0;
 
-static void note(std::uint32_t format, const std::uint32_t *words, std::size_t count) {
-  auto add = [](std::uint32_t word) { printed = (printed ^ word) * 16777619u ^ printed >> 15; };
+static void note(const RtslState &state, std::uint32_t format, const std::uint32_t *words,
+                 std::size_t count) {
+  const RtslEvents events = state.events ? *state.events : RtslEvents{};
+  std::uint32_t &sum = printed[{events.x, events.y, events.sample}];
+  auto add = [&](std::uint32_t word) { sum = (sum ^ word) * 16777619u ^ sum >> 15; };
   add(format);
   for (std::size_t i = 0; i != count; ++i)
     add(words[i]);
 }
 
-extern "C" void rtsl_print(RtslState *, std::uint32_t format, const std::uint32_t *words,
+extern "C" void rtsl_print(RtslState *state, std::uint32_t format, const std::uint32_t *words,
                            std::uint32_t count) {
-  note(formats.at(format), words, count);
+  note(*state, formats.at(format), words, count);
 }
 
 namespace rtsl::runtime {
 /// `print` of shaders in C++, which have no numbers for their formats.
-void print(RtslState *, const PrintFormat &format, const std::vector<std::uint32_t> &words) {
-  note(random::hashOf(format), words.data(), words.size());
+void print(RtslState *state, const PrintFormat &format, const std::vector<std::uint32_t> &words) {
+  note(*state, random::hashOf(format), words.data(), words.size());
 }
 } // namespace rtsl::runtime
 
@@ -84,14 +89,18 @@ void rtsl::random::checkStack() {
 namespace rtsl::random {
 
 void beginRun(const std::vector<runtime::PrintFormat> &prints) {
-  printed = raysThatHit = 0;
+  printed.clear();
+  raysThatHit = 0;
   formats.clear();
   for (const runtime::PrintFormat &format : prints)
     formats.push_back(hashOf(format));
 }
 
 std::uint32_t hashOfPrinted() {
-  return printed;
+  std::uint32_t sum = 0;
+  for (const auto &[sample, one] : printed)
+    sum = mix(mix(sum, mix(sample[0], sample[1])), mix(sample[2], one));
+  return sum;
 }
 
 bool hasRayThatHit() {

@@ -8,12 +8,59 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 
 using namespace rtsl::runtime;
 using namespace rtsl::test;
 using rtsl::Error;
 
 namespace {
+
+/// How many pixels' sums are set to 0 on devices, and copied there and back.
+struct Copies {
+  std::atomic<std::size_t> cleared{0}, there{0}, back{0};
+};
+
+/// A device whose sums are in memory of its own, which has arbitrary content at first.
+class WithOwnSums final : public HostMegakernel {
+public:
+  WithOwnSums(const RenderOptions &options, Copies &copies)
+      : HostMegakernel(codeOf(paint), emptyScene(), options), copies(copies) {}
+
+private:
+  RtslPixelSums placeSums(PixelSums &sums) override {
+    if (own.isEmpty()) {
+      own = sums;
+      const auto spoil = [](auto &list) { list.assign(list.size(), 77); };
+      rtsl::runtime::forEachList(spoil, own);
+    }
+    return own.pointers();
+  }
+  void clearSums(const PixelSums &sums, std::size_t first, std::size_t count) override {
+    const auto clear = [](const void *, void *there, std::size_t bytes) {
+      std::memset(there, 0, bytes);
+    };
+    rtsl::runtime::forEachPart(clear, sums, own.pointers(), first, count);
+    copies.cleared += count;
+  }
+  void uploadSums(const PixelSums &sums, std::size_t first, std::size_t count) override {
+    const auto upload = [](const void *here, void *there, std::size_t bytes) {
+      std::memcpy(there, here, bytes);
+    };
+    rtsl::runtime::forEachPart(upload, sums, own.pointers(), first, count);
+    copies.there += count;
+  }
+  void fetchSums(PixelSums &sums, std::size_t first, std::size_t count) override {
+    const auto fetch = [](void *here, const void *there, std::size_t bytes) {
+      std::memcpy(here, there, bytes);
+    };
+    rtsl::runtime::forEachPart(fetch, sums, own.pointers(), first, count);
+    copies.back += count;
+  }
+
+  PixelSums own;
+  Copies &copies;
+};
 
 SeveralDevices team(std::size_t devices, const RenderOptions &options,
                     void (*runLane)(const RtslJob *, std::uint32_t) = paint) {
@@ -23,6 +70,11 @@ SeveralDevices team(std::size_t devices, const RenderOptions &options,
         return std::make_unique<HostMegakernel>(codeOf(runLane), emptyScene(), options);
       },
       options);
+}
+
+SeveralDevices teamWithOwnSums(const RenderOptions &options, Copies &copies) {
+  return SeveralDevices(
+      3, [&](std::size_t) { return std::make_unique<WithOwnSums>(options, copies); }, options);
 }
 
 Image onOne(const RenderOptions &options) {
@@ -37,20 +89,6 @@ void paintInfinities(const RtslJob *job, std::uint32_t lane) {
       for (std::uint32_t i = 0; i < job->sampleCount; i += 2)
         job->samples[3 * (std::uint64_t(place) * job->sampleCount + i)] = 1e30f * 1e30f;
 }
-
-/// Counts the pixels whose sums a device with memory of its own would copy.
-class CopyCounter final : public HostMegakernel {
-public:
-  CopyCounter(const RenderOptions &options, std::atomic<std::size_t> &there,
-              std::atomic<std::size_t> &back)
-      : HostMegakernel(codeOf(paint), emptyScene(), options), there(there), back(back) {}
-
-private:
-  void uploadSums(const PixelSums &, std::size_t, std::size_t count) override { there += count; }
-  void fetchSums(PixelSums &, std::size_t, std::size_t count) override { back += count; }
-
-  std::atomic<std::size_t> &there, &back;
-};
 
 } // namespace
 
@@ -136,20 +174,35 @@ TEST(SeveralDevices, KeepTheSumsBetweenPasses) {
   options.height = 37;
   options.samplesPerPixel = 33;
   options.threads = 1;
-  std::atomic<std::size_t> there{0}, back{0};
-  SeveralDevices several(
-      3, [&](std::size_t) { return std::make_unique<CopyCounter>(options, there, back); }, options);
+  Copies copies;
+  SeveralDevices several = teamWithOwnSums(options, copies);
   PassOptions passes;
   passes.checkpoint = [](const PartialRendering &, bool) {}; // one pass after the other
   unsigned count = 0;
   PartialRendering rendering;
-  several.renderInPasses(passes, [&](const PassState &) { ++count; }, rendering);
+  const auto notePass = [&](const PassState &) { ++count; };
+  EXPECT_EQ(several.renderInPasses(passes, notePass, rendering).pixels, onOne(options).pixels);
   EXPECT_GE(count, 3u);
-  // Once; some rows may move if the machine delays a device by longer than passes take.
-  EXPECT_GE(there, 20u * 37);
-  EXPECT_LT(there, 2u * 20 * 37);
-  EXPECT_GE(back, 20u * 37);
-  EXPECT_LT(back, 2u * 20 * 37);
+  EXPECT_EQ(copies.cleared, 20u * 37);
+  // Some rows may move if the machine delays a device by longer than passes take.
+  EXPECT_LT(copies.there, 20u * 37);
+  EXPECT_GE(copies.back, 20u * 37);
+  EXPECT_LT(copies.back, 2u * 20 * 37);
+}
+
+TEST(SeveralDevices, GoOnWithTheSumsOfOthers) {
+  RenderOptions options = small(), ofFirst = options;
+  options.samplesPerPixel = 33;
+  ofFirst.samplesPerPixel = 10;
+  PassOptions passes;
+  passes.checkpoint = [](const PartialRendering &, bool) {};
+  PartialRendering rendering;
+  Copies ofFirstTeam, ofSecond;
+  teamWithOwnSums(ofFirst, ofFirstTeam).renderInPasses(passes, nullptr, rendering);
+  const Image image = teamWithOwnSums(options, ofSecond).renderInPasses(passes, nullptr, rendering);
+  EXPECT_EQ(image.pixels, onOne(options).pixels);
+  EXPECT_EQ(ofSecond.cleared, 0u);
+  EXPECT_GE(ofSecond.there, windowOf(options).pixels());
 }
 
 /// A device that takes longer gives rows away between passes.
