@@ -304,7 +304,7 @@ void Generator::componentsAroundARay(Node &body, const std::vector<Variable> &st
     const Type *vec3 = types.vector(types.floatType, 3);
     NodePtr origin = converted(vec3, 1);
     NodePtr ray = makeNode(Role::Statement, "h = hash_color(h, trace($, $));", std::move(origin),
-                           converted(vec3, 1));
+                           direction(1));
     add(body, std::move(ray));
   }
   if (chance(30)) // reads one

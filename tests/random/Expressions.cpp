@@ -376,7 +376,7 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
     context.traces -= context.weight;
     const Type *vec3 = types.vector(types.floatType, 3);
     NodePtr origin = converted(vec3, chance(50) ? 0 : depth - 1);
-    return make(type, "trace($, $)", std::move(origin), converted(vec3, depth - 1));
+    return make(type, "trace($, $)", std::move(origin), direction(depth - 1));
   }
   if (type == types.color && context.illuminance && chance(20))
     return make(type, "ambient()");

@@ -200,6 +200,7 @@ private:
   NodePtr jump();
   NodePtr answer();
   NodePtr illuminance(unsigned depth);
+  NodePtr direction(unsigned depth);
   NodePtr payloadRay();
   NodePtr print();
   NodePtr hashed(const Variable &variable);

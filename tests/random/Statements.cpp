@@ -350,11 +350,21 @@ NodePtr Generator::illuminance(unsigned depth) {
                   std::move(angle), std::move(body));
 }
 
+/// A ray's direction: of any length, and one in ten far longer or shorter than others.
+NodePtr Generator::direction(unsigned depth) {
+  static const char *const lengths[] = {"1e-43", "1e-39", "1e-33", "1e13", "1e34", "3e38"};
+  const Type *vec3 = types.vector(types.floatType, 3);
+  NodePtr made = converted(vec3, depth);
+  if (!chance(10))
+    return made;
+  return make(vec3, "($ * $)", std::move(made), makeNode(Role::Fixed, lengths[below(6)]));
+}
+
 /// A ray that carries something. Most of them can meet something.
 NodePtr Generator::payloadRay() {
   context.traces -= context.weight;
   const Type *vec3 = types.vector(types.floatType, 3);
-  NodePtr origin = converted(vec3, 1), direction = converted(vec3, 1);
+  NodePtr origin = converted(vec3, 1), towards = direction(1);
   NodePtr tMin = chance(70) ? makeNode(Role::Fixed, "0.0") : converted(types.floatType, 1);
   NodePtr tMax = chance(70) ? makeNode(Role::Fixed, "64.0") : converted(types.floatType, 1);
   NodePtr payload = target(pick(payloads));
@@ -371,9 +381,8 @@ NodePtr Generator::payloadRay() {
       }
     }
   }
-  NodePtr ray =
-      makeNode(Role::Statement, "trace($, $, $, $, $" + more + ");", std::move(origin),
-               std::move(direction), std::move(tMin), std::move(tMax), std::move(payload));
+  NodePtr ray = makeNode(Role::Statement, "trace($, $, $, $, $" + more + ");", std::move(origin),
+                         std::move(towards), std::move(tMin), std::move(tMax), std::move(payload));
   for (NodePtr &value : values)
     ray->children.push_back(std::move(value));
   return ray;

@@ -103,14 +103,14 @@ inline float floatOf(unsigned bits) {
   return number;
 }
 
-constexpr float infinity = __builtin_inff();
+constexpr float infinity = __builtin_inff(), largestFloat = 0x1.fffffep+127f;
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 constexpr float roundingUnit = 0x1p-24f;
 
 /// Is it 0 or above, and neither infinite nor NaN? Compared with the largest float: a comparison
 /// with infinity becomes a test of the class of a float, which takes a CPU a dozen instructions.
 inline bool isFiniteFromZero(float x) {
-  return x >= 0 && x <= 0x1.fffffep+127f;
+  return x >= 0 && x <= largestFloat;
 }
 
 /// False for infinities and NaN.

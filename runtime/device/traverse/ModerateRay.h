@@ -30,6 +30,18 @@ inline float moderatingFactor(float largestComponent) {
   return powerOfTwo(-(exponent < -100 ? -100 : exponent > 100 ? 100 : exponent));
 }
 
+/// The end of a ray, or its nearest hit so far, where the direction is multiplied by `factor` and
+/// distances by its inverse. What would be beyond the largest float in the ray's own units has no
+/// distance there, and counts as beyond its end.
+inline float scaledEnd(float end, float factor, float inverse) {
+  return (factor > 1 ? minimum(end, largestFloat) : end) * inverse;
+}
+/// The same back.
+inline float scaledBackEnd(float end, float factor) {
+  end *= factor;
+  return factor > 1 && end == largestFloat ? infinity : end;
+}
+
 /// A ray that can be traced: all components finite, and a direction.
 inline bool isGoodRay(Vec3 origin, Vec3 direction, float epsilon, float distance) {
   return isFinite(origin) && isFinite(direction) && !isZero(direction) && epsilon == epsilon &&
@@ -60,7 +72,7 @@ searchFactor(Vec3 origin, Vec3 direction, float epsilon, float distance, bool is
   const Vec3 back = direction * factor * inverse;
   const bool isExact = back.x == direction.x && back.y == direction.y && back.z == direction.z &&
                        epsilon * inverse * factor == epsilon &&
-                       distance * inverse * factor == distance;
+                       scaledBackEnd(scaledEnd(distance, factor, inverse), factor) == distance;
   return isExact ? factor : 1;
 }
 
@@ -80,13 +92,13 @@ public:
     shrink = searchFactor(load(state.RayOrigin), load(state.RayDirection), state.Epsilon,
                           state.HitDistance, how & towardsPoint);
     if (shrink != 1 && shrink != 0)
-      scale(shrink, inverseOf(shrink));
+      begin();
   }
   ModerateSearch(const ModerateSearch &) = delete;
   ~ModerateSearch() {
     if (__builtin_expect(shrink == 1, 1) || shrink == 0)
       return;
-    scaleWithHit(inverseOf(shrink), shrink);
+    end();
     if (state.instance != RTSL_NO_HIT)
       state.nearest *= shrink;
   }
@@ -100,12 +112,12 @@ public:
   public:
     explicit AsSent(const ModerateSearch &search) : search(search) {
       if (__builtin_expect(search.shrink != 1, 0))
-        search.scaleWithHit(inverseOf(search.shrink), search.shrink);
+        search.end();
     }
     AsSent(const AsSent &) = delete;
     ~AsSent() {
       if (__builtin_expect(search.shrink != 1, 0))
-        search.scaleWithHit(search.shrink, inverseOf(search.shrink));
+        search.begin();
     }
 
   private:
@@ -127,10 +139,14 @@ private:
   /// 1 / factor, without a division: both are powers of two within 2^-100 and 2^100.
   static float inverseOf(float factor) { return floatOf((254u << 23) - bitsOf(factor)); }
 
-  [[gnu::always_inline]] void scaleWithHit(float direction, float distances) const {
-    scale(direction, distances);
-    if (state.instance != RTSL_NO_HIT && isBound(state.hitError))
-      state.hitError *= distances;
+  [[gnu::always_inline]] void begin() const {
+    scale(shrink, inverseOf(shrink));
+    state.HitDistance = scaledEnd(state.HitDistance, shrink, inverseOf(shrink));
+  }
+
+  [[gnu::always_inline]] void end() const {
+    scale(inverseOf(shrink), shrink);
+    state.HitDistance = scaledBackEnd(state.HitDistance, shrink);
   }
 
   [[gnu::always_inline]] void scale(float direction, float distances) const {
@@ -138,7 +154,8 @@ private:
     if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
       store(state.InverseRayDirection, load(state.InverseRayDirection) * distances);
     state.Epsilon *= distances;
-    state.HitDistance *= distances;
+    if (state.instance != RTSL_NO_HIT && isBound(state.hitError))
+      state.hitError *= distances;
   }
 
   RtslState &state;
@@ -180,10 +197,10 @@ private:
     if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
       store(state.InverseRayDirection, inverse * grow);
     state.Epsilon = epsilon * grow;
-    state.HitDistance = distance * grow;
+    state.HitDistance = scaledEnd(distance, shrink, grow);
     state.candidateNear *= grow;
     state.candidateFar *= grow;
-    state.nearest = nearest * grow;
+    state.nearest = scaledEnd(nearest, shrink, grow);
     state.foundDistance = -infinity; // unless a hit wins
   }
 
@@ -192,8 +209,8 @@ private:
     if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
       store(state.InverseRayDirection, inverse);
     state.Epsilon = epsilon;
-    state.HitDistance =
-        state.HitDistance < distance / shrink ? state.HitDistance * shrink : distance;
+    const bool hasHit = state.HitDistance < scaledEnd(distance, shrink, 1 / shrink);
+    state.HitDistance = hasHit ? state.HitDistance * shrink : distance;
     const bool hasWon = state.foundDistance != -infinity;
     state.foundDistance = hasWon ? state.foundDistance * shrink : found;
     state.nearest = hasWon ? state.nearest * shrink : nearest;

@@ -78,6 +78,9 @@ PRIMITIVES = [
 SEARCHED = ("HeightField", "DistanceField", "Julia", "Mandelbulb")
 
 
+FAR = struct.unpack("<I", struct.pack("<f", 0.25))[0]  # the background's red
+
+
 def mirrors(primitive):
     return primitive["class"] not in SEARCHED
 
@@ -131,6 +134,28 @@ class RayLengths(Case):
                     with self.subTest(transform=transform, power=power, way=way):
                         self.render("2.exr", more, 2.0**power, *way, transform=transform)
                         self.assert_same_bits("1.exr", "2.exr")
+
+    def test_where_distances_are_beyond_the_largest_float(self):
+        """What is farther away in units of the direction is not met, whatever is tested first."""
+        turned = [{"rotate": {"axis": [1, 2, 3], "angle": 40}}, {"scale": [1, 1.25, 0.75]}]
+        ways = ((), ("--keep=tree",), ("--traversal=device",), ("--target=host-megakernel",))
+        for transform in (None, turned):
+            met = []  # the share of colors that are not the background's
+            for power in (-124, -126, -128, -141):
+                for way in ways:
+                    with self.subTest(transform=transform, power=power, way=way):
+                        self.render(
+                            "2.exr", PRIMITIVES[:7], 2.0**power, *way, transform=transform
+                        )
+                        if not way:
+                            (self.folder / "2.exr").replace(self.folder / "1.exr")
+                            continue
+                        self.assert_same_bits("1.exr", "2.exr")
+                bits = channels((self.folder / "1.exr").read_bytes())["R"]
+                met.append(sum(red != FAR for red in bits) / len(bits))
+            self.assertGreater(met[0], met[1])
+            self.assertGreater(met[1], 0.02)
+            self.assertEqual(met[2:], [0, 0])
 
     def test_below_extreme_transforms(self):
         """Below a large scale every ray of the world is short, and below a small one long."""
