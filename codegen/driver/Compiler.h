@@ -77,6 +77,8 @@ struct CompileOptions {
   /// The organisation of programs for GPUs and for Target::HostMegakernel; for the latter, none
   /// means Megakernel.
   std::optional<Organisation> organisation;
+  /// Samples have a color that is wanted, and not only output buffers.
+  bool rendersPicture = true;
   /// Megakernels count the steps of warps (runtime/device/organisations/StepCounts.h).
   bool countsSteps = false;
   /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.

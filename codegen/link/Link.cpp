@@ -135,6 +135,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     return false;
   program.paths = linking::findPaths(context);
   program.raysLeaveHits = linking::raysLeaveHits(context);
+  program.samplesDiffer = linking::samplesDiffer(context);
   program.lightPasses = seen ? seen->lightPasses : linking::lightPasses(context);
   program.hasPrimitives = linking::hasPrimitives(context);
   program.raysReadLaunch = request.keep.has(Item::Outputs) || linking::raysReadLaunch(context);

@@ -90,7 +90,10 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
 void GpuRenderer::loadKernels(const GpuCode &code) {
   sumKernel = device.kernel("rtsl_sum", program);
   if (code.wave.states == 0) {
-    kernel = device.kernel("rtsl_render", program);
+    const RenderKernel kind = renderKernelOf(code.ptx);
+    kernel = device.kernel(kind.name, program);
+    if (kind.hasThreadOfSample)
+      threads.emplace(device, kernel, kind);
     return;
   }
   if (code.wave.isPersistent) {
@@ -133,6 +136,11 @@ std::uint64_t GpuRenderer::raysBytes(RtslJob &job) {
     figures.blocks = blocks->setBlocks(samplesInMemory());
     figures.laneBytes = blocks->slotBytes() + blocks->stackBytes();
     return blocks->stacksBytes(figures.blocks);
+  }
+  if (threads) {
+    figures.threadsPerBlock = threads->threadsPerBlock();
+    figures.blocks = threads->blocksAtOnce();
+    return 0; // their only ray is in registers
   }
   const Blocks chosen = chooseBlocks(device, kernel, pixelCount(), job.laneBytes);
   figures.threadsPerBlock = chosen.threads;
@@ -241,6 +249,8 @@ RtslPixelSums GpuRenderer::clearedSums(std::uint64_t pixels) {
 double GpuRenderer::runLanes(const RtslJob &job) {
   if (waves)
     return waves->run(job, raysAddress());
+  if (threads) // what prints has memory for the samples that run at once
+    return threads->run(job, options.prints ? samplesInFlight() : samplesInMemory());
   const void *arguments[] = {&job};
   return device.launch(kernel, figures.blocks, figures.threadsPerBlock, arguments);
 }

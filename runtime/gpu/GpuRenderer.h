@@ -3,6 +3,7 @@
 
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/gpu/GpuBlocks.h"
+#include "runtime/gpu/GpuThreads.h"
 #include "runtime/gpu/GpuWaves.h"
 #include "runtime/render/Megakernel.h"
 
@@ -79,8 +80,9 @@ private:
   CudaDevice &device;
   CudaDevice::Module program;
   CudaDevice::Kernel kernel, sumKernel;
-  std::optional<GpuWaves> waves;   // in place of `kernel`
-  std::optional<GpuBlocks> blocks; // of `kernel`, if it runs persistent blocks
+  std::optional<GpuWaves> waves;     // in place of `kernel`
+  std::optional<GpuBlocks> blocks;   // of `kernel`, if it runs persistent blocks
+  std::optional<GpuThreads> threads; // of `kernel`, if it has a thread for each sample
   GpuStatistics figures;
   std::vector<Address> memory;
   Address pixelAddress = 0;

@@ -190,6 +190,9 @@ struct Program {
   std::uint32_t needs = RTSL_NEEDS_ALL;
   Paths paths = Paths::Random;
   bool raysLeaveHits = true; // shaders of hits send rays; otherwise only `generate` does
+  /// `generate` sends rays in a loop, or such that end at any hit, so that some samples take far
+  /// longer than others.
+  bool samplesDiffer = true;
   bool lightPasses = true;   // lights shine through materials with `transmittance`
   bool hasPrimitives = true; // of classes, beside triangles
   /// Methods other than those of the camera and `generate` read LaunchIndex or LaunchSize.

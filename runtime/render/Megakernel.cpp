@@ -232,6 +232,7 @@ void Megakernel::runSlice(Watch &watch, const std::function<double(std::uint64_t
   bool hasSums = false;
   while (samplesOfSlice < all && !watch.isStopped()) {
     upload(statusAddress + offsetof(RtslStatus, stop), &isFalse, sizeof isFalse);
+    job.firstOfLaunch = std::uint32_t(samplesOfSlice);
     {
       const Watch::Poll poll(
           watch, launchSeconds(), [&] { return share(std::min(get(next), all)); },

@@ -110,14 +110,14 @@ void paint(const RtslJob &job, std::uint64_t sample) {
     job.samples[3 * sample + c] = float(number + 1) * color[c];
 }
 
-/// With so many bytes for rays.
-int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t rays) {
+/// What a kernel does that renders samples up to `last`, if its job is as it has to be, and there
+/// are so many bytes for rays.
+int render(const RtslJob &job, std::uint64_t last, std::uint64_t rays) {
   if (!isAllocated(job.launch, sizeof *job.launch))
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
   const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
-  bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
-  isFine &= isAllocated(job.lanes, rays);
+  bool isFine = isAllocated(job.lanes, rays);
   isFine &= isAllocated(job.samples, samples * launch.colorComponents * sizeof(float));
   isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
             job.status->nextSample < samples && job.status->stop == 0;
@@ -136,7 +136,7 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t 
   if (!isFine)
     return IllegalAddress;
   const std::uint64_t first = job.status->nextSample,
-                      end = !is("endless") ? samples
+                      end = !is("endless") ? last
                             : first == 0   ? samples / 2
                                            : first; // nothing more
   for (std::uint64_t i = first; i < end; ++i)
@@ -146,6 +146,23 @@ int render(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t 
   if (is("overflow"))
     job.status->problem = RTSL_PROBLEM_STACK;
   return Success;
+}
+
+/// Lanes that take samples until none is left.
+int renderByLanes(const RtslJob &job, unsigned blocks, unsigned threads, std::uint64_t rays) {
+  const bool isFine = blocks >= 1 && blocks <= multiprocessors * blocksAtOnce && threads % 32 == 0;
+  return isFine ? render(job, rtsl::device::samplesOfSlice(job), rays) : IllegalAddress;
+}
+
+/// A thread for each sample or pixel of the launch.
+int renderByThreads(const RtslJob &job, bool takePixels, unsigned blocks, unsigned threads) {
+  const std::uint64_t first = job.firstOfLaunch, end = job.endOfLaunch,
+                      ofThread = takePixels ? job.sampleCount : 1, count = (end - first) / ofThread;
+  bool isFine = isAllocated(job.status, sizeof *job.status) && job.status->nextSample == first;
+  isFine &= first < end && end <= rtsl::device::samplesOfSlice(job) && first % ofThread == 0 &&
+            end % ofThread == 0;
+  isFine &= threads % 32 == 0 && blocks == (count + threads - 1) / threads;
+  return isFine ? render(job, end, 0) : IllegalAddress;
 }
 
 /// The kernels of a wavefront, on the lengths of the queues alone: a sample takes one traversal.
@@ -200,7 +217,7 @@ int sampleWave(const RtslJob &job, std::uint32_t turn) {
 int persist(const RtslJob &job, unsigned blocks, unsigned threads) {
   if (job.slots == 0 || job.slots % 32 != 0 || job.slots * 16 > current->sharedBytes)
     return IllegalAddress;
-  return render(job, blocks, threads, std::uint64_t(blocks) * job.slots * job.laneBytes);
+  return renderByLanes(job, blocks, threads, std::uint64_t(blocks) * job.slots * job.laneBytes);
 }
 
 /// The kernel that adds the samples to the sums; it must follow the other one.
@@ -230,12 +247,13 @@ int sum(const RtslJob &job) {
 
 /// What the driver gives out as kernels: those of programs, and those that build trees.
 const char *const kernels[] = {
-    "rtsl_render",      "rtsl_sum",         "rtsl_wave_begin", "rtsl_wave_trace",
-    "rtsl_wave_sample", "rtsl_wave_state_", "rtsl_persistent",
+    "rtsl_render",        "rtsl_sum",         "rtsl_wave_begin", "rtsl_wave_trace",
+    "rtsl_wave_sample",   "rtsl_wave_state_", "rtsl_persistent", "rtsl_render_samples",
+    "rtsl_render_pixels",
 #define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
 #include "runtime/device/trees/Steps.def"
 };
-constexpr std::size_t programKernels = 7;
+constexpr std::size_t programKernels = 9;
 constexpr const char *entry = ".entry ";
 
 bool hasKernel(const char *code, const char *name) {
@@ -428,7 +446,8 @@ int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *op
       ++current->waveStates;
     const bool isWavefront = hasKernel(code, "rtsl_wave_begin(");
     const int organisations =
-        isWavefront + hasKernel(code, "rtsl_render(") + hasKernel(code, "rtsl_persistent(");
+        isWavefront + hasKernel(code, "rtsl_render(") + hasKernel(code, "rtsl_persistent(") +
+        hasKernel(code, "rtsl_render_samples(") + hasKernel(code, "rtsl_render_pixels(");
     return hasKernel(code, "rtsl_sum(") && organisations == 1 ? Success : InvalidValue;
   }
   for (std::size_t i = programKernels; i < std::size(kernels); ++i)
@@ -480,7 +499,9 @@ int cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned
   const RtslJob &job = *static_cast<const RtslJob *>(arguments[0]);
   const std::string name = kernels[kernel];
   if (name == "rtsl_render")
-    return render(job, blocks, threads, std::uint64_t(blocks) * threads * job.laneBytes);
+    return renderByLanes(job, blocks, threads, std::uint64_t(blocks) * threads * job.laneBytes);
+  if (name == "rtsl_render_samples" || name == "rtsl_render_pixels")
+    return renderByThreads(job, name == "rtsl_render_pixels" && job.mayTakePixels, blocks, threads);
   if (name == "rtsl_persistent")
     return sharedBytes == current->sharedBytes ? persist(job, blocks, threads) : InvalidValue;
   if (name == "rtsl_sum")

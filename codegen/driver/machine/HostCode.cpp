@@ -203,7 +203,7 @@ LlvmCode PartCompiler::rest() {
   code.organisation = options.organisation.value_or(Organisation::Megakernel);
   const bool keepsRecords = isMegakernel && code.organisation != Organisation::Megakernel;
   if (isMegakernel)
-    decideWhetherLanesTakePixels(code, program);
+    decideWhetherLanesTakePixels(code, options, program);
   if (keepsRecords)
     beginRecords(code, program);
   std::vector<std::string_view> linked = bitcodes;

@@ -144,9 +144,10 @@ static std::uint32_t samplesAtOnce(const llvm::Module &module) {
 /// A gain if what this saves is much of a sample, and if the lanes of a warp, which then have other
 /// pixels, still do the same. In programs with states, searching a tree takes the registers that
 /// the sums would need.
-void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program) {
+void decideWhetherLanesTakePixels(LlvmCode &code, const CompileOptions &options,
+                                  const runtime::Program &program) {
   const llvm::Module &module = *code.module;
-  code.takesPixels = code.organisation == Organisation::Megakernel &&
+  code.takesPixels = options.rendersPicture && code.organisation == Organisation::Megakernel &&
                      program.paths == runtime::Paths::Single && hasShortShaders(module) &&
                      (code.isWhole || !hasTree(module) || !statesSendRays(program, module));
   codegen::defineConstant(*code.module, "rtsl_takes_pixels", code.takesPixels);
@@ -174,6 +175,10 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
 
 /// What a program exports on a GPU.
 static std::vector<std::string> kernels(const LlvmCode &code) {
+  if (code.takesPixels && code.isWhole)
+    return {"rtsl_render_pixels", "rtsl_sum"};
+  if (code.hasThreadOfSample)
+    return {"rtsl_render_samples", "rtsl_sum"};
   if (code.isWhole)
     return {"rtsl_render_whole", "rtsl_sum"};
   if (code.organisation == Organisation::Megakernel)
@@ -191,9 +196,10 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
       translate(ir, forGpu ? gpuOptions(options) : machineOptions(options, /*hostCpu=*/false));
   defineFacts(code, options, program);
   code.isWhole = isWhole;
+  code.hasThreadOfSample = isWhole && !program.samplesDiffer;
   code.organisation = forGpu ? organisationFor(options, program, *code.module)
                              : options.organisation.value_or(Organisation::Megakernel);
-  decideWhetherLanesTakePixels(code, program);
+  decideWhetherLanesTakePixels(code, options, program);
   if (forGpu) {
     codegen::alignMembers(*code.module);
     defineSchedule(*code.module, options, program);
@@ -203,8 +209,8 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
     beginRecords(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
                  forGpu ? kernels(code) : hostEntries(code.organisation));
-  if (isWhole)
-    code.module->getFunction("rtsl_render_whole")->setName("rtsl_render");
+  if (llvm::Function *whole = code.module->getFunction("rtsl_render_whole"))
+    whole->setName("rtsl_render");
   if (keepsRecords)
     endRecords(code, program);
   code.options.isMegakernel = true;

@@ -46,9 +46,10 @@ struct LlvmCode {
   std::vector<std::string> kept; // functions that are kept although nothing calls them
   // Of a self-contained program:
   Organisation organisation = Organisation::Megakernel;
-  bool isWhole = false;        // it has no states
-  bool takesPixels = false;    // lanes render whole pixels where a job allows it
-  std::uint32_t registers = 0; // that a thread of a kernel may have, on a GPU
+  bool isWhole = false;           // it has no states
+  bool hasThreadOfSample = false; // a GPU has a thread for each sample, if not for each pixel
+  bool takesPixels = false;       // lanes render whole pixels where a job allows it
+  std::uint32_t registers = 0;    // that a thread of a kernel may have, on a GPU
 };
 
 /// Level 2 as LLVM IR, not linked with device code yet. With `numberPlaces`, numbers are checked,
@@ -63,7 +64,8 @@ bool hasList(const LlvmCode &code);
 void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
 
 /// Of a self-contained program whose organisation is known.
-void decideWhetherLanesTakePixels(LlvmCode &code, const runtime::Program &program);
+void decideWhetherLanesTakePixels(LlvmCode &code, const CompileOptions &options,
+                                  const runtime::Program &program);
 
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);

@@ -78,6 +78,17 @@ bool raysLeaveHits(const LinkContext &context) {
                    [](llvm::StringRef root) { return root != "rt_RayGeneration"; });
 }
 
+bool samplesDiffer(const LinkContext &context) {
+  Contains traces(context.symbols, ir::isTrace);
+  const auto isLoopOfRays = [&](mlir::Operation *op) {
+    return llvm::isa<ir::LoopOp>(op) && traces(op);
+  };
+  return llvm::any_of(context.rayTypes,
+                      [](const RayType &type) { return type.search & RTSL_FIRST_HIT; }) ||
+         llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(),
+                      [&](FuncOp function) { return ir::anyOperation(function, isLoopOfRays); });
+}
+
 bool hasPrimitives(const LinkContext &context) {
   return llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(), [&](FuncOp function) {
     return readerOf(context.symbols, function).root == "rt_Primitive";

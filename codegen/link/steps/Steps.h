@@ -193,6 +193,8 @@ bool derivesFrom(const typed::Class &info, llvm::StringRef base);
 runtime::Paths findPaths(const LinkContext &context);
 /// Whether any method but `generate` sends rays, also to lamps. Runs after slots are resolved.
 bool raysLeaveHits(const LinkContext &context);
+/// Whether rays are sent in loops, or end at any hit. Runs after ray types are resolved.
+bool samplesDiffer(const LinkContext &context);
 /// Whether any class of primitives is used. Runs after unreached methods are dropped.
 bool hasPrimitives(const LinkContext &context);
 /// Whether any method but `generate` and those of cameras reads LaunchIndex or LaunchSize. Runs

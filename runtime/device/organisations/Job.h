@@ -44,6 +44,8 @@ typedef struct RtslJob {
   uint32_t left, top, width, height;
   uint32_t samplesPerPixel;          // of all slices
   uint32_t firstSample, sampleCount; // of each pixel in this slice
+  // Of a launch that has a thread for each sample or pixel (WholeSamples.h): its samples.
+  uint32_t firstOfLaunch, endOfLaunch;
   // by sampleCount, and by the pixels of a band (runtime/device/organisations/Slice.h)
   RtslDivisor bySampleCount, byBand;
   float *samples;         // colorComponents for each sample of the slice; null: not wanted

@@ -63,10 +63,18 @@ __attribute__((nvptx_kernel)) void rtsl_render(const RtslJob job) {
 }
 /// The same for programs without states; it gets the name of the other one, which they lack.
 __attribute__((nvptx_kernel)) void rtsl_render_whole(const RtslJob job) {
-  if (device::lanesTakePixels(job))
-    device::runWholePixels(job);
+  device::runWholeSamples(job);
+}
+/// One thread per sample of the launch.
+__attribute__((nvptx_kernel)) void rtsl_render_samples(const RtslJob job) {
+  device::renderSampleOfThread(job, threadNumber());
+}
+/// One thread per pixel of the launch, where the job allows it, otherwise per sample.
+__attribute__((nvptx_kernel)) void rtsl_render_pixels(const RtslJob job) {
+  if (job.mayTakePixels)
+    device::renderPixelOfThread(job, threadNumber());
   else
-    device::runWholeSamples(job);
+    device::renderSampleOfThread(job, threadNumber());
 }
 /// The kernel that adds its samples to the sums afterwards, with any number of threads.
 __attribute__((nvptx_kernel)) void rtsl_sum(const RtslJob job) {

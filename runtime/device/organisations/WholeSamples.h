@@ -4,12 +4,16 @@
 // another one, so such a program is not split into states. A sample is one call of `generate`, in
 // which the traversal and the methods of hits are inlined, and the warps choose no steps.
 //
+// Where samples take about the same time, a GPU has a thread for each of them, or for each pixel;
+// otherwise warps take one sample after the other.
+//
 //===----------------------------------------------------------------------===//
 #pragma once
 
 #include "runtime/device/engines/Programs.h"
 #include "runtime/device/organisations/Job.h"
-#include "runtime/device/organisations/LanePixel.h"
+#include "runtime/device/organisations/SampleSums.h"
+#include "runtime/device/organisations/Slice.h"
 
 namespace rtsl::device {
 
@@ -18,23 +22,7 @@ inline void renderSample(const RtslJob &job, Pixel pixel, uint32_t number, float
   generate(*job.launch, job.left + pixel.x, job.top + pixel.y, number, color);
 }
 
-/// Renders pixels of the job until none is left. All lanes of a warp begin samples together.
-inline void runWholePixels(const RtslJob &job) {
-  __atomic_store_n(&job.status->hasSums, 1, __ATOMIC_RELAXED);
-  TakenSamples taken;
-  LanePixel own;
-  float color[RTSL_MAX_COLOR];
-  for (bool isLeft = true;;) {
-    goToNextSample(job, taken, own, isLeft, color);
-    isLeft = own.isThere();
-    if (!warp::lanesWhere(isLeft))
-      return;
-    if (isLeft)
-      renderSample(job, own.pixel, own.sample, color);
-  }
-}
-
-/// The same for samples.
+/// Renders samples of the job until none is left. All lanes of a warp begin samples together.
 inline void runWholeSamples(const RtslJob &job) {
   TakenSamples taken;
   for (bool isLeft = true;;) {
@@ -49,6 +37,51 @@ inline void runWholeSamples(const RtslJob &job) {
     renderSample(job, found.pixel, found.number, color);
     storeColor(job, sample, color);
   }
+}
+
+//===----------------------------------------------------------------------===//
+// Launches of a thread for each sample or pixel
+//===----------------------------------------------------------------------===//
+
+/// Called by each thread: the host finds in the status what the launch has done.
+inline void noteLaunch(const RtslJob &job, uint32_t thread, bool hasSums) {
+  if (thread != 0)
+    return;
+  job.status->nextSample = job.endOfLaunch;
+  job.status->hasSums = hasSums;
+}
+
+/// Renders sample `thread` of the launch.
+inline void renderSampleOfThread(const RtslJob &job, uint32_t thread) {
+  noteLaunch(job, thread, false);
+  const uint32_t sample = job.firstOfLaunch + thread;
+  PixelSample found;
+  if (sample >= job.endOfLaunch || !findSample(job, sample, found))
+    return;
+  float color[RTSL_MAX_COLOR];
+  renderSample(job, found.pixel, found.number, color);
+  storeColor(job, sample, color);
+}
+
+/// Renders pixel `thread` of the launch, whose samples are all of the slice: adds them in their
+/// order.
+inline void renderPixelOfThread(const RtslJob &job, uint32_t thread) {
+  noteLaunch(job, thread, true);
+  const uint32_t place = quotient(job.firstOfLaunch, job.bySampleCount) + thread;
+  if (place >= quotient(job.endOfLaunch, job.bySampleCount))
+    return;
+  const Pixel pixel = pixelAt(job, place);
+  const uint64_t number = pixel.number(job);
+  const uint32_t end = job.firstSample + job.sampleCount;
+  PixelSum sum = sumBefore(job, number, 0);
+  for (uint32_t sample = job.firstSample; sample != end; ++sample) {
+    float color[RTSL_MAX_COLOR];
+    renderSample(job, pixel, sample, color);
+    addSample(job, sum, number, sample, color);
+  }
+  putSum(job, sum, number, 0, end);
+  if (job.sums.colors)
+    job.sums.taken[number] = end;
 }
 
 } // namespace rtsl::device

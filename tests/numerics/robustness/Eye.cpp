@@ -179,7 +179,7 @@ private:
 class GpuEye : public Eye {
 public:
   explicit GpuEye(const std::string &ptx) : ptx(ptx) {
-    kernel = device.kernel("rtsl_render", device.compile(ptx.c_str()));
+    kernel = device.kernel(runtime::renderKernelOf(ptx).name, device.compile(ptx.c_str()));
   }
 
   void turnTo(const runtime::Scene &scene) override {
@@ -197,7 +197,7 @@ public:
     job.lanes = reinterpret_cast<std::uint8_t *>(laneMemory.of(warp * job.laneBytes));
     job.samples = reinterpret_cast<float *>(answerAddress + offsetof(Answer, pixel));
     device::setWindowSize(job, 1, 1);
-    job.samplesPerPixel = 1;
+    job.samplesPerPixel = job.endOfLaunch = 1;
     device::setSampleCount(job, 1);
   }
 

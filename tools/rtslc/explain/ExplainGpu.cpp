@@ -2,6 +2,7 @@
 #include "ExplainGpu.h"
 
 #include "KernelFigures.h"
+#include "runtime/gpu/GpuThreads.h"
 #include "runtime/package/NativeCode.h"
 #include "tools/rtslc/common/ScenePackage.h"
 
@@ -138,9 +139,10 @@ std::optional<std::string> explainGpu(const GpuRequest &what, Diagnostics &diagn
   whole.frameBytes = package.frameBytes;
   const runtime::NativeCode host(package.host);
   whole.laneBytes = host.entries().laneBytes(what.maxDepth, scene->launch().referenceChain);
-  whole.megakernel = rowsOf(package, whole.maxRegisters, options.gpu,
-                            {{"rtsl_render", "megakernel"}}, whole.assembler)
-                         .front();
+  whole.megakernel =
+      rowsOf(package, whole.maxRegisters, options.gpu,
+             {{runtime::renderKernelOf(package.ptx).name, "megakernel"}}, whole.assembler)
+          .front();
 
   options.organisation = Organisation::Wavefront;
   runtime::Package waves;

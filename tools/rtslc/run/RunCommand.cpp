@@ -196,6 +196,7 @@ private:
     const Clock::time_point start = Clock::now();
     CompileOptions compile = options.common.compile;
     compile.threads = options.threads;
+    compile.rendersPicture = !options.picture.empty();
     LinkRequest request = linkRequest(description);
     request.features |= features(options.prints, options.exceptions);
     keep(options.common.keep, request, compile);

@@ -69,6 +69,29 @@ TEST(Paths, RaysAtRandom) {
   EXPECT_EQ(program.paths, runtime::Paths::Random);
 }
 
+/// The program with another statement in place of the loop that sends rays.
+std::string sending(const std::string &statement, std::string source) {
+  const std::string loop = "for (int i = 0; i < count; ++i)\n"
+                           "      trace(vec3(0.0), vec3(rt_ScreenCoord, 1.0), 0.0, 1e30, seen);";
+  return source.replace(source.find(loop), loop.size(), statement);
+}
+
+TEST(Paths, SamplesDifferWhereRaysAreInLoops) {
+  const std::string source = meeting("seen.light = color(rt_HitDistance);");
+  const std::string ray = "seen = sendFrom(vec3(0.0), vec3(1.0), seen);";
+  EXPECT_TRUE(linked(source).samplesDiffer);
+  EXPECT_TRUE(linked(sending("while (luminance(seen.light) < 1.0) " + ray, source)).samplesDiffer);
+  EXPECT_FALSE(linked(sending(ray, source)).samplesDiffer);
+  EXPECT_FALSE(linked(sending("if (count > 1) " + ray, source)).samplesDiffer);
+}
+
+TEST(Paths, SamplesDifferWhereRaysEndAtAnyHit) {
+  std::string source = sending("seen = sendFrom(vec3(0.0), vec3(1.0), seen);", meeting(""));
+  EXPECT_FALSE(linked(source).samplesDiffer);
+  source.replace(source.find("closestHit"), 10, "anyHit");
+  EXPECT_TRUE(linked(source).samplesDiffer);
+}
+
 TEST(Paths, OnlyGenerateReadsTheLaunch) {
   std::string source = meeting("seen.light = color(rt_HitDistance);");
   source.replace(source.find("seen.light;\n"), 12, "seen.light * float(rt_LaunchSize.x);\n");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace {
@@ -46,6 +47,26 @@ struct Picture {
   }
 };
 
+/// The launches of a slice with `count` threads for this number of samples each. Threads run in any
+/// order, and the last block has some that have nothing to do.
+void launchThreads(Picture &picture, std::uint32_t count, std::uint32_t ofThread,
+                   void (*run)(const RtslJob &, std::uint32_t)) {
+  RtslJob &job = picture.job;
+  const std::uint32_t all = device::samplesOfSlice(job);
+  for (job.firstOfLaunch = 0; job.firstOfLaunch < all; job.firstOfLaunch = job.endOfLaunch) {
+    job.endOfLaunch = std::min(job.firstOfLaunch + count * ofThread, all);
+    for (std::uint32_t thread = count + 3; thread-- > 0;)
+      run(job, thread);
+    EXPECT_EQ(picture.status.nextSample, job.endOfLaunch);
+  }
+}
+void launchPixels(Picture &picture, std::uint32_t count = 20) {
+  launchThreads(picture, count, picture.job.sampleCount, device::renderPixelOfThread);
+}
+void launchSamples(Picture &picture, std::uint32_t count = 70) {
+  launchThreads(picture, count, 1, device::renderSampleOfThread);
+}
+
 /// By the definition: each sample alone, added in the order of their numbers.
 std::vector<float> expected() {
   Picture picture;
@@ -76,50 +97,68 @@ TEST(WholeSamples, SamplesAreStored) {
   EXPECT_NE(picture.means[0], picture.means[3]); // the fake program shows something
 }
 
-TEST(WholeSamples, PixelsAreAdded) {
-  Picture picture;
-  device::runWholePixels(picture.job);
-  EXPECT_TRUE(picture.status.hasSums);
-  EXPECT_EQ(picture.means, expected());
-  EXPECT_EQ(picture.samples[0], -1.0f); // nothing is stored
+TEST(WholeSamples, ThreadsOfSamplesStoreThem) {
+  for (const std::uint32_t count : {1u, 64u, 10000u}) {
+    Picture picture;
+    launchSamples(picture, count);
+    EXPECT_FALSE(picture.status.hasSums);
+    device::addSamples(picture.job, 0, 1);
+    EXPECT_EQ(picture.means, expected());
+  }
+}
+
+TEST(WholeSamples, ThreadsOfPixelsAddThem) {
+  for (const std::uint32_t count : {1u, 20u, 10000u}) {
+    Picture picture;
+    launchPixels(picture, count);
+    EXPECT_TRUE(picture.status.hasSums);
+    EXPECT_EQ(picture.means, expected());
+    EXPECT_EQ(picture.samples[0], -1.0f); // nothing is stored
+  }
 }
 
 TEST(WholeSamples, SlicesGoOn) {
   Picture picture;
   picture.keepSums();
   picture.setSlice(0, 2);
-  device::runWholePixels(picture.job);
+  launchPixels(picture);
   picture.setSlice(2, 3);
+  launchSamples(picture);
+  device::addSamples(picture.job, 0, 1);
+  picture.setSlice(3, 4);
   device::runWholeSamples(picture.job);
   device::addSamples(picture.job, 0, 1);
-  picture.setSlice(3, ofPixel);
-  device::runWholePixels(picture.job);
+  picture.setSlice(4, ofPixel);
+  launchPixels(picture);
   EXPECT_EQ(picture.means, expected());
   EXPECT_EQ(picture.taken, std::vector<std::uint32_t>(width * height, ofPixel));
 }
 
 TEST(WholeSamples, PixelsThatHaveASampleAreLeftOut) {
-  Picture picture;
-  picture.keepSums();
-  const std::vector<std::uint32_t> places = {5, 40, 90};
-  picture.setSlice(0, 2);
-  picture.job.places = places.data();
-  picture.job.placeCount = 3;
-  device::runWholePixels(picture.job);
-  picture.job.places = nullptr;
-  picture.setSlice(0, ofPixel);
-  picture.job.taken = picture.taken.data();
-  device::runWholeSamples(picture.job);
-  device::addSamples(picture.job, 0, 1);
-  EXPECT_EQ(picture.means, expected());
+  for (const bool haveThreads : {false, true}) {
+    Picture picture;
+    picture.keepSums();
+    const std::vector<std::uint32_t> places = {5, 40, 90};
+    picture.setSlice(0, 2);
+    picture.job.places = places.data();
+    picture.job.placeCount = 3;
+    launchPixels(picture, 2);
+    picture.job.places = nullptr;
+    picture.setSlice(0, ofPixel);
+    picture.job.taken = picture.taken.data();
+    if (haveThreads)
+      launchSamples(picture);
+    else
+      device::runWholeSamples(picture.job);
+    device::addSamples(picture.job, 0, 1);
+    EXPECT_EQ(picture.means, expected());
+  }
 }
 
 TEST(WholeSamples, NothingIsTakenAfterAStop) {
-  for (void (*run)(const RtslJob &) : {&device::runWholePixels, &device::runWholeSamples}) {
-    Picture picture;
-    picture.status.stop = 1;
-    run(picture.job);
-    EXPECT_EQ(picture.status.nextSample, 0u);
-    EXPECT_EQ(picture.means[0], -1.0f);
-  }
+  Picture picture;
+  picture.status.stop = 1;
+  device::runWholeSamples(picture.job);
+  EXPECT_EQ(picture.status.nextSample, 0u);
+  EXPECT_EQ(picture.means[0], -1.0f);
 }

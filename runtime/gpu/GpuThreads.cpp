@@ -1,0 +1,59 @@
+#include "runtime/gpu/GpuThreads.h"
+
+#include "runtime/device/organisations/Slice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rtsl::runtime {
+
+namespace {
+
+/// docs/gpu.md has the figures of other sizes.
+constexpr unsigned blockOfSamples = 64, blockOfPixels = 256;
+/// Of a launch; and its samples while their speed is not known.
+constexpr double seconds = 0.05;
+constexpr std::uint64_t firstSamples = 1 << 20;
+
+constexpr RenderKernel kernels[] = {
+    {"rtsl_render_samples", true, false}, {"rtsl_render_pixels", true, true}, {"rtsl_render"}};
+
+} // namespace
+
+RenderKernel renderKernelOf(const std::string &ptx) {
+  const auto isThere = [&](const RenderKernel &kernel) {
+    return ptx.find(fmt::format(".entry {}(", kernel.name)) != std::string::npos;
+  };
+  const RenderKernel *found = std::find_if(std::begin(kernels), std::end(kernels), isThere);
+  return found == std::end(kernels) ? kernels[2] : *found;
+}
+
+GpuThreads::GpuThreads(CudaDevice &device, const CudaDevice::Kernel &kernel,
+                       const RenderKernel &kind)
+    : device(device), kernel(kernel), kind(kind),
+      ofBlock(kind.hasThreadOfPixel ? blockOfPixels : blockOfSamples) {}
+
+unsigned GpuThreads::blocksAtOnce() const {
+  return unsigned(device.blocksAtOnce(kernel, ofBlock)) * unsigned(device.multiprocessors());
+}
+
+double GpuThreads::run(const RtslJob &job, std::uint64_t mostSamples) {
+  const std::uint64_t ofThread = kind.hasThreadOfPixel && job.mayTakePixels ? job.sampleCount : 1,
+                      atOnce = std::uint64_t(blocksAtOnce()) * ofBlock * ofThread,
+                      left = device::samplesOfSlice(job) - job.firstOfLaunch;
+  const double wanted = perSecond > 0 ? perSecond * seconds : double(firstSamples);
+  const auto samples = std::uint64_t(std::min(std::max(wanted, double(atOnce)), double(left)));
+  const std::uint64_t threads =
+      std::max<std::uint64_t>(std::min(samples, std::min(mostSamples, left)) / ofThread, 1);
+  RtslJob launch = job;
+  launch.endOfLaunch = std::uint32_t(job.firstOfLaunch + threads * ofThread);
+  const void *arguments[] = {&launch};
+  const double took = device.launch(kernel, unsigned((threads + ofBlock - 1) / ofBlock), ofBlock,
+                                    arguments);
+  if (took > 0)
+    perSecond = double(threads * ofThread) / took;
+  return took;
+}
+
+} // namespace rtsl::runtime
