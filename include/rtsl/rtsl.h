@@ -158,6 +158,9 @@ RtslObject rtslSceneAddRawTexels(RtslScene *scene, const void *texels, const Rts
 RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t width,
                               uint32_t height, uint32_t depth, uint32_t channels,
                               const RtslSampling *sampling);
+/* How many numbers of the image that this thread has added last were infinite or not a number:
+ * they are 0 in it. */
+uint64_t rtslImageNumbersNotFinite(void);
 
 /* Sets the `transform` from object to world space (12 numbers, four columns of three; null: none)
  * and the mask of the next instance that is added. Rays whose mask has no bit in common with it do

@@ -7,6 +7,7 @@
 #include "support/ErrorMessages.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 
 namespace runtime = rtsl::runtime;
@@ -32,6 +33,12 @@ runtime::ColorSpace colorSpaceOf(const RtslSampling &given) {
   return static_cast<runtime::ColorSpace>(given.colorSpace);
 }
 
+/// Of the last image of this thread.
+std::uint64_t &numbersNotFinite() {
+  static thread_local std::uint64_t numbers = 0;
+  return numbers;
+}
+
 RtslObject addImage(RtslScene *scene, runtime::Texels texels, const RtslSampling &given,
                     bool isVolume) {
   const char *className = isVolume ? "sampler3D" : "sampler2D";
@@ -43,7 +50,7 @@ RtslObject addImage(RtslScene *scene, runtime::Texels texels, const RtslSampling
                        [&](const auto &member) { return member.name == name && member.isRead; });
   };
   const runtime::Sampling sampling = samplingOf(given);
-  runtime::dropNotFinite(texels);
+  numbersNotFinite() = runtime::dropNotFinite(texels).count;
   if (sampling.filter >= runtime::Filter::Trilinear && isRead("levelStarts"))
     runtime::addLevels(texels);
   return scene->scene.addObject(
@@ -122,6 +129,10 @@ RtslObject rtslSceneAddTexels(RtslScene *scene, const float *numbers, uint32_t w
                               const RtslSampling *sampling) {
   const RtslTexelShape shape = {RTSL_FLOAT32, width, height, depth, channels};
   return rtslSceneAddRawTexels(scene, numbers, &shape, sampling);
+}
+
+uint64_t rtslImageNumbersNotFinite(void) {
+  return numbersNotFinite();
 }
 
 } // extern "C"

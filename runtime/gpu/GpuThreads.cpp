@@ -49,8 +49,8 @@ double GpuThreads::run(const RtslJob &job, std::uint64_t mostSamples) {
   RtslJob launch = job;
   launch.endOfLaunch = std::uint32_t(job.firstOfLaunch + threads * ofThread);
   const void *arguments[] = {&launch};
-  const double took = device.launch(kernel, unsigned((threads + ofBlock - 1) / ofBlock), ofBlock,
-                                    arguments);
+  const double took =
+      device.launch(kernel, unsigned((threads + ofBlock - 1) / ofBlock), ofBlock, arguments);
   if (took > 0)
     perSecond = double(threads * ofThread) / took;
   return took;

@@ -204,7 +204,7 @@ static void passes(void) {
 
 /* An image of numbers, and one of a file of `texels` columns. */
 static void images(const char *file, int texels) {
-  const float numbers[] = {0.5f, -2, 1e30f, 0};
+  const float numbers[] = {0.5f, -2, 1e30f, 0}, strange[] = {0, -INFINITY, 1, NAN};
   const uint32_t five[] = {5};
   RtslScene *scene = rtslSceneCreate(launches_shaders());
   RtslSampling sampling = rtslSamplingDefaults();
@@ -212,7 +212,11 @@ static void images(const char *file, int texels) {
   RtslObject pictures[2];
   int i, column;
   sampling.filter = RTSL_NEAREST;
+  need(rtslSceneAddTexels(scene, strange, 4, 1, 0, 1, &sampling) &&
+           rtslImageNumbersNotFinite() == 2,
+       "numbers of an image that are not finite");
   pictures[0] = rtslSceneAddTexels(scene, numbers, 4, 1, 0, 1, &sampling);
+  need(rtslImageNumbersNotFinite() == 0, "an image of finite numbers");
   pictures[1] = rtslSceneAddImage(scene, &file, 1, 0, NULL);
   settings.width = 5, settings.height = settings.samplesPerPixel = 1;
   for (i = 0; i < 2; ++i) {
