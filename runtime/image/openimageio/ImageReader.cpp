@@ -128,6 +128,17 @@ ImageClaim claimOf(const OIIO::ImageInput &input) {
   return claim;
 }
 
+/// OpenImageIO reads whole strips of a TIFF file into memory of its own, as large as the file says
+/// they are, however few rows the image has. Nothing if that is no more than some files need.
+std::string whyStripsTooLarge(const OIIO::ImageSpec &spec) {
+  constexpr double most = double(std::uint64_t(1) << 32);
+  const int rows = spec.get_int_attribute("tiff:RowsPerStrip");
+  if (rows <= spec.height || double(rows) * double(spec.scanline_bytes(true)) <= most)
+    return {};
+  return "its strips have " + std::to_string(rows) + " rows, and the image " +
+         std::to_string(spec.height);
+}
+
 /// Reads rows from the top, up to `end`, which follow those that have been read.
 bool readRows(OIIO::ImageInput &input, int begin, int end, int channels, OIIO::TypeDesc type,
               void *pixels) {
@@ -186,6 +197,8 @@ void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBy
     return fail(file, ImageFile::Problem::TooLarge, "");
   const ImageClaim claim = claimOf(*input);
   if (const std::string why = whyFileTooSmall(claim, fileBytes); !why.empty())
+    return fail(file, ImageFile::Problem::Bad, why);
+  if (const std::string why = whyStripsTooLarge(spec); !why.empty())
     return fail(file, ImageFile::Problem::Bad, why);
   if (memoryToRead(claim, pixelBytes) > static_cast<double>(freeBytes))
     return fail(file, ImageFile::Problem::NoMemory, "");

@@ -181,6 +181,24 @@ class Mistakes(ImageCase):
                 size = f"a file of {len(data)} bytes"
                 self.assert_message(messages, "E0905", size)
 
+    def test_strips_of_more_rows_than_the_image(self):
+        """They are common, as long as they do not ask for gigabytes."""
+        plain = tiff(2, 2, lambda x, y: (0.5, 0.5, 0.5), "f", 3)
+        data = zlib.compress(plain[200:])
+        size, packed = (struct.pack("<HHII", 279, 4, 1, n) for n in (48, len(data)))
+        deflated = [struct.pack("<HHII", 259, 3, 1, kind) for kind in (1, 8)]
+        small = plain[:200].replace(*deflated).replace(size, packed) + data
+        self.scene({"class": "Plain", "image": {"file": "image.tif"}})
+        for rows, is_fine in ((65535, True), (0xFFFFFFFF, True), (1157627907, False)):
+            tall = struct.pack("<HHII", 278, 4, 1, rows)
+            self.write("image.tif", small.replace(struct.pack("<HHII", 278, 4, 1, 2), tall))
+            if is_fine:
+                self.run_rtslc("check", "scene.json")
+                continue
+            messages = self.diagnose("check", "scene.json", prepare=bounded)
+            text = "cannot read `image.tif`: its strips have 1157627907 rows, and the image 2"
+            self.assert_message(messages, "E0905", text)
+
     def test_more_pixels_than_memory(self):
         """The file has them, in a hole."""
         width = 3 << 28
