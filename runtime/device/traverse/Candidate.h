@@ -8,6 +8,22 @@
 
 namespace rtsl::device {
 
+/// Methods of a primitive that run, or not, by what others have hit or what materials read.
+enum class PrimitiveMethod : uint32_t {
+  Intersect,
+  ComputeNormal,
+  ComputeTextureCoordinates,
+  ComputeDerivatives
+};
+
+/// The first dimension of the random numbers in such a method. Beyond those of any method that runs
+/// once per ray, and different for each primitive: whether the method runs must not show in other
+/// numbers.
+inline uint32_t dimensionOf(PrimitiveMethod method, uint32_t instance, uint32_t primitive) {
+  uint32_t mixed = (instance + 1) * 0x9e3779b9u ^ (primitive + 1) * 0x85ebca6bu;
+  return 0x80000000u | uint32_t(method) << 28 | mixed >> 4;
+}
+
 /// The bounds of an RTSL primitive, from `computeBounds`.
 inline void describeBounds(RtslState &state, const RtslInstance &instance, uint32_t primitive) {
   const RtslBox bounds = boundsOf(*state.launch, instance, primitive);

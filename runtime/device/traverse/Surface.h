@@ -137,6 +137,15 @@ inline void describeTriangle(RtslState &state, const RtslMesh &mesh, const Trian
   }
 }
 
+/// Runs a method that describes state's hit, with random numbers of its own.
+template <typename Run>
+void describeBy(PrimitiveMethod method, RtslState &state, Run run) {
+  const uint32_t dimension = state.dimension;
+  state.dimension = dimensionOf(method, state.instance, state.primitive);
+  run();
+  state.dimension = dimension;
+}
+
 /// The same for an RTSL primitive, using its methods. The ray of the state is in object space.
 template <typename Slots>
 void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t needs,
@@ -152,7 +161,8 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
   if (needs & RTSL_NEEDS_NORMALS) {
     setVector(state.GeometricNormal, 0, 0, 0);
     setVector(state.ShadingNormal, 0, 0, 0);
-    slots.rt_Primitive_computeNormal(&state, primitive);
+    describeBy(PrimitiveMethod::ComputeNormal, state,
+               [&] { slots.rt_Primitive_computeNormal(&state, primitive); });
     // A normal that the author does not write equals the other one.
     if (isZero(load(state.ShadingNormal)))
       store(state.ShadingNormal, load(state.GeometricNormal));
@@ -176,9 +186,11 @@ void describePrimitive(RtslState &state, const RtslInstance &instance, uint32_t 
     }
   }
   if (needs & RTSL_NEEDS_TEXTURE_COORDINATES)
-    slots.rt_Primitive_computeTextureCoordinates(&state, primitive);
+    describeBy(PrimitiveMethod::ComputeTextureCoordinates, state,
+               [&] { slots.rt_Primitive_computeTextureCoordinates(&state, primitive); });
   if (needs & RTSL_NEEDS_DERIVATIVES)
-    slots.rt_Primitive_computeDerivatives(&state, primitive);
+    describeBy(PrimitiveMethod::ComputeDerivatives, state,
+               [&] { slots.rt_Primitive_computeDerivatives(&state, primitive); });
 }
 
 /// Texture coordinates and derivatives that nothing computes.

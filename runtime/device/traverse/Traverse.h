@@ -166,13 +166,6 @@ bool testTriangle(RtslState &state, const Ray &ray, const RtslMesh &mesh, uint32
                       instance, triangle);
 }
 
-/// The first dimension of the random numbers in `intersect` of a primitive. Beyond those of any
-/// method that runs once per ray, and different for each primitive.
-inline uint32_t dimensionOf(uint32_t instance, uint32_t primitive) {
-  uint32_t mixed = (instance + 1) * 0x9e3779b9u ^ (primitive + 1) * 0x85ebca6bu;
-  return 0x80000000u | mixed >> 4;
-}
-
 /// An RTSL primitive whose box the ray enters, and the range in which its hits count.
 struct EnteredItem : RtslLeafItem {
   Range range;
@@ -209,7 +202,7 @@ bool testInRange(RtslState &state, const Ray &ray, const RtslInstance &instance,
   beginCandidate(state, item.instance, item.primitive);
   state.candidateNear = range.near;
   state.candidateFar = range.far;
-  state.dimension = dimensionOf(item.instance, item.primitive);
+  state.dimension = dimensionOf(PrimitiveMethod::Intersect, item.instance, item.primitive);
   {
     const InObjectSpace space(state, instance, ray);
     intersect(&state, instance.primitive);

@@ -275,6 +275,35 @@ class Explain(Case):
                 self.run_rtslc("render", scene, "-o", picture, *SMALL, *options, *kept)
             self.assert_same_bits("a.exr", "b.exr", f"{scene} {options}")
 
+    def test_methods_that_are_left_out_draw_no_numbers_of_others(self):
+        """A primitive draws numbers for coordinates, which one of the materials reads."""
+        shaders = (
+            "class Eye : rt_Camera { void generateRay() { rt_RayOrigin = vec3(0.0, 0.0, 2.0);"
+            " rt_RayDirection = vec3(rt_ScreenCoord - vec2(0.5), -1.0); } };\n"
+            "class Dust : rt_Primitive { void intersect() { hit(2.0 + rand()); }\n"
+            "void computeBounds() { rt_BoundMin = vec3(-4.0); rt_BoundMax = vec3(4.0); }\n"
+            "void computeNormal() { rt_GeometricNormal = vec3(rand(), rand(), 1.0); }\n"
+            "void computeTextureCoordinates() { rt_TextureUV = vec2(rand(), rand()); } };\n"
+            "class Plain : rt_Material { void shade() { rt_SampleColor = color(rand()); } };\n"
+            "class Reads : rt_Material { void shade() { rt_SampleColor = color(rand()); vec3 n ="
+            " rt_ShadingNormal; if (rt_TextureUV.x + n.x < 0.0) rt_SampleColor = color(9.0); } };\n"
+        )
+        self.write("dust.rtsl", shaders)
+        for material in ("Plain", "Reads"):
+            scene = {
+                "rtsl": 1,
+                "import": ["dust.rtsl"],
+                "camera": {"class": "Eye"},
+                "materials": {"dust": {"class": material}},
+                "objects": [{"primitive": {"class": "Dust"}, "material": "dust"}],
+                "render": {"size": [16, 12], "spp": 2},
+            }
+            self.write("dust.json", json.dumps(scene))
+            for kept in ([], ["--keep=methods"]):
+                picture = f"{material}{len(kept)}.exr"
+                self.run_rtslc("render", "dust.json", "-o", picture, "-q", *kept)
+                self.assert_same_bits("Plain0.exr", picture, (material, kept))
+
     def test_a_package_that_keeps_everything_renders_the_same(self):
         self.write_scene()
         pictures = []
