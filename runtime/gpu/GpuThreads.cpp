@@ -32,20 +32,17 @@ RenderKernel renderKernelOf(const std::string &ptx) {
 GpuThreads::GpuThreads(CudaDevice &device, const CudaDevice::Kernel &kernel,
                        const RenderKernel &kind)
     : device(device), kernel(kernel), kind(kind),
-      ofBlock(kind.hasThreadOfPixel ? blockOfPixels : blockOfSamples) {}
-
-unsigned GpuThreads::blocksAtOnce() const {
-  return unsigned(device.blocksAtOnce(kernel, ofBlock)) * unsigned(device.multiprocessors());
-}
+      ofBlock(kind.hasThreadOfPixel ? blockOfPixels : blockOfSamples),
+      atOnce(unsigned(device.blocksAtOnce(kernel, ofBlock)) * unsigned(device.multiprocessors())) {}
 
 double GpuThreads::run(const RtslJob &job, std::uint64_t mostSamples) {
   const std::uint64_t ofThread = kind.hasThreadOfPixel && job.mayTakePixels ? job.sampleCount : 1,
-                      atOnce = std::uint64_t(blocksAtOnce()) * ofBlock * ofThread,
+                      ofFullDevice = std::uint64_t(atOnce) * ofBlock * ofThread,
                       left = device::samplesOfSlice(job) - job.firstOfLaunch;
-  const double wanted = perSecond > 0 ? perSecond * seconds : double(firstSamples);
-  const auto samples = std::uint64_t(std::min(std::max(wanted, double(atOnce)), double(left)));
-  const std::uint64_t threads =
-      std::max<std::uint64_t>(std::min(samples, std::min(mostSamples, left)) / ofThread, 1);
+  const double timely = perSecond > 0 ? perSecond * seconds : double(firstSamples),
+               samples = std::min(std::max(timely, double(ofFullDevice)),
+                                  double(std::min(mostSamples, left)));
+  const std::uint64_t threads = std::max<std::uint64_t>(std::uint64_t(samples) / ofThread, 1);
   RtslJob launch = job;
   launch.endOfLaunch = std::uint32_t(job.firstOfLaunch + threads * ofThread);
   const void *arguments[] = {&launch};

@@ -35,8 +35,7 @@ public:
   GpuThreads(CudaDevice &device, const CudaDevice::Kernel &kernel, const RenderKernel &kind);
 
   unsigned threadsPerBlock() const { return ofBlock; }
-  /// The blocks that run at once.
-  unsigned blocksAtOnce() const;
+  unsigned blocksAtOnce() const { return atOnce; } // that run
 
   /// Renders samples of the slice from RtslJob::firstOfLaunch on, at most so many, and waits for
   /// them. Returns the seconds that this took.
@@ -46,7 +45,7 @@ private:
   CudaDevice &device;
   CudaDevice::Kernel kernel;
   RenderKernel kind;
-  unsigned ofBlock;
+  unsigned ofBlock, atOnce;
   double perSecond = 0; // samples of the last launch; 0: there was none
 };
 

@@ -85,8 +85,7 @@ bool samplesDiffer(const LinkContext &context) {
   };
   return llvm::any_of(context.rayTypes,
                       [](const RayType &type) { return type.search & RTSL_FIRST_HIT; }) ||
-         llvm::any_of(context.ir->getRegion(0).getOps<FuncOp>(),
-                      [&](FuncOp function) { return ir::anyOperation(function, isLoopOfRays); });
+         ir::anyOperation(context.ir, isLoopOfRays);
 }
 
 bool hasPrimitives(const LinkContext &context) {

@@ -43,11 +43,8 @@ inline void goToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel &o
     const uint64_t number = own.pixel.number(job);
     addSample(job, own.sum, number, own.sample++, color);
     needsPixel = own.sample == end;
-    if (needsPixel) {
-      putSum(job, own.sum, number, 0, end);
-      if (job.sums.colors)
-        job.sums.taken[number] = end;
-    }
+    if (needsPixel)
+      putPixel(job, own.sum, number, end);
   }
   if (!warp::lanesWhere(needsPixel))
     return;

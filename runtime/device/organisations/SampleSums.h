@@ -139,6 +139,13 @@ inline void putSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint
     writeMean(job, sum, pixel, taken);
 }
 
+/// The same of a pixel without halves, which has those samples from now on.
+inline void putPixel(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t taken) {
+  putSum(job, sum, pixel, 0, taken);
+  if (job.sums.colors)
+    job.sums.taken[pixel] = taken;
+}
+
 /// Adds samples `number` to `end` - 1 of the pixel, which are all in one half: four at a time where
 /// 16 bytes can be loaded at once. Each lane of a warp reads other cache lines, and a load takes as
 /// long as its number of lines, however few bytes it reads of them.

@@ -79,9 +79,7 @@ inline void renderPixelOfThread(const RtslJob &job, uint32_t thread) {
     renderSample(job, pixel, sample, color);
     addSample(job, sum, number, sample, color);
   }
-  putSum(job, sum, number, 0, end);
-  if (job.sums.colors)
-    job.sums.taken[number] = end;
+  putPixel(job, sum, number, end);
 }
 
 } // namespace rtsl::device
