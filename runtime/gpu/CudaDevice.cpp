@@ -180,6 +180,12 @@ CudaDevice::Kernel CudaDevice::kernel(const char *name, const Module &code) cons
   return kernel;
 }
 
+CudaDevice::Address CudaDevice::variable(const char *name, const Module &code) const {
+  Address address = 0;
+  driver->check(driver->moduleGetGlobal(&address, nullptr, code.handle, name), "cuModuleGetGlobal");
+  return address;
+}
+
 void CudaDevice::giveSharedMemory(Kernel &kernel, unsigned bytes) const {
   driver->check(
       driver->functionSetAttribute(kernel.function, cuda::MostDynamicSharedBytes, int(bytes)),

@@ -73,6 +73,8 @@ public:
     std::optional<int> spillStores, spillLoads;
   };
   Kernel kernel(const char *name, const Module &code) const;
+  /// Of a variable of the code.
+  Address variable(const char *name, const Module &code) const;
   /// Sets Kernel::sharedBytes, up to mostSharedBytes().
   void giveSharedMemory(Kernel &kernel, unsigned bytes) const;
   /// How many blocks of the kernel run at once on a multiprocessor.

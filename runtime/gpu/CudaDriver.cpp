@@ -55,6 +55,7 @@ void Driver::open() {
   find(moduleLoad, "cuModuleLoadDataEx");
   find(moduleUnload, "cuModuleUnload");
   find(moduleGetFunction, "cuModuleGetFunction");
+  find(moduleGetGlobal, "cuModuleGetGlobal_v2");
   find(functionGetAttribute, "cuFuncGetAttribute");
   find(functionSetAttribute, "cuFuncSetAttribute");
   find(occupancy, "cuOccupancyMaxActiveBlocksPerMultiprocessor");

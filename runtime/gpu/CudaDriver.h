@@ -82,6 +82,7 @@ public:
   int (*moduleLoad)(void **module, const void *image, unsigned count, int *options, void **values);
   int (*moduleUnload)(void *module);
   int (*moduleGetFunction)(void **function, void *module, const char *name);
+  int (*moduleGetGlobal)(Address *, std::size_t *bytes, void *module, const char *name);
   int (*functionGetAttribute)(int *, int attribute, void *function);
   int (*functionSetAttribute)(void *function, int attribute, int value);
   int (*occupancy)(int *blocks, void *function, int threads, std::size_t sharedBytes);

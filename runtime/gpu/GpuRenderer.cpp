@@ -79,6 +79,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
   figures.threadsPerBlock = threadsPerBlock;
   try {
     prepare();
+    device.copy(device.variable("rtsl_launch", program), launchAddress(), sizeof(RtslLaunch));
   } catch (...) {
     release();
     throw;

@@ -17,7 +17,7 @@ namespace rtsl::runtime::packageFile {
 
 inline constexpr char magic[8] = {'R', 'T', 'S', 'L', 'P', 'K', 'G', '\n'};
 /// Counts up with every change that older programs would misread.
-constexpr std::uint32_t formatVersion = 13;
+constexpr std::uint32_t formatVersion = 14;
 constexpr std::uint64_t alignment = 64;
 
 struct Header {

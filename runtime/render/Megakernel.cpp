@@ -277,7 +277,7 @@ RenderStatistics Megakernel::finish() {
   if (!sums)
     fetchPixels();
   for (const FlatScene::Output &output : outputs)
-    download(output.elements, reinterpret_cast<Address>(job.launch) + output.offset, output.bytes);
+    download(output.elements, launchAddress() + output.offset, output.bytes);
   return statistics;
 }
 

@@ -77,6 +77,7 @@ protected:
 
   /// Where the rays of all lanes are, after prepare().
   Address raysAddress() const { return reinterpret_cast<Address>(job.lanes); }
+  Address launchAddress() const { return reinterpret_cast<Address>(job.launch); }
   /// Floats of the pixels that are rendered.
   std::uint64_t pixelFloats() const { return windowPixels * colorComponents; }
   float *pixels = nullptr; // where finish() leaves them

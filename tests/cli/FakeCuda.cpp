@@ -56,6 +56,7 @@ struct Device {
   std::string code;                    // of all programs
   std::size_t waveStates = 0;          // of the last one
   std::uint32_t sharedBytes = 0;       // of a persistent block
+  RtslLaunch launch = {};              // the variable of the last one
   RtslStatus *endlessStatus = nullptr; // of a kernel that runs until it is stopped
 };
 Device devices[mostDevices];
@@ -117,7 +118,8 @@ int render(const RtslJob &job, std::uint64_t last, std::uint64_t rays) {
     return IllegalAddress;
   const RtslLaunch &launch = *job.launch;
   const std::uint64_t samples = rtsl::device::samplesOfSlice(job);
-  bool isFine = isAllocated(job.lanes, rays);
+  bool isFine = std::memcmp(&current->launch, &launch, sizeof launch) == 0;
+  isFine &= isAllocated(job.lanes, rays);
   isFine &= isAllocated(job.samples, samples * launch.colorComponents * sizeof(float));
   isFine &= isAllocated(job.status, sizeof *job.status) && launch.status == job.status &&
             job.status->nextSample < samples && job.status->stop == 0;
@@ -385,7 +387,9 @@ int cuMemcpyDtoH_v2(void *to, std::uint64_t from, std::size_t bytes) {
   return Success;
 }
 int cuMemcpyDtoD_v2(std::uint64_t to, std::uint64_t from, std::size_t bytes) {
-  if (!isAllocated(reinterpret_cast<void *>(to), bytes) ||
+  const bool isVariable = reinterpret_cast<void *>(to) == &current->launch;
+  if (!(isVariable ? bytes == sizeof current->launch
+                   : isAllocated(reinterpret_cast<void *>(to), bytes)) ||
       !isAllocated(reinterpret_cast<void *>(from), bytes))
     return InvalidValue;
   std::memcpy(reinterpret_cast<void *>(to), reinterpret_cast<void *>(from), bytes);
@@ -468,6 +472,13 @@ int cuModuleGetFunction(void **function, void *, const char *name) {
       return Success;
     }
   return InvalidValue;
+}
+int cuModuleGetGlobal_v2(std::uint64_t *address, std::size_t *bytes, void *, const char *name) {
+  if (std::strcmp(name, "rtsl_launch") != 0 ||
+      current->code.find(".const .align 8 .b8 rtsl_launch[") == std::string::npos)
+    return NotFound;
+  *address = reinterpret_cast<std::uint64_t>(&current->launch);
+  return Success;
 }
 int cuFuncGetAttribute(int *value, int, void *) {
   *value = 40;

@@ -173,7 +173,7 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
                                                          : "rtsl_least_by_exchange");
 }
 
-/// What a program exports on a GPU.
+/// The kernels of a program, and what the host asks them for.
 static std::vector<std::string> kernels(const LlvmCode &code) {
   if (code.takesPixels && code.isWhole)
     return {"rtsl_render_pixels", "rtsl_sum"};
@@ -188,6 +188,13 @@ static std::vector<std::string> kernels(const LlvmCode &code) {
             "rtsl_record_groups"};
   return {"rtsl_wave_begin", "rtsl_wave_sample",       "rtsl_wave_trace",   "rtsl_wave_state",
           "rtsl_sum",        "rtsl_slots_have_stacks", "rtsl_record_groups"};
+}
+
+/// What a program exports on a GPU.
+static std::vector<std::string> gpuEntries(const LlvmCode &code) {
+  std::vector<std::string> entries = kernels(code);
+  entries.push_back("rtsl_launch");
+  return entries;
 }
 
 static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
@@ -208,7 +215,7 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
   if (keepsRecords)
     beginRecords(code, program);
   linkDeviceCode(code, megakernelCode(forGpu),
-                 forGpu ? kernels(code) : hostEntries(code.organisation));
+                 forGpu ? gpuEntries(code) : hostEntries(code.organisation));
   if (llvm::Function *whole = code.module->getFunction("rtsl_render_whole"))
     whole->setName("rtsl_render");
   if (keepsRecords)

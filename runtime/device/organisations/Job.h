@@ -35,7 +35,7 @@ typedef struct RtslStepCount {
 /// samples of each pixel in a window of the launch. They are numbered pixel by pixel, in the order
 /// of runtime/device/organisations/Slice.h; there are less than 2^31. Lanes take them in order.
 typedef struct RtslJob {
-  const RtslLaunch *launch;
+  const RtslLaunch *launch; // code for jobs asks launchOf (JobLaunch.h) for it
   RtslStatus *status;
   uint8_t *lanes;     // memory for the rays of each lane, aligned to 16 bytes
   uint64_t laneBytes; // a multiple of 16; of a wavefront on a GPU, of the stack of a slot

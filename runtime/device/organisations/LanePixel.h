@@ -8,13 +8,14 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/organisations/Slice.h"
 
 namespace rtsl::device {
 
 inline bool lanesTakePixels(const RtslJob &job) {
-  return rtsl_takes_pixels(job.launch) && job.mayTakePixels;
+  return rtsl_takes_pixels(launchOf(job)) && job.mayTakePixels;
 }
 
 struct LanePixel {

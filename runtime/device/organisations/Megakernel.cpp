@@ -33,6 +33,8 @@ void rtsl_run_lane(const RtslJob *job, uint32_t lane) {
 }
 
 #ifdef __NVPTX__
+__attribute__((address_space(4))) RtslLaunch rtsl_launch;
+
 /// LLVM's intrinsic by its name: clang's built-in function can be used only in programs that are
 /// compiled for sm_80 or later.
 uint32_t leastOf(uint32_t number, uint32_t lanes) __asm__("llvm.nvvm.redux.sync.umin");

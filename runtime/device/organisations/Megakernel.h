@@ -10,6 +10,7 @@
 
 #include "runtime/device/engines/Machine.h"
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/LanePixel.h"
 #include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/organisations/Slice.h"
@@ -55,7 +56,7 @@ inline bool beginSample(const RtslJob &job, uint32_t sample, Rays &rays) {
   PixelSample found;
   if (!findSample(job, sample, found))
     return false;
-  startRays(rays, *job.launch, job.left + found.pixel.x, job.top + found.pixel.y, found.number);
+  startRays(rays, *launchOf(job), job.left + found.pixel.x, job.top + found.pixel.y, found.number);
   return true;
 }
 
@@ -89,7 +90,7 @@ inline void stepToNextSample(const RtslJob &job, TakenSamples &taken, LanePixel 
   if (!takesPart)
     return;
   if (own.isThere())
-    startRays(rays, *job.launch, job.left + own.pixel.x, job.top + own.pixel.y, own.sample);
+    startRays(rays, *launchOf(job), job.left + own.pixel.x, job.top + own.pixel.y, own.sample);
   else
     rays.next = Step::nothing;
 }
@@ -108,11 +109,11 @@ inline void runStates(const RtslJob &job, Rays &rays) {
 
 /// rtsl_run_lane.
 inline void runLane(const RtslJob &job, uint32_t number) {
-  if (!hasLaneBytes(job, laneBytes(job.launch->maxDepth, job.launch->referenceChain)))
+  if (!hasLaneBytes(job, laneBytes(launchOf(job)->maxDepth, launchOf(job)->referenceChain)))
     return;
   alignas(16) char local[localStackBytes];
   Rays rays;
-  rays.bottom = hasLocalStack(job.launch, job.launch->maxDepth, job.launch->referenceChain)
+  rays.bottom = hasLocalStack(launchOf(job), launchOf(job)->maxDepth, launchOf(job)->referenceChain)
                     ? local
                     : reinterpret_cast<char *>(job.lanes + number * job.laneBytes);
   TakenSamples taken;
@@ -124,7 +125,7 @@ inline void runLane(const RtslJob &job, uint32_t number) {
   int32_t choice = Step::nothing;
   rays.next = Step::sample;
   for (;;) {
-    choice = chooseStep(job.launch, rays.next, choice);
+    choice = chooseStep(launchOf(job), rays.next, choice);
     if (choice == Step::nothing)
       return;
     const bool takesPart = rays.next == choice;
@@ -140,7 +141,7 @@ inline void runLane(const RtslJob &job, uint32_t number) {
       else
         runState(rays, choice);
     }
-    if (rtsl_states_run_on(job.launch) && takesPart)
+    if (rtsl_states_run_on(launchOf(job)) && takesPart)
       runStates(job, rays);
   }
 }

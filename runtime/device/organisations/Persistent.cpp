@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/organisations/Persistent.h"
+#include "runtime/device/organisations/JobLaunch.h"
 
 #include "runtime/device/organisations/RunThisState.h"
 
@@ -45,11 +46,11 @@ extern __attribute__((address_space(3), aligned(16))) uint8_t rtsl_block_memory[
 
 /// One thread per lane; a block has job.slots slots.
 __attribute__((nvptx_kernel)) void rtsl_persistent(const RtslJob job) {
-  const RtslLaunch &launch = *job.launch;
+  const RtslLaunch &launch = *device::launchOf(job);
   if (!device::hasLaneBytes(job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return;
-  const device::BlockMemory size = {job.slots, rtsl_wave_steps(job.launch), rtsl_record_groups(),
-                                    job.laneBytes};
+  const device::BlockMemory size = {job.slots, rtsl_wave_steps(device::launchOf(job)),
+                                    rtsl_record_groups(), job.laneBytes};
   uint8_t *stacks =
       job.lanes + uint64_t(__nvvm_read_ptx_sreg_ctaid_x()) * job.slots * job.laneBytes;
   runBlock(job, device::Block(size, (uint8_t *)rtsl_block_memory, stacks),
@@ -76,7 +77,7 @@ uint64_t rtsl_block_bytes(uint32_t maxDepth, uint32_t referenceChain) {
 }
 
 void rtsl_run_block(const RtslJob *job, uint32_t number) {
-  const RtslLaunch &launch = *job->launch;
+  const RtslLaunch &launch = *device::launchOf(*job);
   const device::BlockMemory size = sizeOfBlock(launch.maxDepth, launch.referenceChain);
   if (!device::hasLaneBytes(*job, size.sharedBytes() + size.slots * size.stackBytes))
     return;

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/Slice.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
@@ -16,7 +17,7 @@ namespace rtsl::device {
 
 /// Stores a sample of the slice, if samples are wanted.
 inline void storeColor(const RtslJob &job, uint32_t sample, const float *color) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   if (job.samples)
     copyColor(job.samples + uint64_t(sample) * components, color, components);
 }
@@ -62,7 +63,7 @@ __attribute__((cold, noinline)) inline void leaveOut(RtslStatus &status, uint64_
 /// Adds sample `number` to its pixel.
 inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, uint32_t number,
                       const float *color) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   if (!isFiniteColor(color, components)) {
     leaveOut(*job.status, pixel, number);
     return;
@@ -83,7 +84,7 @@ inline void addSample(const RtslJob &job, PixelSum &sum, uint64_t pixel, uint32_
 
 /// The mean of the finite samples, black without any.
 inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t taken) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   float *mean = job.pixels + pixel * components;
   forEachComponent(components, [&](uint32_t i) {
     mean[i] = sum.counted > 1 ? float(sum.color[i] / double(sum.counted))
@@ -96,7 +97,7 @@ inline void writeMean(const RtslJob &job, const PixelSum &sum, uint64_t pixel, u
 
 /// The sums of the samples before the slice, of half `half`.
 inline PixelSum sumBefore(const RtslJob &job, uint64_t pixel, uint32_t half) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   const RtslPixelSums &sums = job.sums;
   const uint64_t at = pixel * halvesOf(sums) + half;
   PixelSum sum;
@@ -115,7 +116,7 @@ inline PixelSum sumBefore(const RtslJob &job, uint64_t pixel, uint32_t half) {
 }
 
 inline void storeSum(const RtslJob &job, const PixelSum &sum, uint64_t pixel, uint32_t half) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   const RtslPixelSums &sums = job.sums;
   const uint64_t at = pixel * halvesOf(sums) + half;
   double *colors = sums.colors + at * components;
@@ -151,7 +152,7 @@ inline void putPixel(const RtslJob &job, const PixelSum &sum, uint64_t pixel, ui
 /// long as its number of lines, however few bytes it reads of them.
 inline void addSamplesInOrder(const RtslJob &job, PixelSum &sum, uint64_t pixel, uint32_t number,
                               uint32_t end, const float *colors) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   constexpr uint32_t inGroup = 4, groupBytes = inGroup * sizeof(float);
   while (number < end) {
     if (end - number < inGroup || reinterpret_cast<uintptr_t>(colors) % groupBytes != 0) {
@@ -176,7 +177,7 @@ inline void addSamplesInOrder(const RtslJob &job, PixelSum &sum, uint64_t pixel,
 
 /// Adds the first `count` samples that the slice has of the pixel at `place`.
 inline void addSamplesOfPixel(const RtslJob &job, uint32_t place, uint32_t count) {
-  const uint32_t components = rtsl_color_components(job.launch);
+  const uint32_t components = rtsl_color_components(launchOf(job));
   const uint32_t halves = halvesOf(job.sums);
   const uint64_t pixel = pixelAt(job, place).number(job);
   const float *samples = job.samples + uint64_t(place) * job.sampleCount * components;

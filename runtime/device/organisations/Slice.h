@@ -11,6 +11,7 @@
 #pragma once
 
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Divisor.h"
 #include "runtime/device/ray/Warp.h"
@@ -103,7 +104,7 @@ struct TakenSamples {
 /// How many samples a warp takes next, after those up to `last`: one for each lane if few are left,
 /// so that all warps end at about the same time.
 inline uint32_t samplesAtOnce(const RtslJob &job, uint32_t last) {
-  const uint32_t most = rtsl_samples_at_once(job.launch);
+  const uint32_t most = rtsl_samples_at_once(launchOf(job));
   if (most == lanesOfWarp)
     return most;
   const uint32_t lanes = __nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x();

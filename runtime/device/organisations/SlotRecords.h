@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/LaneRecord.h"
 #include "runtime/device/organisations/Megakernel.h"
 
@@ -69,7 +70,7 @@ RTSL_INLINED int32_t runOnSlot(const RtslJob &job, const SlotRecords &records, u
   Rays &rays = flight.rays;
   rays.bottom = hasLevelInRecord() ? level : records.stack(slot);
   records.load(slot, flight);
-  rays.ray.state.launch = job.launch;
+  rays.ray.state.launch = launchOf(job);
   if (hasEvents(rays.ray.state))
     rays.ray.state.events = &rays.events;
   run(flight);

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/Schedule.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Warp.h"
@@ -21,7 +22,7 @@ inline uint32_t placeOfStep(int32_t step) {
 
 /// Counts a step. All lanes of the warp call together.
 inline void countStep(const RtslJob &job, int32_t step, bool takesPart) {
-  if (!rtsl_counts_steps(job.launch))
+  if (!rtsl_counts_steps(launchOf(job)))
     return;
   RtslStepCount &count = job.stepCounts[placeOfStep(step)];
 #ifdef __NVPTX__
@@ -36,7 +37,7 @@ inline void countStep(const RtslJob &job, int32_t step, bool takesPart) {
 }
 
 inline void countState(const RtslJob &job, int32_t state) {
-  if (!rtsl_counts_steps(job.launch))
+  if (!rtsl_counts_steps(launchOf(job)))
     return;
 #ifdef __NVPTX__
   const uint32_t lanes = __nvvm_match_any_sync_i32(__nvvm_activemask(), uint32_t(state));

@@ -6,6 +6,7 @@
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/organisations/Wavefront.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/RunThisState.h"
 
 using namespace rtsl;
@@ -38,8 +39,9 @@ uint32_t threadCount() {
 }
 
 device::Wave waveOf(const RtslJob &job) {
-  return device::Wave({job.slots, queuesOfWave(job.launch), rtsl_record_groups(), job.laneBytes},
-                      job.lanes);
+  return device::Wave(
+      {job.slots, queuesOfWave(device::launchOf(job)), rtsl_record_groups(), job.laneBytes},
+      job.lanes);
 }
 
 } // namespace
@@ -55,7 +57,7 @@ __attribute__((nvptx_kernel)) void rtsl_wave_trace(const RtslJob job, uint32_t t
 }
 
 __attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob job, uint32_t turn) {
-  const RtslLaunch &launch = *job.launch;
+  const RtslLaunch &launch = *device::launchOf(job);
   if (!device::hasLaneBytes(job, device::slotStackBytes(launch.maxDepth, launch.referenceChain)))
     return; // no sample begins, and the job is over
   device::sampleWave(job, waveOf(job), turn, threadNumber(), threadCount());
@@ -92,7 +94,7 @@ uint64_t rtsl_wave_bytes(uint32_t maxDepth, uint32_t referenceChain) {
 }
 
 void rtsl_run_wave(const RtslJob *job, uint32_t lane) {
-  const RtslLaunch &launch = *job->launch;
+  const RtslLaunch &launch = *device::launchOf(*job);
   const device::WaveMemory size = memoryOfThread(launch.maxDepth, launch.referenceChain);
   if (!device::hasLaneBytes(*job, size.bytes()))
     return;

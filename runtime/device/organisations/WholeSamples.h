@@ -12,6 +12,7 @@
 
 #include "runtime/device/engines/Programs.h"
 #include "runtime/device/organisations/Job.h"
+#include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/organisations/Slice.h"
 
@@ -19,7 +20,7 @@ namespace rtsl::device {
 
 /// The color of a sample of the job, whose number is that of its half.
 inline void renderSample(const RtslJob &job, Pixel pixel, uint32_t number, float *color) {
-  generate(*job.launch, job.left + pixel.x, job.top + pixel.y, number, color);
+  generate(*launchOf(job), job.left + pixel.x, job.top + pixel.y, number, color);
 }
 
 /// Renders samples of the job until none is left. All lanes of a warp begin samples together.
