@@ -12,6 +12,7 @@
 #include "codegen/emit/rewrites/gpu/Approximations.h"
 #include "codegen/emit/rewrites/gpu/Conversions.h"
 #include "codegen/emit/rewrites/gpu/DivideZeros.h"
+#include "codegen/emit/rewrites/gpu/GlobalPointers.h"
 
 #include "mlir/IR/BuiltinOps.h"
 #include "mlir/Target/LLVMIR/Dialect/Builtin/BuiltinToLLVMIRTranslation.h"
@@ -390,7 +391,7 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   if (machine.getTargetTriple().isNVPTX()) {
     // What a GPU computes in another way than LLVM expects, which would move a division after its
     // select, and knows nothing of instructions of PTX.
-    addLast<DivideZerosPass, ConversionsPass, ApproximationsPass>(builder);
+    addLast<DivideZerosPass, ConversionsPass, ApproximationsPass, GlobalPointersPass>(builder);
     keepStatesInLoop(callbacks);
   } else if (machine.getMCSubtargetInfo()->checkFeatures("+avx512vl")) { // masks for 128 bits
     addLast<SelectByMaskPass>(builder);

@@ -23,6 +23,16 @@ inline void store(float *p, Vec3 v) {
   p[2] = v.z;
 }
 
+/// The same vector. For the compiler of a GPU it depends on `on`: so what is computed of it in a
+/// branch within a loop stays there. In front of the loop it would be computed once, but wait in
+/// registers until the loop ends.
+inline Vec3 dependingOn([[maybe_unused]] float on, Vec3 v) {
+#ifdef __NVPTX__
+  asm("" : "+f"(v.x), "+f"(v.y), "+f"(v.z) : "f"(on));
+#endif
+  return v;
+}
+
 inline Vec3 operator+(Vec3 a, Vec3 b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -217,8 +217,9 @@ inline bool enterInstance(const RtslLaunch &launch, const TriangleRay &world, ui
   if (widened.near > limit || widened.far < epsilon)
     return false;
   const TransformAt transform(launch, instance, time);
-  const Vec3 origin = pointToObject(launch, transform, world.origin);
-  const Vec3 direction = vectorToObject(launch, transform, world.direction);
+  const Vec3 origin = pointToObject(launch, transform, dependingOn(range.near, world.origin));
+  const Vec3 direction =
+      vectorToObject(launch, transform, dependingOn(range.near, world.direction));
   if (!isFinite(origin) || !isFinite(direction) || isZero(direction))
     return false;
   static_cast<TriangleRay &>(entered) = makeTriangleRay(origin, direction);

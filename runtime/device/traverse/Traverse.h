@@ -106,11 +106,22 @@ static_assert(offsetof(RtslTreeItem, instance) == 36 && offsetof(RtslTreeItem, p
 struct TreeItem : RtslLeafItem {
   ItemWords stored;
 
-  bool hasVertices() const { return stored.hasVertices(); }
   TriangleVertices vertices() const {
     return {stored.vertex(0), stored.vertex(1), stored.vertex(2)};
   }
 };
+
+/// Has the item vertices? Known of all in a scene that has triangles alone, of meshes that do not
+/// move: in the tree of the world if no instance is entered, and in those of meshes.
+inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const InstanceRay &) {
+  const bool areKnown = !rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS);
+  return areKnown || item.stored.hasVertices();
+}
+inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const TriangleRay &) {
+  const bool areKnown = !rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS) &&
+                        !hasTransforms(launch);
+  return areKnown || item.stored.hasVertices();
+}
 
 /// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
 /// box, within rangeShare. False if the ray misses the box: then it does in every traversal.
@@ -268,7 +279,7 @@ bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Inters
 }
 template <typename Ray, typename Intersect>
 bool testItem(RtslState &state, const Ray &ray, const TreeItem &item, Intersect intersect) {
-  if (!item.hasVertices())
+  if (!hasVertices(*state.launch, item, ray))
     return testItem(state, ray, static_cast<const RtslLeafItem &>(item), intersect);
   return testTriangle(state, ray, item.vertices(), item.instance, item.primitive);
 }
@@ -282,7 +293,7 @@ bool testIfSeen(RtslState &state, const Ray &ray, const RtslLeafItem &item, cons
 template <typename Ray, typename Slots, typename Intersect>
 bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Slots &slots,
                 Intersect intersect) {
-  if (!item.hasVertices())
+  if (!hasVertices(*state.launch, item, ray))
     return testIfSeen(state, ray, static_cast<const RtslLeafItem &>(item), slots, intersect);
   return testTriangle(state, ray, item.vertices(), item.instance, item.primitive,
                       [&] { return isSeen(state, item, ray, slots); });

@@ -108,19 +108,14 @@ inline float scaledBy(float a, int exponent) {
 /// units of itself over the cosine. `depth` is the result if the ray is parallel to the plane.
 __attribute__((cold, pure, noinline)) inline float
 depthNearOrigin(const TriangleRay &ray, Vec3 v0, Vec3 v1, Vec3 v2, float scale, float depth) {
-  Vec3 o = alongRay(ray, ray.origin);
+  const Vec3 o = dependingOn(v0.x, alongRay(ray, ray.origin)),
+             shear = dependingOn(v0.x, {ray.sx, ray.sy, 0});
   const Vec3 a = alongRay(ray, v0), b = alongRay(ray, v1), c = alongRay(ray, v2);
-  float sx = ray.sx, sy = ray.sy;
-#ifdef __NVPTX__
-  // For LLVM they depend on the triangle. It would convert them to double where the search begins,
-  // for hits that are rare, and ten registers would hold them until it ends.
-  asm("" : "+f"(o.x), "+f"(o.y), "+f"(o.z), "+f"(sx), "+f"(sy) : "f"(v0.x));
-#endif
   double ax = double(a.x) - o.x, ay = double(a.y) - o.y, az = double(a.z) - o.z;
   double bx = double(b.x) - a.x, by = double(b.y) - a.y, bz = double(b.z) - a.z;
   double cx = double(c.x) - a.x, cy = double(c.y) - a.y, cz = double(c.z) - a.z;
   double nx = by * cz - bz * cy, ny = bz * cx - bx * cz, nz = bx * cy - by * cx;
-  double down = (nx * sx + ny * sy) + nz;
+  double down = (nx * shear.x + ny * shear.y) + nz;
   if (!(down != 0))
     return depth;
   return float(((nx * ax + ny * ay) + nz * az) / down * scale);
