@@ -546,6 +546,8 @@ private:
       placement.mask &= above.mask;
       placement.selection = above.selection;
     }
+    if (!primitive && placedMeshes.count(number))
+      placement.transform = {};
     const std::uint32_t made = primitive
                                    ? scene.addPrimitive(primitive, material, placement, number)
                                    : scene.addMeshInstance(number, material, placement);
@@ -581,13 +583,17 @@ private:
       throw Refused();
     try {
       runtime::Mesh mesh = files.take(number);
-      addAttributes(geometry, mesh);
+      addAttributes(geometry, files.applied(number), mesh);
       if (const std::optional<std::string> why = whyInvisible(mesh))
         scene.addWarning({message::meshIsInvisible(geometry.mesh[0].name.text, *why),
                           geometry.mesh[0].name.place});
-      return meshes[number] =
-                 scene.addMesh(std::move(mesh), geometry.name.text.empty() ? geometry.mesh[0].path
-                                                                           : geometry.name.text);
+      const std::string &name =
+          geometry.name.text.empty() ? geometry.mesh[0].path : geometry.name.text;
+      if (!files.isPlaced(number))
+        return meshes[number] = scene.addMesh(std::move(mesh), name);
+      meshes[number] = scene.addMesh(std::move(mesh), name, files.applied(number));
+      placedMeshes.insert(meshes[number]);
+      return meshes[number];
     } catch (const Error &caught) {
       if (isOfAttribute(geometry, caught))
         throw;
@@ -599,7 +605,8 @@ private:
   }
 
   /// The attributes that the scene gives, if the program reads them.
-  void addAttributes(const GeometryDescription &geometry, runtime::Mesh &mesh) {
+  void addAttributes(const GeometryDescription &geometry, const runtime::Transform &applied,
+                     runtime::Mesh &mesh) {
     for (const AttributeDescription &attribute : geometry.attributes) {
       const runtime::AttributeInfo *read = runtime::findAttribute(program, attribute.name);
       if (!read) {
@@ -614,7 +621,7 @@ private:
       const std::string what = fmt::format("the attribute `{}`", attribute.name);
       runtime::NamedAttribute made = attributeFrom(
           attribute, read->type, convert(*attribute.values, &type, what), program.colorComponents);
-      runtime::apply(geometry.transform, made);
+      runtime::apply(applied, made);
       try {
         runtime::addInFileOrder(mesh, std::move(made), geometry.mesh[0].name.text);
       } catch (Error &error) {
@@ -678,6 +685,7 @@ private:
   ImageObjects images;
   std::map<std::size_t, std::uint32_t> meshes; // by their number in `files`
   std::set<std::size_t> refusedMeshes;         // that were tried, and are not there
+  std::set<std::uint32_t> placedMeshes;        // of the scene: they are in world space
 };
 
 } // namespace

@@ -224,6 +224,9 @@ struct SceneDescription {
   std::vector<std::shared_ptr<const JsonValue>> placedValues; // of lights in nodes
   std::shared_ptr<ModelFiles> models;                         // the glTF files; null: none
   std::shared_ptr<KeptFiles> keptFiles; // of scenes before this one, for it; null: none
+  /// Whether meshes of nodes may be moved to world space (files/PlacedMesh.h): not if instances get
+  /// other transforms later, with which their trees are kept.
+  bool placesMeshes = true;
 };
 
 /// Reads a scene file and applies overrides (each "path.to.key=value", as given to --set) in order.

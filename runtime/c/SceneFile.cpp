@@ -76,6 +76,7 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
   try {
     scene::SceneDescription description =
         scene::readSceneFile(file, std::vector<std::string>(settings, settings + count));
+    description.placesMeshes = false; // rtslMoveInstance
     rtsl::c::requireLibraryClasses(description, *program);
     scene::setLaunchSizes(description, [&](const std::string &name, const std::string &member) {
       return findBuffer(program->find(name), member);

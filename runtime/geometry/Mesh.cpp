@@ -9,7 +9,7 @@
 
 namespace rtsl::runtime {
 
-void Mesh::apply(const Transform &transform) {
+void Mesh::apply(const Transform &transform, NormalLengths lengths) {
   const auto &c = transform.columns;
   for (std::size_t i = 0; i + 2 < positions.size(); i += 3) {
     double x = positions[i], y = positions[i + 1], z = positions[i + 2];
@@ -17,11 +17,14 @@ void Mesh::apply(const Transform &transform) {
       positions[i + row] = float(c[0][row] * x + c[1][row] * y + c[2][row] * z + c[3][row]);
   }
   const auto cofactors = normalTransform(transform);
+  double size = 0; // of the largest
+  for (const auto &column : cofactors)
+    size = std::max(size, std::hypot(column[0], column[1], column[2]));
   for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
     double x = normals[i], y = normals[i + 1], z = normals[i + 2], n[3];
     for (int row = 0; row < 3; ++row)
       n[row] = cofactors[0][row] * x + cofactors[1][row] * y + cofactors[2][row] * z;
-    double length = std::hypot(n[0], n[1], n[2]);
+    double length = lengths == NormalLengths::Alike ? size : std::hypot(n[0], n[1], n[2]);
     for (int row = 0; row < 3; ++row)
       normals[i + row] = length > 0 ? float(n[row] / length) : 0.0f;
   }

@@ -29,7 +29,11 @@ struct Mesh {
 
   /// Transforms the vertices; normals by the inverse transpose. A mirroring transform also reverses
   /// the triangles, so that their geometric normals stay on the same side.
-  void apply(const Transform &transform);
+  ///
+  /// Normals have length 1 afterwards, or all get the same factor: then what is interpolated
+  /// between them has the direction that the transform gives to what was.
+  enum class NormalLengths : std::uint8_t { One, Alike };
+  void apply(const Transform &transform, NormalLengths lengths = NormalLengths::One);
 };
 
 /// Throws FileNotFound or FileUnreadable unless the file is there, can be read and is not empty.

@@ -286,11 +286,15 @@ std::uint32_t Geometry::addSelector(const Objects &objects, RtslRef selector,
   return first;
 }
 
-std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name) {
+std::uint32_t Geometry::addMesh(Mesh mesh, const std::string &name, const Transform &applied) {
   std::string shown = name.empty() ? fmt::format("mesh {}", meshes.size()) : name;
   validateMesh(mesh, shown);
   auto storage =
-      std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown), {}, {}, 0});
+      std::make_unique<NamedMesh>(NamedMesh{std::move(mesh), std::move(shown), {}, {}, 0, 0});
+  if (!applied.isIdentity()) {
+    transforms.push_back(roundedTransform(applied, storage->name, std::nullopt));
+    storage->applied = std::uint32_t(transforms.size() - 1);
+  }
   Mesh &kept = storage->mesh;
   RtslMesh table{};
   table.positions = kept.positions.data();
@@ -325,6 +329,8 @@ std::uint32_t Geometry::addMeshInstance(const Objects &objects, std::uint32_t me
     needs |= RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER;
   if (instance.transform != 0)
     setWorldBounds(instance, meshBounds(mesh), placement.transform, shutterOpen, shutterClose);
+  else
+    instance.firstBox = meshes[mesh]->applied;
   const std::uint32_t wanted = objects.attributesOf(material) & ~meshes[mesh]->values.wanted();
   if (wanted != 0) {
     requireAttributes(meshes[mesh]->mesh, meshes[mesh]->name, objects.program(), wanted,

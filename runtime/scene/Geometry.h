@@ -39,7 +39,7 @@ public:
   std::uint32_t addSelector(const Objects &objects, RtslRef selector, std::uint32_t children,
                             const MovingTransform &transform, std::uint32_t above);
   /// Scene::addMesh.
-  std::uint32_t addMesh(Mesh mesh, const std::string &name);
+  std::uint32_t addMesh(Mesh mesh, const std::string &name, const Transform &applied);
   /// Scene::addMeshInstance.
   std::uint32_t addMeshInstance(const Objects &objects, std::uint32_t mesh, RtslRef material,
                                 const Placement &placement);
@@ -92,6 +92,7 @@ private:
     std::optional<Bounds> bounds; // computed on first use
     MeshValues values = {};
     std::uint64_t moves = 0;
+    std::uint32_t applied = 0; // of `transforms`: that of its vertices
   };
 
   /// `items`: of the tree in world space.

@@ -127,8 +127,8 @@ std::uint32_t Scene::addSelector(RtslRef selector, std::uint32_t children,
   return self->geometry.addSelector(self->objects, selector, children, transform, above);
 }
 
-std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name) {
-  return self->geometry.addMesh(std::move(mesh), name);
+std::uint32_t Scene::addMesh(Mesh mesh, const std::string &name, const Transform &applied) {
+  return self->geometry.addMesh(std::move(mesh), name, applied);
 }
 
 std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,

@@ -69,8 +69,10 @@ public:
   std::uint32_t addSelector(RtslRef selector, std::uint32_t children,
                             const MovingTransform &transform = {}, std::uint32_t above = 0);
 
-  /// Adds a mesh; returns its index for addMeshInstance. Throws BadMesh.
-  std::uint32_t addMesh(Mesh mesh, const std::string &name = {});
+  /// Adds a mesh; returns its index for addMeshInstance. If its vertices are in world space, to
+  /// which `applied` has brought them, rt_ObjectToWorld of instances without a transform is that.
+  /// Throws BadMesh, DegenerateGeometry.
+  std::uint32_t addMesh(Mesh mesh, const std::string &name = {}, const Transform &applied = {});
 
   /// Adds an instance of a mesh to what rays can hit. Returns the instance's index. Instances share
   /// the mesh and, if they have transforms, its tree. Throws DegenerateGeometry.

@@ -2,6 +2,7 @@
 
 #include "scenefile/Models.h"
 #include "scenefile/files/KeptFiles.h"
+#include "scenefile/files/PlacedMesh.h"
 #include "scenefile/gltf/Mesh.h"
 #include "support/ErrorMessages.h"
 #include "support/Parallel.h"
@@ -16,10 +17,11 @@ using runtime::Mesh;
 
 namespace {
 
-/// A mesh of an object, and the numbers of its files, one for each key.
+/// A mesh of objects, and the numbers of its files, one for each key.
 struct Use {
   std::vector<std::size_t> files;
-  const GeometryDescription *geometry;
+  const GeometryDescription *geometry; // the first of them
+  bool isShared = false;               // there are others
 };
 
 /// A file, or a part of one, and what it holds.
@@ -80,9 +82,13 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
   std::vector<File> files;
   std::vector<Use> uses;
   for (const GeometryDescription &geometry : description.objects) {
-    if (geometry.primitive || !geometry.hasShape ||
-        !numbers.emplace(keyOf(geometry), numbers.size()).second)
+    if (geometry.primitive || !geometry.hasShape)
       continue;
+    const auto [number, isFirst] = numbers.emplace(keyOf(geometry), numbers.size());
+    if (!isFirst) {
+      uses[number->second].isShared = true;
+      continue;
+    }
     uses.push_back({{}, &geometry});
     const std::size_t keys = std::max(geometry.mesh.size(), geometry.weights.size());
     for (std::size_t i = 0; i < keys; ++i) {
@@ -130,6 +136,10 @@ MeshFiles::MeshFiles(const SceneDescription &description, const runtime::MeshReq
         result.mesh.uvs.clear();
       setSpaces(result.mesh, geometry);
       result.mesh.apply(geometry.transform);
+      const runtime::Transform *toWorld =
+          uses[i].isShared ? nullptr : placeOf(geometry, description);
+      result.isPlaced = toWorld && place(result.mesh, *toWorld);
+      result.applied = result.isPlaced ? *toWorld : geometry.transform;
     } catch (...) {
       result.failure = std::current_exception();
     }
@@ -150,6 +160,14 @@ MeshFiles::Key MeshFiles::keyOf(const GeometryDescription &geometry) {
 
 std::size_t MeshFiles::numberOf(const GeometryDescription &geometry) const {
   return numbers.at(keyOf(geometry));
+}
+
+const runtime::Transform &MeshFiles::applied(std::size_t number) const {
+  return results[number].applied;
+}
+
+bool MeshFiles::isPlaced(std::size_t number) const {
+  return results[number].isPlaced;
 }
 
 Mesh MeshFiles::take(std::size_t number) {

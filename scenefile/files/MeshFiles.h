@@ -26,11 +26,18 @@ public:
   /// A mesh, which can be taken once. Throws the errors of runtime::loadMesh and gltf::readMesh.
   runtime::Mesh take(std::size_t number);
 
+  /// The transform that was applied to its vertices.
+  const runtime::Transform &applied(std::size_t number) const;
+  /// Is it that of its only instance, which therefore has none (PlacedMesh.h)?
+  bool isPlaced(std::size_t number) const;
+
 private:
   /// A mesh, or the error of loading it.
   struct Result {
     runtime::Mesh mesh;
     std::exception_ptr failure;
+    runtime::Transform applied = {};
+    bool isPlaced = false;
   };
 
   using Key = std::tuple<std::vector<std::string>, std::string, std::vector<std::vector<double>>,

@@ -38,7 +38,8 @@ typedef struct RtslInstance {
   uint32_t transform; // index into RtslLaunch::transforms; 0: object space is world space
   uint32_t roots;     // bit r: rays that enter at root r can see it
   // the first of RtslLaunch::boxes of an object that holds several primitives, and their number;
-  // any other object is one primitive, and has 0 and 0
+  // any other object is one primitive, and has 0 and 0. For a mesh with vertices that were
+  // transformed to world space, `firstBox` is the index of that transform, for rt_ObjectToWorld
   uint32_t firstBox, boxCount;
   int32_t id;         // the scene's number for it, rt_InstanceId
   uint32_t selection; // of RtslLaunch::selections: rays see it if this one is visited; 0: always

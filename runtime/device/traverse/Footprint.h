@@ -107,6 +107,9 @@ inline void describeFootprint(RtslState &state, const RtslInstance &instance, ui
     const TransformAt transform(launch, instance, state.Time);
     store(state.dUVWdx, vectorToObject(launch, transform, x));
     store(state.dUVWdy, vectorToObject(launch, transform, y));
+  } else if (const uint32_t applied = appliedTransform(instance)) {
+    store(state.dUVWdx, vectorToObject(launch.transforms[applied], x));
+    store(state.dUVWdy, vectorToObject(launch.transforms[applied], y));
   } else {
     store(state.dUVWdx, x);
     store(state.dUVWdy, y);

@@ -92,6 +92,12 @@ inline Vec3 vectorToObject(const RtslLaunch &launch, const RtslTransform &transf
                            : positive(v);
 }
 
+/// Of a mesh whose vertices were transformed to world space, the index of that transform in the
+/// launch's; otherwise 0.
+inline uint32_t appliedTransform(const RtslInstance &instance) {
+  return instance.primitive == 0 && instance.transform == 0 ? instance.firstBox : 0;
+}
+
 /// Component `row` of the linear part times a vector, plus `offset`, rounded once.
 inline float rowToWorld(const RtslTransform &transform, int row, Vec3 v, double offset) {
   const float *m = transform.linear;
@@ -292,7 +298,7 @@ private:
 inline void describeTransforms(RtslState &state, uint32_t number) {
   for (int i = 0; i < 16; ++i)
     state.ObjectToWorld[i] = state.WorldToObject[i] = i % 5 == 0 ? 1.0f : 0.0f;
-  if (!hasTransforms(*state.launch) || number == 0)
+  if (number == 0)
     return;
   const TransformAt atTime(*state.launch, number, state.Time);
   const RtslTransform &transform = atTime;
@@ -308,7 +314,8 @@ inline void describeTransforms(RtslState &state, uint32_t number) {
   }
 }
 inline void describeTransforms(RtslState &state, const RtslInstance &instance) {
-  describeTransforms(state, instance.transform);
+  const uint32_t applied = appliedTransform(instance);
+  describeTransforms(state, applied != 0 ? applied : instance.transform);
 }
 
 } // namespace rtsl::device

@@ -212,6 +212,9 @@ inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint
   const RtslMesh &mesh = launch.meshes[instance.mesh];
   const TriangleVertices p = verticesOfHit(state, mesh);
   describeTriangle(state, mesh, p, needs);
+  if (const uint32_t applied = appliedTransform(instance);
+      applied != 0 && needs & RTSL_NEEDS_TEXTURE_COORDINATES)
+    store(state.TextureUVW, pointToObject(launch.transforms[applied], load(state.HitPoint)));
   if (needs & RTSL_NEEDS_ATTRIBUTES)
     describeAttributes(state, mesh);
   if (!isTransformed(launch, instance))
@@ -225,9 +228,11 @@ inline void describeMeshHit(RtslState &state, const RtslInstance &instance, uint
 /// How u and v of state's hit on a mesh change along dPdx and dPdy.
 inline BarycentricChanges barycentricChanges(const RtslState &state, const RtslMesh &mesh) {
   const TriangleVertices p = triangleVertices(*state.launch, mesh, state.primitive, state.Time);
+  // In the space of the vertices.
+  const bool isInWorld = !isTransformed(*state.launch, instanceAt(*state.launch, state.instance));
   BarycentricChanges by;
-  solveForCoordinates(p.v1 - p.v0, p.v2 - p.v0, load(state.dUVWdx), load(state.dUVWdy), by.along[0],
-                      by.along[1]);
+  solveForCoordinates(p.v1 - p.v0, p.v2 - p.v0, load(isInWorld ? state.dPdx : state.dUVWdx),
+                      load(isInWorld ? state.dPdy : state.dUVWdy), by.along[0], by.along[1]);
   return by;
 }
 

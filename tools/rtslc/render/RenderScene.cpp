@@ -184,6 +184,7 @@ private:
       return false;
     warnOfFrame();
     input->description.keptFiles = options.keptFiles;
+    input->description.placesMeshes = !options.keptTrees;
     files = withFiles(input->description, {input->file});
     runtime::checkOptions(renderOptions(options, input->description.render));
     target = makeRenderTarget(options.target, options.hasGpuArchitecture, options.gpu,

@@ -76,7 +76,7 @@ class TransformCase(Case):
         super().setUp()
         self.write("Egg.rtsl", EGG)
 
-    def render(self, name, objects, point=list, vector=list, **more):
+    def render(self, name, objects, point=list, vector=list, imports=(), **more):
         self.write(
             name + ".json",
             json.dumps(
@@ -89,6 +89,7 @@ class TransformCase(Case):
                         "std.textures",
                         "std.lights",
                         "Egg.rtsl",
+                        *imports,
                     ],
                     "camera": {
                         "class": "PerspectiveCamera",
@@ -166,6 +167,80 @@ class Meshes(TransformCase):
                 node = {**shape, "material": material, "transform": squeeze}
                 self.render(name, {"nodes": {"all": node}, "root": "all"})
             self.assertLess(self.difference("primitive", "mesh"), 0.002, material)
+
+
+PLATE = """v -2 -2 0.3
+v 2 -2 -0.2
+v 2 2 0.1
+v -2 2 0
+vn -0.3 -0.2 1
+vn 0.3 -0.2 1
+vn 0.3 0.2 1
+vn -0.3 0.2 1
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+f 1/1/1 2/2/2 3/3/3
+f 1/1/1 3/3/3 4/4/4
+"""
+SPACES = """class Spaces : rt_Material {
+  void shade() {
+    vec3 own = (rt_WorldToObject * vec4(rt_HitPoint, 1.0)).xyz;
+    vec3 there = (rt_ObjectToWorld * vec4(own, 1.0)).xyz - rt_HitPoint;
+    vec3 seen = 0.5 + 0.4 * sin(own * 3.0) + rt_dUVWdx * 9.0 + there * 100.0;
+    rt_SampleColor = color(seen.x, seen.y, seen.z);
+  }
+};
+"""
+
+
+class PlacedMeshes(TransformCase):
+    """A mesh of a node that is in the scene once, and does not move, is in world space."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("plate.obj", PLATE)
+        self.write("Spaces.rtsl", SPACES)
+
+    def scene(self, transform, isShared=False, **node):
+        plate = {"mesh": "plate.obj", "material": "plain", **node}
+        there = [{"child": "plate", "transform": transform}]
+        if isShared:  # behind the camera
+            there.append({"child": "plate", "transform": {"translate": [0, 0, 90]}})
+        return {"nodes": {"plate": plate, "all": {"children": there}}, "root": "all"}
+
+    def test_it_looks_as_in_its_own_space(self):
+        turn = {"scale": [1, 0.6, 1.3], "rotate": [20, 30, 40], "translate": [0.3, 0.2, -0.5]}
+        for material in [*MATERIALS, "spaces"]:
+            more = {"materials": {**MATERIALS, "spaces": {"class": "Spaces"}}}
+            for name, is_shared in (("once", False), ("twice", True)):
+                scene = self.scene(turn, is_shared, material=material)
+                self.render(name, scene, **more, imports=["Spaces.rtsl"])
+            # That of Ward's material grows without bound towards grazing directions.
+            bound = 0.003 if material == "brushed" else 2e-4
+            self.assertLess(self.difference("once", "twice"), bound, material)
+
+    def has_transforms(self, transform, is_shared=False, **node):
+        self.render("one", self.scene(transform, is_shared, **node))
+        said, _ = self.run_rtslc("explain", "one.json", "--json")
+        entries = [entry for item in json.loads(said)["items"] for entry in item["entries"]]
+        return next(one["needed"] for one in entries if one["subject"] == "transforms")
+
+    def test_only_where_nothing_depends_on_its_space(self):
+        turned = {"rotate": [10, 20, 30], "translate": [5, 0, 0]}
+        self.assertFalse(self.has_transforms(turned))
+        self.assertTrue(self.has_transforms(turned, is_shared=True))
+        self.assertTrue(self.has_transforms({"scale": [-1, 1, 1]}))
+        keys = [{"translate": [0, 0, 0]}, {"translate": [1, 0, 0]}]
+        self.assertTrue(self.has_transforms({"keys": keys}))
+
+    def test_not_far_away_where_floats_are_coarse(self):
+        self.assertFalse(self.has_transforms({"rotate": [0, 20, 0], "translate": [10, 0, 0]}))
+        self.assertTrue(self.has_transforms({"rotate": [0, 20, 0], "translate": [1000, 0, 0]}))
+        # Whole numbers have no error there.
+        self.write("plate.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n")
+        self.assertFalse(self.has_transforms({"translate": [1000, 0, -7]}))
 
 
 if __name__ == "__main__":
