@@ -111,16 +111,18 @@ struct TreeItem : RtslLeafItem {
   }
 };
 
-/// Has the item vertices? Known of all in a scene that has triangles alone, of meshes that do not
-/// move: in the tree of the world if no instance is entered, and in those of meshes.
+/// Has the scene triangles alone, of meshes that do not move? Then all items of the trees of meshes
+/// have vertices, and those of the world's tree unless they are instances to be entered.
+inline bool hasStillTrianglesAlone(const RtslLaunch &launch) {
+  return !rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS);
+}
+
+/// Has the item, which is found with the ray in its space, vertices?
 inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const InstanceRay &) {
-  const bool areKnown = !rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS);
-  return areKnown || item.stored.hasVertices();
+  return hasStillTrianglesAlone(launch) || item.stored.hasVertices();
 }
 inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const TriangleRay &) {
-  const bool areKnown = !rtsl_has_primitives() && !(rtsl_needs(&launch) & RTSL_HAS_MESH_KEYS) &&
-                        !hasTransforms(launch);
-  return areKnown || item.stored.hasVertices();
+  return (hasStillTrianglesAlone(launch) && !hasTransforms(launch)) || item.stored.hasVertices();
 }
 
 /// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
