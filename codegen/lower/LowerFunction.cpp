@@ -4,7 +4,7 @@
 // without a hit must not change the values that the best hit so far has stored. Each `hit(t)` that
 // is accepted is noted, and where `intersect` returns after one, the scratch members are stored as
 // attributes of the hit. If a hit that is not the nearest has overwritten them, traversal runs
-// `intersect` of the nearest one again (findLostAttributes in runtime/device/traverse/Traverse.h):
+// `intersect` of the nearest one again (findLostAttributes in runtime/device/traverse/TestItem.h):
 //
 //   %n = rtsl.var "n"                       a variable for each scratch member
 //   %accepted = rtsl.var "accepted"

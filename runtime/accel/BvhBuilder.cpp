@@ -4,7 +4,7 @@
 #include "runtime/accel/trees/BinaryTree.h"
 #include "runtime/accel/trees/HostBuildDevice.h"
 #include "runtime/accel/trees/WideTree.h"
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 #include "support/Parallel.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "runtime/accel/TreeContents.h"
 
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 
 #include <tuple>
 

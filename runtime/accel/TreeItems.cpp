@@ -1,6 +1,6 @@
 #include "runtime/accel/TreeItems.h"
 
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 
 namespace rtsl::runtime {
 

@@ -1,14 +1,14 @@
 //===- TriangleBlock.h - eight triangles, tested at once ------------------===//
 //
 // A leaf of the host's tree. All eight are tested by the operations of
-// runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/Traverse.h), in the
+// runtime/device/traverse/Triangle.h and moveIntoBox (runtime/device/traverse/TestItem.h), in the
 // same order, and so with the same bits. In the cases that those treat separately, numbers of
 // unusual size or hits near the ray's origin, the triangle is tested by their own functions.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
 
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 
 #include <immintrin.h>
 

@@ -1,7 +1,7 @@
 //===- EmbreeContext.h - what a search needs beside Embree's ray ----------===//
 #pragma once
 
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 #include "runtime/embree/EmbreeScene.h"
 #include "runtime/embree/EmbreeSpace.h"
 #include "runtime/embree/LastOccluders.h"

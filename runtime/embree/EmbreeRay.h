@@ -8,7 +8,7 @@
 
 #include "runtime/accel/TreeContents.h"
 #include "runtime/device/ray/Hit.h"
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 #include "runtime/embree/EmbreeContext.h"
 #include "runtime/embree/EnterSpace.h"
 #include "runtime/embree/LastHit.h"

@@ -44,7 +44,7 @@ struct Instances {
 struct Ranges {
   float near[mostBoxes], far[mostBoxes];
 
-  /// With --fp=fast hits count where they are, as in hasHitsIn of Traverse.h.
+  /// With --fp=fast hits count where they are, as in hasHitsIn of TestItem.h.
   device::Range of(uint32_t number) const {
     return rtsl_is_fast() ? device::Range{-device::infinity, device::infinity}
                           : device::Range{near[number], far[number]};
@@ -97,7 +97,7 @@ __attribute__((noinline)) uint32_t rtsl_entered_boxes(const RtslLaunch *launch, 
 
 namespace {
 
-/// The list of the launch, in place of a tree (LaunchTree of Traverse.h).
+/// The list of the launch, in place of a tree (LaunchTree.h).
 struct List {
   template <typename Limit, typename Enter, typename Visit>
   void forEach(const RtslState &state, const device::TriangleRay &ray, Limit limit, Enter,

@@ -1,6 +1,6 @@
 //===- ListedBox.h - the boxes of a scene without a tree ------------------===//
 //
-// A scene of a few primitives has no tree: a ray tests the boxes of all of them (Traverse.h), and
+// A scene of a few primitives has no tree: a ray tests the boxes of all of them (LaunchTree.h), and
 // then the primitives whose boxes it may enter. This first test must find every box in which
 // rangeInBox finds a range; it may find others, because the primitive's own test decides. So a box
 // is stored as its middle and half of its size, enlarged by a bound of all roundings: three fused

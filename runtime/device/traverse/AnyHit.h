@@ -79,7 +79,7 @@ struct NearestCandidates {
   }
 };
 
-/// The traversal of one ray through a tree (see LaunchTree in Traverse.h).
+/// The traversal of one ray through a tree (see LaunchTree.h).
 template <typename Slots, typename Tree>
 class Search {
 public:

@@ -11,7 +11,7 @@ namespace rtsl::device {
 constexpr float bvhSlack = 1.0f + 16 * roundingUnit;
 
 /// The contents of a box are hit within the ray's range in the box, up to this share of the
-/// distance: hits of triangles are moved into it (Traverse.h), those of RTSL primitives are
+/// distance: hits of triangles are moved into it (TestItem.h), those of RTSL primitives are
 /// compared as if they were in it (Hit.h). So a box that begins beyond the nearest hit by more than
 /// two such shares contains nothing that could win, and the result does not depend on which boxes a
 /// traversal enters, in any tree and any order. That holds for outer boxes too, because rounding is

@@ -181,22 +181,35 @@ struct alignas(8) Open {
   bool hasNodes() const { return bits >> 24 != 0; }
 };
 
-/// Calls test(item) for every item below the node `root` that may have hits between tMin and
-/// tMax(), those of nearer boxes first on the whole. tMax() may shrink meanwhile; it is called once
-/// a node. test returns true to stop; then so does this. If it `putsOff` items, those that only few
-/// lanes of a warp would test wait for others.
-template <typename Limit, typename Test>
-bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray, float tMin,
-                 Limit tMax, bool putsOff, Test test) {
+/// What follows the test of an item: the next one, the items of the instance that the ray has
+/// entered, or nothing.
+enum class Next { Item, Inside, Nothing };
+
+/// Visits the items below the node `root` that may have hits between tMin and tMax(), those of
+/// nearer boxes first on the whole. tMax() may shrink meanwhile; it is called once a node. If it
+/// `putsOff` items, those that only few lanes of a warp would test wait for others.
+///
+/// `Spaces` has ray(), and test(item), which gives Next. If `isNested`, test() may enter the space
+/// of an instance: ray() is then the ray there, the items below root() follow, and after them
+/// leave(), where the ray is again as it was; there are no spaces in such spaces. One loop visits
+/// both kinds of trees, so that the lanes of a warp need not be in the same one, and the code is
+/// there once. True if nothing was to follow.
+template <bool isNested, typename Limit, typename Spaces>
+bool traverseSpaces(const RtslLaunch &launch, uint32_t root, Spaces &spaces, float tMin, Limit tMax,
+                    bool putsOff) {
   // Covers cullSlack, and bvhSlack on top.
   constexpr float slack = cullSlack + 0x1p-18f;
   tMin *= 1.0f - 2 * rangeShare;
-  const uint32_t flipped = flippedSlots(ray);
+  uint32_t flipped = flippedSlots(spaces.ray());
   const RtslBvhNode *const nodes = launch.nodes;
   const RtslTreeItem *const treeItems = launch.treeItems;
   TreeVisits visits(launch, root);
-  Open stack[maxBvhDepth + mostPutOff];
+  // Of each tree at most one entry a level, what is put off, and the rest of the items of the leaf
+  // from which an instance was entered.
+  Open stack[(isNested ? 2 : 1) * maxBvhDepth + mostPutOff + isNested];
+  constexpr int inNone = -1;
   int top = 0;
+  int outside = inNone; // the entries below it are of the outer tree, where the ray is in an inner
   Open open = {root, 1u << (24 + flipped)};
   for (;;) {
     uint32_t firstItem = open.first, items = open.bits;
@@ -210,7 +223,8 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
         stack[top++] = open;
       visits.node();
       const NodeWords node(inMemory);
-      const uint32_t entered = enteredChildren(node, inMemory, ray, flipped, tMin, tMax() * slack);
+      const uint32_t entered =
+          enteredChildren(node, inMemory, spaces.ray(), flipped, tMin, tMax() * slack);
       firstItem = node.firstItem();
       items = entered & 0x00ffffffu;
       open = {node.firstNode(), (entered & 0xff000000u) | node.inner()};
@@ -223,15 +237,48 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
         break;
       }
       visits.item();
-      if (test(treeItems[firstItem + uint32_t(__builtin_ctz(items))]))
+      const Next next = spaces.test(treeItems[firstItem + uint32_t(__builtin_ctz(items))]);
+      if (next == Next::Nothing)
         return true;
+      if (isNested && next == Next::Inside) {
+        if (open.hasNodes())
+          stack[top++] = open;
+        if ((items & (items - 1)) != 0)
+          stack[top++] = {firstItem, items & (items - 1)};
+        outside = top;
+        flipped = flippedSlots(spaces.ray());
+        open = {spaces.root(), 1u << (24 + flipped)};
+        break;
+      }
     }
     if (!open.hasNodes()) {
+      if (isNested && top == outside) {
+        outside = inNone;
+        spaces.leave();
+        flipped = flippedSlots(spaces.ray());
+      }
       if (top == 0)
         return false;
       open = stack[--top];
     }
   }
+}
+
+/// The same with a tree of one space: calls test(item), which returns true to stop; then so does
+/// this.
+template <typename Limit, typename Test>
+bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray, float tMin,
+                 Limit tMax, bool putsOff, Test test) {
+  struct OneSpace {
+    const TriangleRay &inIt;
+    Test &isLast;
+
+    const TriangleRay &ray() const { return inIt; }
+    Next test(const RtslTreeItem &item) { return isLast(item) ? Next::Nothing : Next::Item; }
+    static uint32_t root() { return 0; }
+    static void leave() {}
+  } space = {ray, test};
+  return traverseSpaces<false>(launch, root, space, tMin, tMax, putsOff);
 }
 
 } // namespace rtsl::device

@@ -209,6 +209,19 @@ struct InstanceRay : TriangleRay {
   Range range; // in the instance's box, widened: hits are moved into it, as in moveIntoBox
 };
 
+/// A ray that is in world space, or in that of an instance that it has entered.
+struct SearchRay : InstanceRay {
+  explicit SearchRay(const TriangleRay &world) { leaveInstance(world); }
+
+  bool isInWorld() const { return instance == RTSL_NO_HIT; }
+
+  void leaveInstance(const TriangleRay &world) {
+    static_cast<TriangleRay &>(*this) = world;
+    instance = RTSL_NO_HIT;
+    range = {-infinity, infinity};
+  }
+};
+
 /// The ray in the object space of an instance with a transform, at a time. False if it cannot hit
 /// anything there before `limit`: its direction vanishes in object space, or it misses the
 /// instance's box, as it then does in every traversal.
@@ -257,13 +270,8 @@ public:
   /// `transform`: an index into the launch's transforms, as RtslInstance::transform.
   InObjectSpace(RtslState &state, uint32_t transform)
       : state(state), isActive(hasTransforms(*state.launch) && transform != 0) {
-    if (!isActive)
-      return;
-    const TransformAt toWorld(*state.launch, transform, state.Time);
-    origin = load(state.RayOrigin);
-    direction = load(state.RayDirection);
-    setRay(pointToObject(*state.launch, toWorld, origin),
-           vectorToObject(*state.launch, toWorld, direction));
+    if (isActive)
+      enter(transform);
   }
   InObjectSpace(RtslState &state, const RtslInstance &instance)
       : InObjectSpace(state, instance.transform) {}
@@ -271,9 +279,15 @@ public:
   InObjectSpace(RtslState &state, const RtslInstance &instance, const TriangleRay &)
       : InObjectSpace(state, instance.transform) {}
   InObjectSpace(RtslState &state, const RtslInstance &, const InstanceRay &entered)
-      : state(state), isActive(true), origin(load(state.RayOrigin)),
-        direction(load(state.RayDirection)) {
-    setRay(entered.origin, entered.direction);
+      : state(state), isActive(true) {
+    enter(entered.origin, entered.direction);
+  }
+  InObjectSpace(RtslState &state, const RtslInstance &instance, const SearchRay &ray)
+      : state(state), isActive(!ray.isInWorld() || isTransformed(*state.launch, instance)) {
+    if (isActive && ray.isInWorld())
+      enter(instance.transform);
+    else if (isActive)
+      enter(ray.origin, ray.direction);
   }
   InObjectSpace(const InObjectSpace &) = delete;
   ~InObjectSpace() {
@@ -282,6 +296,16 @@ public:
   }
 
 private:
+  void enter(uint32_t transform) {
+    const TransformAt toWorld(*state.launch, transform, state.Time);
+    enter(pointToObject(*state.launch, toWorld, load(state.RayOrigin)),
+          vectorToObject(*state.launch, toWorld, load(state.RayDirection)));
+  }
+  void enter(Vec3 from, Vec3 towards) {
+    origin = load(state.RayOrigin);
+    direction = load(state.RayDirection);
+    setRay(from, towards);
+  }
   void setRay(Vec3 from, Vec3 towards) {
     store(state.RayOrigin, from);
     store(state.RayDirection, towards);

@@ -9,7 +9,7 @@
 #include "runtime/device/traverse/Footprint.h"
 #include "runtime/device/traverse/Instance.h"
 #include "runtime/device/traverse/MeshAttributes.h"
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 
 namespace rtsl::device {
 

@@ -4,7 +4,7 @@
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Launch.h"
 #include "runtime/device/traverse/Motion.h"
-#include "runtime/device/traverse/Traverse.h"
+#include "runtime/device/traverse/TestItem.h"
 
 namespace rtsl::device::build {
 
