@@ -54,13 +54,12 @@ template <typename Ray, typename Test>
                                                  Test test) {
   const EmbreePrimitive &primitive = context.space->primitives[number];
   const RtslLeafItem item = itemOf<Ray>(context, primitive);
-  const RtslLaunch &launch = context.space->scene->launch;
-  const RtslInstance &instance = launch.instances[item.instance];
+  const Implementation &scene = *context.space->scene;
+  const RtslInstance &instance = scene.launch.instances[item.instance];
   if (!primitive.intersect)
-    return device::testTriangle(*context.state, context.rayAs<Ray>(), launch.meshes[instance.mesh],
-                                item.instance, item.primitive);
-  return test(instance, item,
-              device::withModerateRay(primitive.intersect, device::scalesWholeSearch(launch)));
+    return device::testTriangle(*context.state, context.rayAs<Ray>(),
+                                scene.launch.meshes[instance.mesh], item.instance, item.primitive);
+  return test(instance, item, device::withModerateRay(primitive.intersect, scene.scalesSearches));
 }
 
 template <typename Ray>

@@ -32,6 +32,7 @@ struct EmbreeScene::Implementation {
   std::map<std::uint32_t, std::unique_ptr<EmbreeSpace>> spaces; // by device::treeNumber
   const Program::Slots *slots = nullptr;
   RtslLaunch launch{};
+  bool scalesSearches = false; // device::scalesWholeSearch(launch)
   std::vector<InstanceContents> contents;
   RTCError error = RTC_ERROR_NONE;
   std::string errorText;
@@ -39,6 +40,11 @@ struct EmbreeScene::Implementation {
   Implementation() = default;
   Implementation(const Implementation &) = delete;
   ~Implementation();
+
+  void setLaunch(const RtslLaunch &other) {
+    launch = other;
+    scalesSearches = device::scalesWholeSearch(launch);
+  }
 
   /// Does the ray of the context hit anything in one of the world's instances?
   static bool isInInstance(const EmbreeContext &context, std::uint32_t number);
@@ -103,10 +109,10 @@ struct EmbreeScene::Implementation {
       searchTree(context, anyHit);
     if (isFromCamera)
       LastHit::ofThread().learn(number, context.found);
-    if (!anyHit)
-      device::findLostAttributes(state, triangleRay,
-                                 device::withModerateRay(slots->rt_Primitive_intersect,
-                                                         device::scalesWholeSearch(*state.launch)));
+    if (!anyHit && state.areAttributesLost)
+      device::findLostAttributes(
+          state, triangleRay,
+          device::withModerateRay(slots->rt_Primitive_intersect, scalesSearches));
     if (context.occluder.number != Occluder::none)
       last.learn(number, context.occluder);
     return device::endSearch(state);

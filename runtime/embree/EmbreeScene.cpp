@@ -56,7 +56,7 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
   }
   rtcSetDeviceErrorFunction(self->device, noteError, self.get());
 
-  self->launch = scene.launch();
+  self->setLaunch(scene.launch());
   self->contents = treeContents(self->launch);
   self->slots = &slots;
   self->world.scene = self.get();
@@ -103,7 +103,7 @@ EmbreeScene::EmbreeScene(const Scene &scene, const Program::Slots &slots, unsign
 }
 
 void EmbreeScene::update(const Scene &scene, unsigned threads) {
-  self->launch = scene.launch();
+  self->setLaunch(scene.launch());
   bool isNew = false;
   for (const auto &[number, space] : self->spaces)
     if (number < self->launch.meshCount && space->moves != scene.movesOfMesh(number)) {
@@ -122,7 +122,7 @@ void EmbreeScene::rememberBoxes() {
 }
 
 bool EmbreeScene::follow(const Scene &scene, const Program::Slots &slots, unsigned threads) {
-  self->launch = scene.launch();
+  self->setLaunch(scene.launch());
   self->slots = &slots;
   if (treeContents(self->launch) != self->contents)
     return false;

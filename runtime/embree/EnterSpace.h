@@ -108,13 +108,20 @@ private:
   const __m128i &order() const { return *reinterpret_cast<const __m128i *>(axes[longest]); }
 };
 
-/// device::makeTriangleRay for a ray whose components have just been stored, one by one: to load
-/// several at once would have to wait until the stores have left the processor.
+/// Three floats that have just been stored, one by one: to load several at once, as the compiler
+/// would, had to wait until the stores have left the processor.
+[[gnu::always_inline]] inline Axes gathered(const float from[3]) {
+  float x = from[0], y = from[1], z = from[2];
+  asm("" : "+x"(x), "+x"(y), "+x"(z));
+  return _mm_setr_ps(x, y, z, 0);
+}
+
+/// device::makeTriangleRay for a ray whose components have just been stored.
 [[gnu::always_inline]] inline void makeRay(const float origin[3], const float direction[3],
                                            device::TriangleRay &ray) {
-  const DirectionAxes axes(_mm_setr_ps(direction[0], direction[1], direction[2], 0));
+  const DirectionAxes axes(gathered(direction));
   if (axes.isUsual())
-    axes.fill(ray, _mm_setr_ps(origin[0], origin[1], origin[2], 0));
+    axes.fill(ray, gathered(origin));
   else
     ray = device::makeTriangleRay(device::load(origin), device::load(direction));
 }

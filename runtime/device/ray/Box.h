@@ -33,7 +33,7 @@ inline bool hasCounts(const RtslLaunch &launch) {
 }
 /// Does the instance hold several primitives of an object?
 inline bool isCounted(const RtslLaunch &launch, const RtslInstance &instance) {
-  return hasCounts(launch) && instance.boxCount != 0;
+  return instance.boxCount != 0 && hasCounts(launch);
 }
 
 /// The bounds of a primitive, from `computeBounds`, in object space.

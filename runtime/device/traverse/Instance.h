@@ -27,7 +27,7 @@ inline bool hasTransforms(const RtslLaunch &launch) {
   return (rtsl_needs(&launch) & RTSL_HAS_TRANSFORMS) != 0;
 }
 inline bool isTransformed(const RtslLaunch &launch, const RtslInstance &instance) {
-  return hasTransforms(launch) && instance.transform != 0;
+  return instance.transform != 0 && hasTransforms(launch);
 }
 
 /// A transform of the launch, by its index, at a time. One that does not move is not copied.
@@ -269,7 +269,7 @@ class InObjectSpace {
 public:
   /// `transform`: an index into the launch's transforms, as RtslInstance::transform.
   InObjectSpace(RtslState &state, uint32_t transform)
-      : state(state), isActive(hasTransforms(*state.launch) && transform != 0) {
+      : state(state), isActive(transform != 0 && hasTransforms(*state.launch)) {
     if (isActive)
       enter(transform);
   }
