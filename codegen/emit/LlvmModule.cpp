@@ -365,8 +365,15 @@ static void addLast(llvm::PassBuilder &builder) {
       });
 }
 
+/// Up to how large functions are inlined on a CPU, in LLVM's units; its own default is 225. Methods
+/// that a ray runs take some hundred, and their results pass through memory where they are called:
+/// with 1000 instead of 225 pictures take 0.9 to 1 of the time, and compiling 1.1.
+static constexpr int inlinerThreshold = 1000;
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
+  if (options.optimization > 1 && !options.isMegakernel && !machine.getTargetTriple().isNVPTX())
+    tuning.InlinerThreshold = inlinerThreshold;
   tuning.LoopVectorization = options.optimization > 1;
   tuning.SLPVectorization = options.optimization > 1;
   tuning.LoopInterleaving = tuning.LoopUnrolling = options.optimization > 0;
