@@ -108,8 +108,8 @@ private:
   const __m128i &order() const { return *reinterpret_cast<const __m128i *>(axes[longest]); }
 };
 
-/// Three floats that have just been stored, one by one: to load several at once, as the compiler
-/// would, had to wait until the stores have left the processor.
+/// Three floats that have just been stored, one by one: a load of several at once, which the
+/// compiler would make of these, waits until the stores have left the processor.
 [[gnu::always_inline]] inline Axes gathered(const float from[3]) {
   float x = from[0], y = from[1], z = from[2];
   asm("" : "+x"(x), "+x"(y), "+x"(z));

@@ -216,6 +216,35 @@ Scene instancedScene(unsigned seed) {
   return scene;
 }
 
+/// Instances of a mesh one in the other, of triangles one in the other: a ray that enters the
+/// smallest has much left to visit, of both trees.
+Scene nestedScene() {
+  std::mt19937 random(3);
+  Scene scene(fakeProgram());
+  scene.setCamera(scene.addObject(
+      "Camera",
+      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  const RtslRef material = scene.addObject("Normal", members({}));
+  Mesh mesh;
+  for (unsigned i = 0; i < 150; ++i) {
+    const float size = std::pow(1.1f, float(i));
+    const float corners[3][3] = {{-size, -size, 0}, {3 * size, -size, 0}, {-size, 3 * size, size}};
+    for (unsigned corner = 0; corner < 3; ++corner) {
+      mesh.positions.insert(mesh.positions.end(), corners[corner], corners[corner] + 3);
+      mesh.indices.push_back(3 * i + corner);
+    }
+  }
+  const std::uint32_t number = scene.addMesh(std::move(mesh));
+  for (int i = 0; i < 150; ++i) {
+    const double size = std::pow(1.1, i);
+    Placement placement;
+    placement.transform =
+        Transform::scale(size, size, size).then(Transform::translate(0, 0, -size));
+    scene.addMeshInstance(number, material, placement);
+  }
+  return scene;
+}
+
 /// A ray towards a vertex, an edge or the middle of some triangle.
 Ray rayAtTriangle(std::mt19937 &random, const RtslLaunch &launch, Vec3 from) {
   std::uniform_real_distribution<float> unit(0, 1);
@@ -244,6 +273,20 @@ TEST(EmbreeTraversal, AgreesWithDeviceTraversal) {
     for (int i = 0; i < 30000; ++i)
       ASSERT_NO_FATAL_FAILURE(both.compare(randomRay(random, scale), i));
   }
+}
+
+TEST(EmbreeTraversal, AgreesWhereTreesInTreesAreDeep) {
+  const Scene scene = nestedScene();
+  Both both(scene);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (int i = 0; i < 500; ++i) {
+    const float size = std::pow(10.0f, 5 * unit(random));
+    const Vec3 from = {size * unit(random), size * unit(random), 1e6f},
+               to = {unit(random), unit(random), unit(random)};
+    ASSERT_NO_FATAL_FAILURE(both.compare({from, to - from}, i));
+  }
+  EXPECT_GT(both.hits, 250);
 }
 
 TEST(EmbreeTraversal, AgreesWhereHitsTie) {
