@@ -7,6 +7,7 @@
 #include "runtime/accel/DeviceTrees.h"
 #include "runtime/accel/trees/HostBuildDevice.h"
 #include "runtime/device/traverse/Surface.h"
+#include "runtime/device/traverse/Traverse.h"
 #include "runtime/embree/HostScene.h"
 #include "runtime/scene/Scene.h"
 #include "support/Error.h"
