@@ -266,11 +266,12 @@ private:
                           geometry.mesh[0].name.place});
       const std::string &name =
           geometry.name.text.empty() ? geometry.mesh[0].path : geometry.name.text;
-      if (!files.isPlaced(number))
-        return meshes[number] = scene.addMesh(std::move(mesh), name);
-      meshes[number] = scene.addMesh(std::move(mesh), name, files.applied(number));
-      placedMeshes.insert(meshes[number]);
-      return meshes[number];
+      const bool isPlaced = files.isPlaced(number);
+      const std::uint32_t made = scene.addMesh(
+          std::move(mesh), name, isPlaced ? files.applied(number) : runtime::Transform());
+      if (isPlaced)
+        placedMeshes.insert(made);
+      return meshes[number] = made;
     } catch (const Error &caught) {
       if (isOfAttribute(geometry, caught))
         throw;

@@ -185,7 +185,7 @@ struct alignas(8) Open {
 /// entered, or nothing.
 enum class Next { Item, Inside, Nothing };
 
-/// Visits the items below the node `root` that may have hits between tMin and tMax(), those of
+/// Visits the items of the world's tree that may have hits between tMin and tMax(), those of
 /// nearer boxes first on the whole. tMax() may shrink meanwhile; it is called once a node. If it
 /// `putsOff` items, those that only few lanes of a warp would test wait for others.
 ///
@@ -193,9 +193,9 @@ enum class Next { Item, Inside, Nothing };
 /// of an instance: ray() is then the ray there, the items below root() follow, and after them
 /// leave(), where the ray is again as it was; there are no spaces in such spaces. One loop visits
 /// both kinds of trees, so that the lanes of a warp need not be in the same one, and the code is
-/// there once. True if nothing was to follow.
+/// there once.
 template <bool isNested, typename Limit, typename Spaces>
-bool traverseSpaces(const RtslLaunch &launch, uint32_t root, Spaces &spaces, float tMin, Limit tMax,
+void traverseSpaces(const RtslLaunch &launch, Spaces &spaces, float tMin, Limit tMax,
                     bool putsOff) {
   // Covers cullSlack, and bvhSlack on top.
   constexpr float slack = cullSlack + 0x1p-18f;
@@ -203,14 +203,14 @@ bool traverseSpaces(const RtslLaunch &launch, uint32_t root, Spaces &spaces, flo
   uint32_t flipped = flippedSlots(spaces.ray());
   const RtslBvhNode *const nodes = launch.nodes;
   const RtslTreeItem *const treeItems = launch.treeItems;
-  TreeVisits visits(launch, root);
+  TreeVisits visits(launch);
   // Of each tree at most one entry a level, what is put off, and the rest of the items of the leaf
   // from which an instance was entered.
   Open stack[(isNested ? 2 : 1) * maxBvhDepth + mostPutOff + isNested];
   constexpr int inNone = -1;
   int top = 0;
   int outside = inNone; // the entries below it are of the outer tree, where the ray is in an inner
-  Open open = {root, 1u << (24 + flipped)};
+  Open open = {0, 1u << (24 + flipped)}; // the root
   for (;;) {
     uint32_t firstItem = open.first, items = open.bits;
     if (open.hasNodes()) {
@@ -239,7 +239,7 @@ bool traverseSpaces(const RtslLaunch &launch, uint32_t root, Spaces &spaces, flo
       visits.item();
       const Next next = spaces.test(treeItems[firstItem + uint32_t(__builtin_ctz(items))]);
       if (next == Next::Nothing)
-        return true;
+        return;
       if (isNested && next == Next::Inside) {
         if (open.hasNodes())
           stack[top++] = open;
@@ -258,17 +258,16 @@ bool traverseSpaces(const RtslLaunch &launch, uint32_t root, Spaces &spaces, flo
         flipped = flippedSlots(spaces.ray());
       }
       if (top == 0)
-        return false;
+        return;
       open = stack[--top];
     }
   }
 }
 
-/// The same with a tree of one space: calls test(item), which returns true to stop; then so does
-/// this.
+/// The same where all items are in one space: calls test(item), which returns true to stop.
 template <typename Limit, typename Test>
-bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray, float tMin,
-                 Limit tMax, bool putsOff, Test test) {
+void traverseBvh(const RtslLaunch &launch, const TriangleRay &ray, float tMin, Limit tMax,
+                 bool putsOff, Test test) {
   struct OneSpace {
     const TriangleRay &inIt;
     Test &isLast;
@@ -278,7 +277,7 @@ bool traverseBvh(const RtslLaunch &launch, uint32_t root, const TriangleRay &ray
     static uint32_t root() { return 0; }
     static void leave() {}
   } space = {ray, test};
-  return traverseSpaces<false>(launch, root, space, tMin, tMax, putsOff);
+  traverseSpaces<false>(launch, space, tMin, tMax, putsOff);
 }
 
 } // namespace rtsl::device

@@ -98,14 +98,14 @@ struct LaunchTree {
       return;
     }
     if (!hasTransforms(launch)) {
-      traverseBvh(launch, 0, ray, tMin, limit, putsOff, [&](const RtslTreeItem &inMemory) {
+      traverseBvh(launch, ray, tMin, limit, putsOff, [&](const RtslTreeItem &inMemory) {
         const ItemWords stored(inMemory);
         return visit(TreeItem{stored.leafItem(), stored}, ray);
       });
       return;
     }
     Spaces<Limit, Enter, Visit> spaces = {state, ray, SearchRay(ray), limit, enter, visit};
-    traverseSpaces<true>(launch, 0, spaces, tMin, limit, putsOff);
+    traverseSpaces<true>(launch, spaces, tMin, limit, putsOff);
   }
 
 private:
@@ -123,8 +123,7 @@ private:
     const TriangleRay &ray() const { return current; }
     void leave() { current.leaveInstance(world); }
     uint32_t root() const {
-      const RtslLaunch &launch = *state.launch;
-      return launch.meshTrees[treeNumber(launch, instanceAt(launch, current.instance))];
+      return state.launch->meshTrees[treeNumber(*state.launch, instance(current.instance))];
     }
 
     Next test(const RtslTreeItem &inMemory) {
@@ -132,18 +131,17 @@ private:
       TreeItem item = {stored.leafItem(), stored};
       if (!current.isInWorld())
         item.instance = current.instance;
-      else if (!stored.hasVertices() && hasOwnSpace(*state.launch, instanceOf(item)))
+      else if (!stored.hasVertices() && hasOwnSpace(*state.launch, instance(item.instance)))
         return tryToEnter(item.instance);
       return visit(item, current) ? Next::Nothing : Next::Item;
     }
 
-    const RtslInstance &instanceOf(const RtslLeafItem &item) const {
-      return instanceAt(*state.launch, item.instance);
+    const RtslInstance &instance(uint32_t number) const {
+      return instanceAt(*state.launch, number);
     }
-    Next tryToEnter(uint32_t instance) {
-      return enter(instanceAt(*state.launch, instance)) &&
-                     enterInstance(*state.launch, world, instance, state.Time, state.Epsilon,
-                                   limit(), current)
+    Next tryToEnter(uint32_t number) {
+      return enter(instance(number)) && enterInstance(*state.launch, world, number, state.Time,
+                                                      state.Epsilon, limit(), current)
                  ? Next::Inside
                  : Next::Item;
     }

@@ -119,11 +119,8 @@ inline bool hasStillTrianglesAlone(const RtslLaunch &launch) {
 }
 
 /// Has the item, which is found with the ray in its space, vertices?
-inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const InstanceRay &) {
+inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item) {
   return hasStillTrianglesAlone(launch) || item.stored.hasVertices();
-}
-inline bool hasVertices(const RtslLaunch &launch, const TreeItem &item, const TriangleRay &) {
-  return (hasStillTrianglesAlone(launch) && !hasTransforms(launch)) || item.stored.hasVertices();
 }
 
 /// Moves t, where intersectTriangle has found a hit, into the range of the ray in the triangle's
@@ -282,7 +279,7 @@ bool testItem(RtslState &state, const Ray &ray, const RtslLeafItem &item, Inters
 }
 template <typename Ray, typename Intersect>
 bool testItem(RtslState &state, const Ray &ray, const TreeItem &item, Intersect intersect) {
-  if (!hasVertices(*state.launch, item, ray))
+  if (!hasVertices(*state.launch, item))
     return testItem(state, ray, static_cast<const RtslLeafItem &>(item), intersect);
   return testTriangle(state, ray, item.vertices(), item.instance, item.primitive);
 }
@@ -296,7 +293,7 @@ bool testIfSeen(RtslState &state, const Ray &ray, const RtslLeafItem &item, cons
 template <typename Ray, typename Slots, typename Intersect>
 bool testIfSeen(RtslState &state, const Ray &ray, const TreeItem &item, const Slots &slots,
                 Intersect intersect) {
-  if (!hasVertices(*state.launch, item, ray))
+  if (!hasVertices(*state.launch, item))
     return testIfSeen(state, ray, static_cast<const RtslLeafItem &>(item), slots, intersect);
   return testTriangle(state, ray, item.vertices(), item.instance, item.primitive,
                       [&] { return isSeen(state, item, ray, slots); });

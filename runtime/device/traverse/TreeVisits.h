@@ -9,10 +9,10 @@
 
 namespace rtsl::device {
 
-/// Counts the visits of one search below one root. Destroying it adds them to RtslStatus::visits.
+/// Counts the visits of one search. Destroying it adds them to RtslStatus::visits.
 class TreeVisits {
 public:
-  TreeVisits(const RtslLaunch &launch, uint32_t root) : launch(launch), root(root) {}
+  explicit TreeVisits(const RtslLaunch &launch) : launch(launch) {}
   TreeVisits(const TreeVisits &) = delete;
   TreeVisits &operator=(const TreeVisits &) = delete;
 
@@ -20,7 +20,7 @@ public:
     if (!rtsl_counts_steps(&launch) || !launch.status)
       return;
     RtslTreeVisits &all = launch.status->visits;
-    __atomic_fetch_add(&all.rays, uint64_t(root == 0), __ATOMIC_RELAXED);
+    __atomic_fetch_add(&all.rays, uint64_t(1), __ATOMIC_RELAXED);
     __atomic_fetch_add(&all.nodes, uint64_t(nodes), __ATOMIC_RELAXED);
     __atomic_fetch_add(&all.items, uint64_t(items), __ATOMIC_RELAXED);
   }
@@ -30,7 +30,6 @@ public:
 
 private:
   const RtslLaunch &launch;
-  const uint32_t root;
   uint32_t nodes = 0, items = 0;
 };
 

@@ -333,4 +333,10 @@ ObjectValues members(std::vector<NamedValue> values) {
   return result;
 }
 
+void setCameraAtOrigin(Scene &scene) {
+  scene.setCamera(scene.addObject(
+      "Camera",
+      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+}
+
 } // namespace rtsl::runtime::test

@@ -62,4 +62,7 @@ Value vector(double x, double y, double z);
 /// Members by name in one line.
 ObjectValues members(std::vector<NamedValue> values);
 
+/// A Camera at the origin that looks along z, for a program that has the class.
+void setCameraAtOrigin(Scene &scene);
+
 } // namespace rtsl::runtime::test

@@ -94,9 +94,7 @@ constexpr int few = 10;
 inline Scene randomScene(unsigned seed, int instances) {
   std::mt19937 random(seed);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   const RtslRef material = scene.addObject("Normal", members({}));
   const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)), scene.addMesh(clump(random, 3)),
                                   scene.addMesh(movingClump(random, 12))};

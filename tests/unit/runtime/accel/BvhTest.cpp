@@ -220,9 +220,7 @@ Scene cloud(int triangles) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> wide(-10, 10), small(-0.2f, 0.2f);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   Mesh mesh;
   for (int i = 0; i < triangles; ++i) {
     const float centre[3] = {wide(random), std::round(wide(random)), wide(random)};
@@ -241,7 +239,7 @@ Scene cloud(int triangles) {
 int visitedNodes(const RtslLaunch &launch, const Ray &ray) {
   int nodes = 0;
   device::traverseBvh(
-      launch, 0, device::makeTriangleRay(ray.o, ray.d), 0,
+      launch, device::makeTriangleRay(ray.o, ray.d), 0,
       [&] {
         ++nodes;
         return device::infinity;
@@ -295,9 +293,7 @@ TEST(Bvh, UnusualNumbersDoNotLeadRaysEverywhere) {
 
 TEST(Bvh, AnEmptySceneHasANode) {
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   const HostScene host(scene, false, 1);
   EXPECT_EQ(host.deviceLaunch().nodeCount, 1u);
   EXPECT_EQ(visitedNodes(host.deviceLaunch(), {{0, 0, 0}, {0, 0, 1}}), 1);

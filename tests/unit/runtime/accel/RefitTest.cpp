@@ -36,9 +36,7 @@ std::vector<float> shaken(const Scene &scene, std::uint32_t mesh, float by, std:
 
 /// Adds a camera, and returns a material.
 RtslRef begin(Scene &scene) {
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   return scene.addObject("Normal", members({}));
 }
 

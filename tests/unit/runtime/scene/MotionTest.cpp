@@ -22,9 +22,7 @@ struct Point {
 
 Scene unlitScene() {
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   return scene;
 }
 

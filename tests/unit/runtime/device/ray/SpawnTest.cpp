@@ -75,9 +75,7 @@ Counts leaveSurface(const Scene &scene, Vec3 centre, float size, float scaleOfDi
 
 Scene sphereScene(double x, double y, double z, double radius) {
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   scene.addPrimitive(scene.addObject("Sphere", {vector(x, y, z), radius}),
                      scene.addObject("Normal", members({})));
   return scene;
@@ -109,9 +107,7 @@ TEST(SpawnEpsilon, RaysThatLeaveAPlaneDoNotMeetItAgain) {
   for (float scale : {1e-3f, 1.0f, 1e4f})
     for (float distance : {0.0f, 10.0f, 1000.0f}) {
       Scene scene(fakeProgram());
-      scene.setCamera(scene.addObject(
-          "Camera",
-          members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+      setCameraAtOrigin(scene);
       Vec3 centre = Vec3{unit(random), unit(random), unit(random)} * (scale * distance);
       Vec3 a = onSphere(random), b = normalized(cross(a, onSphere(random)));
       // A tilted grid: neighbours lie in almost one plane.
@@ -167,9 +163,7 @@ TEST(SpawnEpsilon, RaysThatLeaveAnInstanceDoNotMeetItAgain) {
                         Case{"flat", Transform::scale(1, 1, 1e-4).then(turned(1, 5))}})
     for (bool isMesh : {true, false}) {
       Scene scene(fakeProgram());
-      scene.setCamera(scene.addObject(
-          "Camera",
-          members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+      setCameraAtOrigin(scene);
       const RtslRef material = scene.addObject("Normal", members({}));
       Placement placement;
       placement.transform = c.transform;

@@ -57,9 +57,7 @@ Scene layers(unsigned seed, bool allInvoke) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> wide(-4, 4), deep(0, 20);
   Scene scene(askingProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef asks = scene.addObject("Normal", members({})),
           accepts = scene.addObject("Mirror", members({}));
   for (int part = 0; part < 4; ++part) {
@@ -228,9 +226,7 @@ TEST(AnyHit, InAnyOrderTheNearestAcceptedHitCounts) {
 TEST(AnyHit, MasksHideInstancesFromEveryTraversal) {
   std::shared_ptr<Program> program = askingProgram();
   Scene scene(program);
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef material = scene.addObject("Mirror", members({}));
   scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 5), 1.0}), material, {{}, 1});
   scene.addPrimitive(scene.addObject("Sphere", {vector(0, 0, 9), 1.0}), material, {{}, 6});

@@ -24,9 +24,7 @@ Scene randomScene(unsigned seed, int triangles, int spheres, float scale = 1) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> wide(-10, 10), small(-1, 1);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef material = scene.addObject("Normal", members({}));
   Mesh mesh;
   for (int i = 0; i < triangles; ++i) {
@@ -129,9 +127,7 @@ Scene tiedScene(unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> wide(-8, 8), unit(-1, 1);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef material = scene.addObject("Normal", members({}));
   auto point = [&](float scale) {
     return Vec3{scale * unit(random), scale * unit(random), scale * unit(random)};
@@ -201,9 +197,7 @@ Scene tiedScene(unsigned seed) {
 Scene instancedScene(unsigned seed) {
   std::mt19937 random(seed);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   const RtslRef material = scene.addObject("Normal", members({}));
   const std::uint32_t meshes[] = {scene.addMesh(clump(random, 40)),
                                   scene.addMesh(clump(random, 200))};
@@ -221,9 +215,7 @@ Scene instancedScene(unsigned seed) {
 Scene nestedScene() {
   std::mt19937 random(3);
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   const RtslRef material = scene.addObject("Normal", members({}));
   Mesh mesh;
   for (unsigned i = 0; i < 150; ++i) {
@@ -378,9 +370,7 @@ TEST(EmbreeTraversal, OccludersOfOtherRaysChangeNoAnswer) {
 
 TEST(HostTraversal, ExtremeDirections) {
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef material = scene.addObject("Normal", members({}));
   Mesh wall;
   wall.positions = {-1, -1, 4, 1, -1, 4, 0, 1, 4};
@@ -448,9 +438,7 @@ TEST(BvhBuilder, ItemsInOnePlaceAndInfinitePrimitives) {
   EXPECT_LE(buildBvh(items).depth(), 12u);
 
   Scene scene(fakeProgram());
-  scene.setCamera(scene.addObject(
-      "Camera",
-      members({{"eye", vector(0, 0, 0)}, {"gaze", vector(0, 0, 1)}, {"up", vector(0, 1, 0)}})));
+  setCameraAtOrigin(scene);
   RtslRef material = scene.addObject("Normal", members({}));
   double inf = INFINITY;
   for (int i = 0; i < 10; ++i)
