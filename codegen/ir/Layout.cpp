@@ -11,14 +11,15 @@ namespace rtsl::ir {
 std::uint32_t sizeInBytes(mlir::Type type) {
   return llvm::TypeSwitch<mlir::Type, std::uint32_t>(type)
       .Case([](mlir::VectorType vector) {
-        return static_cast<std::uint32_t>(vector.getNumElements()) * 4u;
+        return static_cast<std::uint32_t>(vector.getNumElements()) *
+               sizeInBytes(vector.getElementType());
       })
       .Case([](ArrayType array) { return array.getLength() * sizeInBytes(array.getElement()); })
       .Case([](StructType structure) {
         return fieldOffset(structure, structure.getFieldTypes().size());
       })
       .Case([](BufferType) { return static_cast<std::uint32_t>(sizeof(RtslBuffer)); })
-      .Default([](mlir::Type) { return 4u; });
+      .Default([](mlir::Type scalar) { return scalar.isF64() ? 8u : 4u; });
 }
 
 std::uint32_t fieldOffset(StructType type, unsigned index) {

@@ -34,7 +34,8 @@ constexpr std::size_t mostListed = 32;
 
 std::vector<std::int32_t> wordsOf(const void *bytes, std::size_t size) {
   std::vector<std::int32_t> words(size / 4);
-  std::memcpy(words.data(), bytes, words.size() * 4);
+  if (!words.empty()) // `bytes` may be null
+    std::memcpy(words.data(), bytes, words.size() * 4);
   return words;
 }
 

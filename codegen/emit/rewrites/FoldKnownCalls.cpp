@@ -4,6 +4,7 @@
 #include "codegen/ir/dialect/RtslOps.h"
 
 #include "llvm/ADT/STLExtras.h"
+#include "llvm/IR/Constants.h"
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Instructions.h"
 

@@ -56,13 +56,21 @@ static bool isInt(mlir::Type type) {
   return type.isSignlessInteger(32);
 }
 
+static bool isDouble(mlir::Type type) {
+  return type.isF64();
+}
+
+bool isWide(mlir::Type type) {
+  return isDouble(type) || isVector(type, isDouble);
+}
+
 bool isValueType(mlir::Type type) {
-  return isScalar(type) || isVector(type, isScalar) || llvm::isa<RefType>(type);
+  return isScalar(type) || isVector(type, isScalar) || llvm::isa<RefType>(type) || isWide(type);
 }
 
 bool isStorable(mlir::Type type) {
   // The parts of an aggregate were verified when it was made.
-  return isValueType(type) || llvm::isa<StructType, ArrayType, BufferType>(type);
+  return (isValueType(type) && !isWide(type)) || llvm::isa<StructType, ArrayType, BufferType>(type);
 }
 
 bool isFloatOrVector(mlir::Type type) {
@@ -124,6 +132,8 @@ LogicalResult RefType::verify(function_ref<InFlightDiagnostic()> emitError,
 }
 
 LogicalResult PtrType::verify(function_ref<InFlightDiagnostic()> emitError, mlir::Type pointee) {
+  if (isWide(pointee)) // a variable's
+    return mlir::success();
   return verifyStorable(emitError, pointee, "the pointee");
 }
 

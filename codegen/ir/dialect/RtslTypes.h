@@ -19,12 +19,17 @@ namespace rtsl::ir {
 
 /// f32, i32 or i1.
 bool isScalar(mlir::Type type);
-/// A scalar, a vector of 1 to 16 scalars or a reference: the SSA values that can be stored.
+/// f64, or a vector of 1 to 16 of them: in double precision bounds of errors are computed, whose
+/// variables alone may have such types.
+bool isWide(mlir::Type type);
+/// A scalar, a vector of 1 to 16 scalars, a reference, or one that isWide: the SSA values that can
+/// be stored.
 bool isValueType(mlir::Type type);
 /// Numbers, and structs and arrays of them: excludes values that are valid in one process or one
 /// scene only.
 bool isNumbers(mlir::Type type);
-/// Whether a `!rtsl.ptr` may point to it: a value type or an aggregate of such.
+/// Whether members, elements and fields may have it: a value type, or an aggregate of such. A
+/// `!rtsl.ptr` points to these, or to a variable that isWide.
 bool isStorable(mlir::Type type);
 inline bool isRef(mlir::Type type) {
   return llvm::isa<RefType>(type);

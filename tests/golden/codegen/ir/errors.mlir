@@ -69,8 +69,8 @@ func.func @noClass(%self: !rtsl.ref<"Clay">) {
 
 // -----
 
-// expected-error @below {{the pointee cannot be 'f64': memory holds f32, i32, i1}}
-func.func private @f(!rtsl.ptr<f64>)
+// expected-error @below {{the pointee cannot be 'i64': memory holds f32, i32, i1}}
+func.func private @f(!rtsl.ptr<i64>)
 
 // -----
 

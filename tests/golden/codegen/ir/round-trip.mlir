@@ -26,6 +26,8 @@ func.func @memory(%self: !rtsl.ref<"Glass">, %i: i32, %j: i32) attributes {rtsl.
   %ray = rtsl.var "ray" : !rtsl.ptr<!rtsl.struct<"Ray", {origin: vector<3xf32>, mask: i32, "end": i1}>>
   // CHECK: %m = rtsl.var "m" : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>
   %m = rtsl.var "m" : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>
+  // CHECK: %wide = rtsl.var "wide" : !rtsl.ptr<f64>
+  %wide = rtsl.var "wide" : !rtsl.ptr<f64>
   // CHECK: rtsl.clear %m : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>
   rtsl.clear %m : !rtsl.ptr<!rtsl.array<3 x vector<3xf32>>>
   // CHECK: rtsl.field %ray["origin"] : !rtsl.ptr<!rtsl.struct<"Ray", {origin: vector<3xf32>, mask: i32, end: i1}>> -> !rtsl.ptr<vector<3xf32>>

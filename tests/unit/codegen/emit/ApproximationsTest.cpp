@@ -2,6 +2,7 @@
 #include "tests/unit/codegen/emit/ParseLlvm.h"
 
 #include "llvm/IR/InstIterator.h"
+#include "llvm/IR/Instructions.h"
 #include "llvm/IR/PassManager.h"
 
 #include <gtest/gtest.h>

@@ -30,6 +30,23 @@ func.func @choice(%c: i1, %x: f32) -> f32 {
 
 // -----
 
+// The same in double precision, as in bounds of errors.
+// CHECK-LABEL: @choiceOfDoubles(
+// CHECK: %[[W:.*]] = rtsl.var "merged" : !rtsl.ptr<vector<3xf64>>
+// CHECK: rtsl.store %{{.*}}, %[[W]]
+// CHECK: %[[R:.*]] = rtsl.load %[[W]]
+// CHECK-NEXT: rtsl.return %[[R]] : vector<3xf64>
+func.func @choiceOfDoubles(%c: i1, %x: vector<3xf64>) -> vector<3xf64> {
+  cf.cond_br %c, ^join(%x : vector<3xf64>), ^other
+^other:
+  %n = arith.negf %x : vector<3xf64>
+  cf.br ^join(%n : vector<3xf64>)
+^join(%w: vector<3xf64>):
+  return %w : vector<3xf64>
+}
+
+// -----
+
 // Nested loops: `while` both, each variable is stored where it changes.
 // CHECK-LABEL: @nested(
 // CHECK: %[[J:.*]] = rtsl.var "j"
