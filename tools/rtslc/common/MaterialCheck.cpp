@@ -141,14 +141,14 @@ bool drawsByAuthors(const LinkRequest &request, const typed::Module &module,
 }
 
 std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
-                                  LinkRequest request, CompileOptions compile) {
+                                  const SourceManager &sources, LinkRequest request,
+                                  CompileOptions compile) {
   request.isSampled = true;
   request.isOnlySampled = true;
   request.keep.add(ItemSet::ofMembers()); // the records of the objects stay as they are
   compile.target = Target::Host;
   compile.trace = TraceMode::Recurse;
   compile.optimization = 0;
-  SourceManager sources;
   Diagnostics unheard(sources); // all of these have been reported already
   const auto program = compileProgram(module, request, compile, unheard,
                                       [&](const auto &) { return scene.facts(); });

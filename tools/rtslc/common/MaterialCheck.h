@@ -23,6 +23,7 @@ bool drawsByAuthors(const LinkRequest &request, const typed::Module &module,
 /// of 0 are warnings, one for each method and class, at its first object. The scene gets a program
 /// of its own for this.
 std::vector<Warning> tryMaterials(runtime::Scene &scene, const typed::Module &module,
-                                  LinkRequest request, CompileOptions compile);
+                                  const SourceManager &sources, LinkRequest request,
+                                  CompileOptions compile);
 
 } // namespace rtsl::tool

@@ -41,7 +41,8 @@ void checkLaunch(const scene::SceneDescription &launch, const typed::Module &mod
     messages.report(warning);
   const bool isWhole = launch.refused.names.empty() && launch.refused.classes.empty();
   if (isWhole && !messages.diagnostics.hasErrors() && hasSurfaceMethods(request, scene->program()))
-    for (const Warning &warning : tryMaterials(*scene, module, request, options.common.compile))
+    for (const Warning &warning :
+         tryMaterials(*scene, module, messages.sources, request, options.common.compile))
       messages.report(warning);
 }
 

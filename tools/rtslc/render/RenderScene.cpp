@@ -390,7 +390,8 @@ private:
       return;
     if (summary.statistics.samplesNotFinite ||
         (isFirstFrame() && drawsByAuthors(request, *module, messages.sources)))
-      for (const Warning &warning : tryMaterials(*scene, *module, request, compileOptions))
+      for (const Warning &warning :
+           tryMaterials(*scene, *module, messages.sources, request, compileOptions))
         messages.report(warning);
   }
 
