@@ -99,10 +99,11 @@ private:
 
 /// Calls test(place) for each block that may have hits between tMin and limit(), nearer ones first
 /// on the whole. limit() may shrink in a test. test returns true to stop; then so does this.
-template <typename Limit, typename Test>
+/// Before a child of a node is read, pause(child) is called (BlockNode::children).
+template <typename Limit, typename Test, typename Pause>
 [[gnu::always_inline]] inline bool searchBlocks(const BlockTree &tree,
                                                 const device::TriangleRay &ray, float tMin,
-                                                Limit limit, Test test) {
+                                                Limit limit, Test test, Pause pause) {
   if (tree.isEmpty())
     return false;
   struct Open {
@@ -127,6 +128,7 @@ template <typename Limit, typename Test>
     }
     const std::uint32_t child = open.node->children[nearest.slot()];
     open.children.remove(nearest.slot());
+    pause(child);
     if (child & BlockNode::isBlock) {
       if (test(child & ~BlockNode::isBlock))
         return true;

@@ -54,6 +54,9 @@ public:
   BlockTree(const std::vector<MeshUse> &meshes, unsigned threads);
 
   bool isEmpty() const { return blocks.empty(); }
+  std::size_t bytes() const {
+    return nodes.size() * sizeof(BlockNode) + blocks.size() * sizeof(TriangleBlock);
+  }
   /// The exact box of all triangles; empty if there are none.
   const RtslBox &bounds() const { return box; }
 

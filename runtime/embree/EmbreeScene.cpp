@@ -115,6 +115,16 @@ void EmbreeScene::update(const Scene &scene, unsigned threads) {
     self->number = newNumber(); // blocks that occluded a ray may be no more
 }
 
+/// In smaller trees, which the caches hold, the pauses cost more time than they save
+/// (docs/benchmarks.md).
+unsigned EmbreeScene::raysInTurns() const {
+  constexpr std::size_t large = 96 << 20;
+  std::size_t bytes = self->world.triangles.bytes();
+  for (const auto &[number, space] : self->spaces)
+    bytes += space->triangles.bytes();
+  return bytes >= large ? 3 : 1;
+}
+
 void EmbreeScene::rememberBoxes() {
   self->world.boxes = boxesOf(self->world);
   for (const auto &[number, space] : self->spaces)

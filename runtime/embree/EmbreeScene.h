@@ -59,6 +59,10 @@ public:
   /// The same for a ray that isEasy. In EmbreeRay.h.
   std::uint32_t traverseEasy(RtslState &state, std::uint32_t how) const;
 
+  /// How many rays a thread should trace in turns (support/Fibers.h), so that some go on while
+  /// others wait for memory. At least 1.
+  unsigned raysInTurns() const;
+
   /// Calls `visitor` for items that the ray may hit. canFollow must accept the ray.
   void visit(RtslState &state, const device::TriangleRay &ray, const EmbreeVisitor &visitor) const;
 

@@ -42,6 +42,9 @@ public:
   /// added. Not while rays are traced.
   void update();
 
+  /// How many rays a thread should trace in turns: EmbreeScene::raysInTurns.
+  unsigned raysInTurns() const { return embree ? embree->raysInTurns() : 1; }
+
   /// Has our own tree been built?
   bool hasOwnTree() const { return launch.host != nullptr; }
 

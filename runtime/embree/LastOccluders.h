@@ -38,7 +38,8 @@ public:
   }
 
   /// Does a ray hit one of them? `test` tests an occluder in the scene with this number, which is
-  /// not 0. Those whose tests did not pay off recently are skipped.
+  /// not 0. Those whose tests did not pay off recently are skipped. During a test other rays of
+  /// this thread may go on, and change the list: then this one pays for another occluder.
   template <typename Test>
   bool isMet(std::uint64_t ofScene, Test test) {
     if (scene != ofScene)

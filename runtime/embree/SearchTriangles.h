@@ -3,6 +3,7 @@
 
 #include "runtime/accel/BlockSearch.h"
 #include "runtime/embree/EmbreeContext.h"
+#include "support/Fibers.h"
 
 #include <cstdint>
 
@@ -20,11 +21,12 @@ template <typename Ray>
     return false;
   };
   return searchBlocks(
-      context.space->triangles, ray, context.state->Epsilon, [&] { return context.limit(); },
-      visit);
+      context.space->triangles, ray, context.state->Epsilon, [&] { return context.limit(); }, visit,
+      [](std::uint32_t) {});
 }
 
 /// Searches the triangles of the space for the nearest hit, or for any. True if the search is over.
+/// While a node or a block is loaded, other rays of this thread go on, if it has any.
 template <typename Ray, bool anyHit>
 [[gnu::noinline]] bool searchTriangles(const EmbreeContext &context) {
   RtslState &state = *context.state;
@@ -44,8 +46,15 @@ template <typename Ray, bool anyHit>
       return context.endsAtHit(item);
     }
   };
-  return searchBlocks(
-      context.space->triangles, ray, state.Epsilon, [&] { return state.nearest; }, test);
+  const BlockTree &tree = context.space->triangles;
+  const auto limit = [&] { return state.nearest; };
+  Fibers *const fibers = Fibers::ofThread();
+  if (!fibers)
+    return searchBlocks(tree, ray, state.Epsilon, limit, test, [](std::uint32_t) {});
+  return searchBlocks(tree, ray, state.Epsilon, limit, test, [&](std::uint32_t child) {
+    tree.prefetch(child);
+    fibers->pause();
+  });
 }
 
 /// The same, whatever the search is for.

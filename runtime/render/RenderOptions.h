@@ -48,6 +48,9 @@ struct RenderOptions {
   std::uint32_t maxDepth = 8; // 0: camera rays only
   std::uint32_t seed = 1;
   std::uint32_t threads = 0; // 0: all cores
+  /// Of each thread of the host: it renders so many pixels in turns (support/Fibers.h), at most
+  /// Fibers::most. 0: by the size of the trees.
+  std::uint32_t pixelsInTurns = 0;
   Traversal traversal = Traversal::Embree;
   std::optional<TreeKind> tree; // of the traversal of GPUs; nothing: treeKind decides
 

@@ -6,6 +6,7 @@
 #include "runtime/render/Watch.h"
 #include "support/Clock.h"
 #include "support/ErrorMessages.h"
+#include "support/Fibers.h"
 #include "support/FirstFew.h"
 
 #include <algorithm>
@@ -30,6 +31,8 @@ struct Worker {
   RtslStatus status{}; // lanes count in it
   std::uint64_t samples = 0, pixels = 0, pixelsWithoutSample = 0;
   SamplesNotFinite notFinite;
+  Window tile = {};           // that it renders; empty: none
+  std::uint32_t x = 0, y = 0; // its next pixel
 };
 
 /// The sums of one pixel, or of a half of its samples.
@@ -114,11 +117,13 @@ struct Renderer::Implementation {
   Implementation(const Scene &scene, const RenderOptions &options)
       : scene(scene), options(options) {}
 
+  bool takeTile(Worker &worker);
   template <typename Count>
-  void renderTile(std::uint64_t tile, Worker &worker, Count components);
+  void renderPixels(Worker &worker, Count components);
   template <std::uint32_t halves, typename Count>
   void renderPixel(std::uint32_t x, std::uint32_t y, Worker &worker, Count components);
-  void work();
+  unsigned pixelsInTurns() const;
+  void work(std::uint64_t stack);
   void add(Worker &worker);
 };
 
@@ -238,41 +243,74 @@ void Renderer::Implementation::renderPixel(std::uint32_t x, std::uint32_t y, Wor
                            : 0.0f;
 }
 
-template <typename Count>
-void Renderer::Implementation::renderTile(std::uint64_t tile, Worker &worker, Count components) {
-  std::uint32_t x0 = window.x0 + std::uint32_t(tile % tilesAcross) * tileSize,
-                y0 = window.y0 + std::uint32_t(tile / tilesAcross) * tileSize;
-  std::uint32_t x1 = std::min(x0 + tileSize, window.x1), y1 = std::min(y0 + tileSize, window.y1);
-  for (std::uint32_t y = y0; y < y1; ++y)
-    for (std::uint32_t x = x0; x < x1; ++x) {
-      const std::size_t index = std::size_t(y - window.y0) * window.width() + (x - window.x0);
-      if (sums && !sums->isOpen(index))
-        ++worker.pixels;
-      else
-        sums && sums->isAdaptive() ? renderPixel<2>(x, y, worker, components)
-                                   : renderPixel<1>(x, y, worker, components);
-    }
+/// Begins the next tile. False: there is none. Of the tile before, the pixels of this thread's
+/// other fibers may not be finished.
+bool Renderer::Implementation::takeTile(Worker &worker) {
+  if (worker.tile.pixels() != 0)
+    watch->advance(tileCount);
+  worker.tile = {};
+  worker.y = 0;
+  if (watch->isStopped())
+    return false;
+  const std::uint64_t tile = nextTile.fetch_add(1, std::memory_order_relaxed);
+  if (tile >= tileCount)
+    return false;
+  const std::uint32_t x0 = window.x0 + std::uint32_t(tile % tilesAcross) * tileSize,
+                      y0 = window.y0 + std::uint32_t(tile / tilesAcross) * tileSize;
+  worker.tile = {x0, y0, std::min(x0 + tileSize, window.x1), std::min(y0 + tileSize, window.y1)};
+  worker.x = x0;
+  worker.y = y0;
+  return true;
 }
 
-void Renderer::Implementation::work() {
+/// Renders pixels, one after the other, until no tile is left.
+template <typename Count>
+void Renderer::Implementation::renderPixels(Worker &worker, Count components) {
+  for (;;) {
+    if (worker.y == worker.tile.y1 && !takeTile(worker))
+      return;
+    const std::uint32_t x = worker.x, y = worker.y;
+    if (++worker.x == worker.tile.x1) {
+      worker.x = worker.tile.x0;
+      ++worker.y;
+    }
+    const std::size_t index = std::size_t(y - window.y0) * window.width() + (x - window.x0);
+    if (sums && !sums->isOpen(index))
+      ++worker.pixels;
+    else
+      sums && sums->isAdaptive() ? renderPixel<2>(x, y, worker, components)
+                                 : renderPixel<1>(x, y, worker, components);
+  }
+}
+
+/// Split shaders keep their rays in memory that a thread has once (MachineStack.h). Where the
+/// frames of shaders may be large, or are not known, there are no stacks for several pixels.
+unsigned Renderer::Implementation::pixelsInTurns() const {
+  constexpr std::uint64_t largestStack = 16 << 20;
+  const Program &program = scene.program();
+  if (program.slots.states.run)
+    return 1;
+  if (options.pixelsInTurns != 0)
+    return options.pixelsInTurns;
+  return program.stackBytes && stackBytes(program, launch) <= largestStack ? host->raysInTurns()
+                                                                           : 1;
+}
+
+void Renderer::Implementation::work(std::uint64_t stack) {
   rayCounters() = RayCounters();
   Worker worker{launch, {}, 0, 0, 0, SamplesNotFinite(options.mostNotFinite)};
   worker.launch.status = &worker.status;
-  try {
-    while (!watch->isStopped()) {
-      std::uint64_t tile = nextTile.fetch_add(1, std::memory_order_relaxed);
-      if (tile >= tileCount)
-        break;
+  Fibers::run(pixelsInTurns(), stack, [&](unsigned) {
+    try {
       if (launch.colorComponents == 3)
-        renderTile(tile, worker, std::integral_constant<std::uint32_t, 3>());
+        renderPixels(worker, std::integral_constant<std::uint32_t, 3>());
       else
-        renderTile(tile, worker, launch.colorComponents);
-      watch->advance(tileCount);
+        renderPixels(worker, launch.colorComponents);
+    } catch (...) {
+      watch->stop();
+      throw;
     }
-  } catch (...) {
-    watch->stop();
-    throw;
-  }
+  });
   add(worker);
 }
 
@@ -304,9 +342,9 @@ void Renderer::run(Watch &watch) {
   self->watch = &watch;
   self->samplesOfPixel = samplesOfPixel;
   self->sums = sums;
-  const HostThreads threads(options, self->tileCount,
-                            stackBytes(self->scene.program(), self->launch));
-  threads.run([this](unsigned) { self->work(); });
+  const std::uint64_t stack = stackBytes(self->scene.program(), self->launch);
+  const HostThreads threads(options, self->tileCount, stack);
+  threads.run([&](unsigned) { self->work(stack); });
 }
 
 RenderStatistics Renderer::finish() {

@@ -116,6 +116,24 @@ TEST(Renderer, PictureDoesNotDependOnThreads) {
   }
 }
 
+TEST(Renderer, PictureDoesNotDependOnPixelsInTurns) {
+  Scene scene = room();
+  RenderOptions options = smallPicture();
+  options.pixelsInTurns = 1;
+  RenderStatistics statistics;
+  const Image one = render(scene, options, &statistics);
+  for (const std::uint32_t pixels : {2u, 3u, 8u}) {
+    options.pixelsInTurns = pixels;
+    for (const std::uint32_t threads : {1u, 5u}) {
+      options.threads = threads;
+      RenderStatistics inTurns;
+      EXPECT_EQ(report::measureError(one, render(scene, options, &inTurns)).pixelsThatDiffer, 0u);
+      EXPECT_EQ(inTurns.samples, statistics.samples);
+      EXPECT_EQ(inTurns.pixels, statistics.pixels);
+    }
+  }
+}
+
 TEST(Renderer, SeedChangesTheNoiseAndNothingElse) {
   Scene scene = room();
   RenderOptions options = smallPicture();

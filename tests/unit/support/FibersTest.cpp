@@ -1,0 +1,107 @@
+#include "support/Fibers.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace {
+
+using rtsl::Fibers;
+
+void pause() {
+  if (Fibers *fibers = Fibers::ofThread())
+    fibers->pause();
+}
+
+bool areSeveral() {
+  bool several = false;
+  Fibers::run(2, 0, [&](unsigned) { several = Fibers::ofThread() != nullptr; });
+  return several;
+}
+
+TEST(Fibers, TakeTurnsAtPauses) {
+  if (!areSeveral())
+    GTEST_SKIP() << "AddressSanitizer knows one stack of a thread";
+  std::string turns;
+  Fibers::run(3, 0, [&](unsigned number) {
+    for (unsigned i = 0; i <= 2 * number; ++i) {
+      turns += char('a' + number);
+      pause();
+    }
+  });
+  EXPECT_EQ(turns, "abcbcbccc");
+  EXPECT_EQ(Fibers::ofThread(), nullptr);
+}
+
+TEST(Fibers, OneHasNoOther) {
+  unsigned runs = 0;
+  Fibers::run(1, 0, [&](unsigned number) {
+    EXPECT_EQ(number, 0u);
+    EXPECT_EQ(Fibers::ofThread(), nullptr);
+    ++runs;
+  });
+  EXPECT_EQ(runs, 1u);
+}
+
+/// Registers, also those of vectors, and frames on the stack survive pauses.
+TEST(Fibers, KeepTheirNumbers) {
+  std::vector<std::uint64_t> sums(Fibers::most);
+  std::vector<double> means(Fibers::most);
+  Fibers::run(Fibers::most + 1, 1 << 20, [&](unsigned number) {
+    std::vector<double> doubles(16, number);
+    std::uint64_t sum = number, other = 3 * number, third = 7 * number;
+    for (unsigned i = 0; i < 1000; ++i) {
+      sum = sum * 31 + i;
+      other += sum >> 7;
+      third ^= other;
+      for (double &a : doubles)
+        a += 0.5 * a + number;
+      pause();
+      for (double &a : doubles)
+        a *= 0.5;
+    }
+    sums.at(number) = sum ^ other ^ third;
+    means.at(number) = std::accumulate(doubles.begin(), doubles.end(), 0.0);
+  });
+  const std::vector<std::uint64_t> sumsInTurns = sums;
+  const std::vector<double> meansInTurns = means;
+  const unsigned count = areSeveral() ? Fibers::most : 1;
+  for (unsigned number = 0; number < count; ++number) {
+    std::vector<double> doubles(16, number);
+    std::uint64_t sum = number, other = 3 * number, third = 7 * number;
+    for (unsigned i = 0; i < 1000; ++i) {
+      sum = sum * 31 + i;
+      other += sum >> 7;
+      third ^= other;
+      for (double &a : doubles)
+        a = (a + (0.5 * a + number)) * 0.5;
+    }
+    EXPECT_EQ(sumsInTurns[number], sum ^ other ^ third) << number;
+    EXPECT_EQ(meansInTurns[number], std::accumulate(doubles.begin(), doubles.end(), 0.0)) << number;
+  }
+}
+
+TEST(Fibers, ThrowTheFirstExceptionWhenAllHaveEnded) {
+  const unsigned thrower = areSeveral() ? 2 : 0;
+  unsigned ended = 0;
+  try {
+    Fibers::run(4, 0, [&](unsigned number) {
+      pause();
+      if (number == thrower)
+        throw std::runtime_error("number " + std::to_string(number));
+      pause();
+      ++ended;
+    });
+    FAIL() << "no exception";
+  } catch (const std::runtime_error &error) {
+    EXPECT_EQ(error.what(), "number " + std::to_string(thrower));
+  }
+  EXPECT_EQ(ended, thrower == 2 ? 3u : 0u);
+  EXPECT_EQ(Fibers::ofThread(), nullptr);
+}
+
+} // namespace
