@@ -56,6 +56,8 @@ private:
 
 void Fibers::run(unsigned count, std::uint64_t stackBytes,
                  const std::function<void(unsigned)> &work) {
+  if (current)
+    return work(0);
   std::vector<FiberStack> memory;
   Fibers fibers(work);
   for (unsigned number = 1; mayInterleave && number < std::min(count, most); ++number) {

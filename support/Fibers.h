@@ -22,13 +22,16 @@ public:
   /// Runs work(0) ... work(count - 1), at most `most`, in turns on this thread: one begins, and at
   /// each pause the next one goes on. work(0) runs on the thread's own stack, the others have
   /// `stackBytes` each, beside stackMargin (WorkerThreads.h). If memory for stacks is short, some
-  /// are left out. Not within itself. Rethrows an exception of `work` when all have ended.
-  /// Under AddressSanitizer, which knows one stack of a thread, only work(0) runs.
+  /// are left out. Rethrows an exception of `work` when all have ended. Only work(0) runs within a
+  /// fiber, as a part of it, and under AddressSanitizer, which knows one stack of a thread.
   static void run(unsigned count, std::uint64_t stackBytes,
                   const std::function<void(unsigned)> &work);
 
   /// Those that run on this thread; null unless there are several.
   static Fibers *ofThread() { return current; }
+
+  /// Of this thread's fiber that runs; 0 if there is one.
+  static unsigned number() { return current ? current->running : 0; }
 
   /// Lets the others go on, until each of them has paused or ended.
   [[gnu::always_inline]] void pause() {

@@ -2,6 +2,7 @@
 
 #include "runtime/embree/HostScene.h"
 #include "runtime/scene/Scene.h"
+#include "support/Fibers.h"
 #include "support/Parallel.h"
 
 #include <algorithm>
@@ -60,19 +61,22 @@ struct MeshQuery::Implementation {
   /// Traces all rays, and calls take(i, state, whether it hits something).
   template <typename Take>
   void trace(const QueryRay *rays, std::size_t count, std::uint32_t how, Take take) const {
-    forRangesInParallel(threads, count, 1024, [&](std::size_t first, std::size_t end) {
-      RtslState state{};
-      state.launch = &launch;
-      state.rayMask = ~0u;
-      for (std::size_t i = first; i < end; ++i) {
-        const QueryRay &ray = rays[i];
-        std::copy_n(ray.origin, 3, state.RayOrigin);
-        std::copy_n(ray.direction, 3, state.RayDirection);
-        state.Epsilon = ray.tMin;
-        state.HitDistance = ray.tMax;
-        state.instance = state.primitive = RTSL_NO_HIT;
-        take(i, state, trees.traverse(state, how) == RTSL_HIT);
-      }
+    forRangesInParallel(threads, count, 4096, [&](std::size_t next, std::size_t end) {
+      Fibers::run(trees.raysInTurns(), 0, [&](unsigned) {
+        RtslState state{};
+        state.launch = &launch;
+        state.rayMask = ~0u;
+        while (next < end) {
+          const std::size_t i = next++;
+          const QueryRay &ray = rays[i];
+          std::copy_n(ray.origin, 3, state.RayOrigin);
+          std::copy_n(ray.direction, 3, state.RayDirection);
+          state.Epsilon = ray.tMin;
+          state.HitDistance = ray.tMax;
+          state.instance = state.primitive = RTSL_NO_HIT;
+          take(i, state, trees.traverse(state, how) == RTSL_HIT);
+        }
+      });
     });
   }
 };

@@ -2,7 +2,9 @@
 #include "runtime/render/MachineStack.h"
 
 #include "runtime/device/ray/Abi.h"
+#include "support/Fibers.h"
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -15,7 +17,7 @@ struct Free {
   void operator()(void *memory) const { std::free(memory); }
 };
 
-struct ThreadStack {
+struct FiberMemory {
   std::unique_ptr<void, Free> memory;
   std::uint64_t size = 0;
 };
@@ -23,7 +25,8 @@ struct ThreadStack {
 } // namespace
 
 extern "C" void *rtsl_machine_stack(std::uint64_t bytes) {
-  thread_local ThreadStack stack;
+  thread_local std::array<FiberMemory, rtsl::Fibers::most> ofThread;
+  FiberMemory &stack = ofThread[rtsl::Fibers::number()];
   if (bytes <= stack.size)
     return stack.memory.get();
   stack.memory.reset();

@@ -1,7 +1,8 @@
 //===- MachineStack.h - memory for rays in flight -------------------------===//
 //
 // Memory for the rays of the machine of split shaders (runtime/device/engines/Machine.h): one block
-// per thread, as large as the depth limit and the largest frame require, so it cannot overflow.
+// per fiber of a thread, as large as the depth limit and the largest frame require, so it cannot
+// overflow.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

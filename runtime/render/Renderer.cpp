@@ -283,13 +283,11 @@ void Renderer::Implementation::renderPixels(Worker &worker, Count components) {
   }
 }
 
-/// Split shaders keep their rays in memory that a thread has once (MachineStack.h). Where the
-/// frames of shaders may be large, or are not known, there are no stacks for several pixels.
+/// Where the frames of shaders may be large, or are not known, there are no stacks for several
+/// pixels.
 unsigned Renderer::Implementation::pixelsInTurns() const {
   constexpr std::uint64_t largestStack = 16 << 20;
   const Program &program = scene.program();
-  if (program.slots.states.run)
-    return 1;
   if (options.pixelsInTurns != 0)
     return options.pixelsInTurns;
   return program.stackBytes && stackBytes(program, launch) <= largestStack ? host->raysInTurns()

@@ -47,6 +47,21 @@ TEST(Fibers, OneHasNoOther) {
   EXPECT_EQ(runs, 1u);
 }
 
+TEST(Fibers, WithinOneThereIsOne) {
+  if (!areSeveral())
+    GTEST_SKIP() << "AddressSanitizer knows one stack of a thread";
+  std::string turns;
+  Fibers::run(2, 0, [&](unsigned number) {
+    Fibers::run(2, 0, [&](unsigned inner) {
+      turns += std::to_string(inner) + char('a' + number);
+      pause();
+      turns += char('a' + number);
+    });
+  });
+  EXPECT_EQ(turns, "0a0bab");
+  EXPECT_EQ(Fibers::ofThread(), nullptr);
+}
+
 /// Registers, also those of vectors, and frames on the stack survive pauses.
 TEST(Fibers, KeepTheirNumbers) {
   std::vector<std::uint64_t> sums(Fibers::most);
