@@ -97,13 +97,17 @@ private:
   const __m256 tMin;
 };
 
+struct NoPause {
+  void operator()(std::uint32_t) const {}
+};
+
 /// Calls test(place) for each block that may have hits between tMin and limit(), nearer ones first
 /// on the whole. limit() may shrink in a test. test returns true to stop; then so does this.
 /// Before a child of a node is read, pause(child) is called (BlockNode::children).
-template <typename Limit, typename Test, typename Pause>
+template <typename Limit, typename Test, typename Pause = NoPause>
 [[gnu::always_inline]] inline bool searchBlocks(const BlockTree &tree,
                                                 const device::TriangleRay &ray, float tMin,
-                                                Limit limit, Test test, Pause pause) {
+                                                Limit limit, Test test, Pause pause = {}) {
   if (tree.isEmpty())
     return false;
   struct Open {

@@ -21,8 +21,8 @@ template <typename Ray>
     return false;
   };
   return searchBlocks(
-      context.space->triangles, ray, context.state->Epsilon, [&] { return context.limit(); }, visit,
-      [](std::uint32_t) {});
+      context.space->triangles, ray, context.state->Epsilon, [&] { return context.limit(); },
+      visit);
 }
 
 /// Searches the triangles of the space for the nearest hit, or for any. True if the search is over.
@@ -50,7 +50,7 @@ template <typename Ray, bool anyHit>
   const auto limit = [&] { return state.nearest; };
   Fibers *const fibers = Fibers::ofThread();
   if (!fibers)
-    return searchBlocks(tree, ray, state.Epsilon, limit, test, [](std::uint32_t) {});
+    return searchBlocks(tree, ray, state.Epsilon, limit, test);
   return searchBlocks(tree, ray, state.Epsilon, limit, test, [&](std::uint32_t child) {
     tree.prefetch(child);
     fibers->pause();

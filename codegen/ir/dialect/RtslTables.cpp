@@ -21,7 +21,7 @@ bool isNumbers(mlir::Type type) {
                         [](mlir::Type field) { return isNumbers(field); });
   if (auto array = llvm::dyn_cast<ArrayType>(type))
     return isNumbers(array.getElement());
-  return isStorable(type) && isValueType(type) && !llvm::isa<RefType>(type);
+  return isValueType(type) && !isWide(type) && !llvm::isa<RefType>(type);
 }
 
 void TableOp::getAsmResultNames(llvm::function_ref<void(mlir::Value, llvm::StringRef)> setName) {

@@ -62,41 +62,38 @@ TEST(Fibers, WithinOneThereIsOne) {
   EXPECT_EQ(Fibers::ofThread(), nullptr);
 }
 
+struct Numbers {
+  std::uint64_t sum = 0;
+  double total = 0;
+};
+
+/// Pauses where integers and vectors of doubles are in use.
+Numbers compute(unsigned number) {
+  std::vector<double> doubles(16, number);
+  std::uint64_t sum = number, other = 3 * number, third = 7 * number;
+  for (unsigned i = 0; i < 1000; ++i) {
+    sum = sum * 31 + i;
+    other += sum >> 7;
+    third ^= other;
+    for (double &a : doubles)
+      a += 0.5 * a + number;
+    pause();
+    for (double &a : doubles)
+      a *= 0.5;
+  }
+  return {sum ^ other ^ third, std::accumulate(doubles.begin(), doubles.end(), 0.0)};
+}
+
 /// Registers, also those of vectors, and frames on the stack survive pauses.
 TEST(Fibers, KeepTheirNumbers) {
-  std::vector<std::uint64_t> sums(Fibers::most);
-  std::vector<double> means(Fibers::most);
-  Fibers::run(Fibers::most + 1, 1 << 20, [&](unsigned number) {
-    std::vector<double> doubles(16, number);
-    std::uint64_t sum = number, other = 3 * number, third = 7 * number;
-    for (unsigned i = 0; i < 1000; ++i) {
-      sum = sum * 31 + i;
-      other += sum >> 7;
-      third ^= other;
-      for (double &a : doubles)
-        a += 0.5 * a + number;
-      pause();
-      for (double &a : doubles)
-        a *= 0.5;
-    }
-    sums.at(number) = sum ^ other ^ third;
-    means.at(number) = std::accumulate(doubles.begin(), doubles.end(), 0.0);
-  });
-  const std::vector<std::uint64_t> sumsInTurns = sums;
-  const std::vector<double> meansInTurns = means;
+  std::vector<Numbers> inTurns(Fibers::most);
+  Fibers::run(Fibers::most + 1, 1 << 20,
+              [&](unsigned number) { inTurns.at(number) = compute(number); });
   const unsigned count = areSeveral() ? Fibers::most : 1;
   for (unsigned number = 0; number < count; ++number) {
-    std::vector<double> doubles(16, number);
-    std::uint64_t sum = number, other = 3 * number, third = 7 * number;
-    for (unsigned i = 0; i < 1000; ++i) {
-      sum = sum * 31 + i;
-      other += sum >> 7;
-      third ^= other;
-      for (double &a : doubles)
-        a = (a + (0.5 * a + number)) * 0.5;
-    }
-    EXPECT_EQ(sumsInTurns[number], sum ^ other ^ third) << number;
-    EXPECT_EQ(meansInTurns[number], std::accumulate(doubles.begin(), doubles.end(), 0.0)) << number;
+    const Numbers alone = compute(number); // which does not pause outside fibers
+    EXPECT_EQ(inTurns[number].sum, alone.sum) << number;
+    EXPECT_EQ(inTurns[number].total, alone.total) << number;
   }
 }
 

@@ -71,8 +71,7 @@ Found searchTree(const RtslLaunch &launch, const BlockTree &tree, const Ray &ray
         ++found.tests;
         testBlock(found.state, triangleRay, tree.block(place), false);
         return false;
-      },
-      [](std::uint32_t) {});
+      });
   device::endSearch(found.state);
   return found;
 }
