@@ -30,6 +30,12 @@ public:
   /// Those that run on this thread; null unless there are several.
   static Fibers *ofThread() { return current; }
 
+  /// Of those of this thread, if it has several: lets the others go on.
+  static void pauseThread() {
+    if (current)
+      current->pause();
+  }
+
   /// Of this thread's fiber that runs; 0 if there is one.
   static unsigned number() { return current ? current->running : 0; }
 

@@ -3,6 +3,7 @@
 #include "runtime/embree/EmbreeRay.h"
 #include "runtime/embree/EnterSpace.h"
 #include "runtime/embree/HostScene.h"
+#include "support/Fibers.h"
 
 #include <limits>
 
@@ -221,6 +222,7 @@ void EmbreeScene::Implementation::searchInInstance(const EmbreeContext &context,
 }
 
 bool EmbreeScene::Implementation::searchTree(const EmbreeContext &context, bool anyHit) {
+  Fibers::pauseThread(); // Embree's tree has no place for it
   const device::TriangleRay &ray = *context.ray;
   const RTCScene tree = context.space->treeFor(ray.origin);
   if (anyHit) {

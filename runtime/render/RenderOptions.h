@@ -3,6 +3,7 @@
 
 #include "runtime/accel/TreeKind.h"
 #include "runtime/device/organisations/Job.h"
+#include "support/Fibers.h"
 
 #include <atomic>
 #include <cstdint>
@@ -28,6 +29,7 @@ constexpr std::uint32_t mostLaunchWidth = 1u << 28;
 constexpr std::uint32_t mostLaunchIndices = 1u << 28, mostLaunchRows = 1u << 24;
 constexpr std::uint32_t mostSamplesPerPixel = 0x7fffffff;
 constexpr std::uint32_t mostThreads = 1024;
+constexpr std::uint32_t mostPixelsInTurns = Fibers::most;
 
 /// A part of a picture: columns x0 to x1 - 1 and rows y0 to y1 - 1, from the top left.
 struct Window {
@@ -49,7 +51,7 @@ struct RenderOptions {
   std::uint32_t seed = 1;
   std::uint32_t threads = 0; // 0: all cores
   /// Of each thread of the host: it renders so many pixels in turns (support/Fibers.h), at most
-  /// Fibers::most. 0: by the size of the trees.
+  /// mostPixelsInTurns. 0: by the size of the trees.
   std::uint32_t pixelsInTurns = 0;
   Traversal traversal = Traversal::Embree;
   std::optional<TreeKind> tree; // of the traversal of GPUs; nothing: treeKind decides

@@ -9,7 +9,14 @@ from fractions import Fraction
 from harness import USAGE, Case
 from numpy_files import npy
 
-PATHS = ([], ["--traversal=device"], ["--trace=recurse"], ["--target=host-megakernel"], ["-O0"])
+PATHS = (
+    [],
+    ["--traversal=device"],
+    ["--trace=recurse"],
+    ["--target=host-megakernel"],
+    ["-O0"],
+    ["--pixels-in-turns=4"],
+)
 
 
 def read_hits(path):

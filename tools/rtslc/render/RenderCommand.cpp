@@ -260,6 +260,7 @@ void addRenderCommand(CLI::App &app, Action &action) {
   addFrameOptions(*command, options->frame, options->frames);
   addWhole(*command, "--threads", options->threads, 1, runtime::mostThreads,
            "threads; default: all cores");
+  addPixelsInTurnsOption(*command, options->pixelsInTurns);
   addWhole(*command, "--depth", options->depth, 0, runtime::maxRayDepth,
            "limit of nested `trace` calls; 0: camera rays only");
   command

@@ -30,6 +30,7 @@ struct RenderCommandOptions {
   std::vector<std::string> aovs; // views that become layers of the picture
   std::optional<std::uint32_t> samples, depth, seed;
   std::uint32_t threads = 0;
+  std::uint32_t pixelsInTurns = 0; // 0: not given
   std::optional<PictureSize> size;
   std::optional<runtime::Window> crop;
   std::string camera;           // of the scene's `cameras`; empty: the scene's `camera`

@@ -49,6 +49,7 @@ runtime::RenderOptions renderOptions(const RenderCommandOptions &options,
       options.isOpenEnded() ? runtime::mostSamplesPerPixel : render.samplesPerPixel);
   render.seed = options.seed.value_or(render.seed);
   render.threads = options.threads;
+  render.pixelsInTurns = options.pixelsInTurns;
   render.traversal = options.traversal;
   render.tree = options.tree;
   render.keepsUnfinished = true;

@@ -150,6 +150,12 @@ void addTargetOption(CLI::App &command, TargetName &target) {
             "host-megakernel: the GPU's program, on the CPU");
 }
 
+void addPixelsInTurnsOption(CLI::App &command, std::uint32_t &pixels) {
+  addWhole(command, "--pixels-in-turns", pixels, 1, runtime::mostPixelsInTurns,
+           "pixels, or elements of a launch, that a thread of the host computes in turns, while "
+           "the rays of others wait for memory; default: by the size of the trees");
+}
+
 void addTraversalOption(CLI::App &command, runtime::Traversal &traversal) {
   addChoice(command, "--traversal", traversal,
             Choices<runtime::Traversal>{{"embree", runtime::Traversal::Embree},

@@ -14,6 +14,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -65,6 +66,8 @@ nlohmann::ordered_json toJson(const runtime::GpuStatistics &gpu);
 
 /// Adds --target.
 void addTargetOption(CLI::App &command, TargetName &target);
+/// Adds --pixels-in-turns.
+void addPixelsInTurnsOption(CLI::App &command, std::uint32_t &pixels);
 /// Adds --traversal.
 void addTraversalOption(CLI::App &command, runtime::Traversal &traversal);
 

@@ -127,6 +127,7 @@ runtime::RenderOptions renderOptions(const RunOptions &options,
   if (!settings.hasSamples)
     render.samplesPerPixel = 1;
   render.threads = options.threads;
+  render.pixelsInTurns = options.pixelsInTurns;
   render.traversal = options.traversal;
   render.tree = options.tree;
   render.cancel = catchInterruptions();
@@ -395,6 +396,7 @@ int runLaunches(RunOptions options) {
 void addRunOptions(CLI::App &command, RunOptions &options) {
   addWhole(command, "--threads", options.threads, 1, runtime::mostThreads,
            "threads; default: all cores");
+  addPixelsInTurnsOption(command, options.pixelsInTurns);
   addTraversalOption(command, options.traversal);
   addTreeOption(command, options.tree);
   addTargetOption(command, options.target);

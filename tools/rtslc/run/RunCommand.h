@@ -17,7 +17,8 @@ struct RunOptions {
   std::vector<BufferFile> inputs, outputs;
   std::vector<std::string> overrides;
   std::uint32_t threads = 0;
-  std::uint32_t repeats = 0; // further runs of each launch, to measure it
+  std::uint32_t pixelsInTurns = 0; // 0: not given
+  std::uint32_t repeats = 0;       // further runs of each launch, to measure it
   runtime::Traversal traversal = runtime::Traversal::Embree;
   std::optional<runtime::TreeKind> tree;
   TargetName target = TargetName::Host;
