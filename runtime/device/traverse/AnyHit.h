@@ -9,7 +9,9 @@
 // hit that counts. The tree does not give hits in order, so the nearest few are collected in one
 // traversal and tested in turn; when all of them are rejected, the next few are collected, beyond
 // the last. What an `intersect` writes to the state is not kept meanwhile: it runs again for the
-// hit that is tested, with the same result, because it sees the same ray.
+// hit that is tested, with the same result, because it sees the same ray. Only with --fp=fast may
+// the second of two copies of its code round otherwise, and miss at an edge, as may an `intersect`
+// that reads what it writes to a buffer: such a hit does not count.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -181,15 +183,17 @@ uint32_t searchInOrder(RtslState &state, const ModerateSearch &moderate, const S
                      }
                      return false;
                    });
+    bool isLost = false; // the last one: others may count beyond it
     for (uint32_t i = 0; i < nearest.count; ++i) {
       const RtslLeafItem item = {nearest.found[i].instance, nearest.found[i].primitive};
       search.forgetHit();
       search.testAgain(item);
-      if (!search.hasAnyHit(item) || search.invoke() != RTSL_IGNORE)
+      isLost = state.instance == RTSL_NO_HIT;
+      if (!isLost && (!search.hasAnyHit(item) || search.invoke() != RTSL_IGNORE))
         return search.end();
     }
     search.forgetHit();
-    if (nearest.isComplete())
+    if (nearest.isComplete() && !isLost)
       return search.end();
     last = nearest.found[nearest.count - 1];
     isFirst = false;

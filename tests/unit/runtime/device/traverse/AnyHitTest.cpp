@@ -181,6 +181,44 @@ TEST(AnyHit, IsQueriedOnceInOrderUntilAHitIsAccepted) {
   EXPECT_GT(misses, 500u);
 }
 
+// As with --fp=fast, where code that is there twice may round in two ways.
+TEST(AnyHit, AHitThatIsNotFoundAgainDoesNotCount) {
+  std::shared_ptr<Program> program = askingProgram();
+  static std::set<RtslRef> lost, found; // spheres; those of the first that were found once
+  lost.clear();
+  program->slots.rt_Primitive_intersect = [](RtslState *state, RtslRef object) {
+    if (lost.count(object) == 0 || found.insert(object).second)
+      rtsl_rt_Primitive_intersect(state, object);
+    else
+      found.erase(object);
+  };
+  constexpr unsigned count = 2 * rtsl::device::NearestCandidates::room + 3;
+  Scene scene(program);
+  setCameraAtOrigin(scene);
+  const RtslRef asks = scene.addObject("Normal", members({})),
+                accepts = scene.addObject("Mirror", members({}));
+  std::vector<RtslRef> spheres;
+  for (unsigned i = 0; i < count; ++i) {
+    spheres.push_back(scene.addObject("Sphere", {vector(0, 0, 5.0 + 3 * i), 1.0}));
+    scene.addPrimitive(spheres.back(), i % 3 == 1 ? accepts : asks);
+  }
+  HostScene own(scene, false, 1), embree(scene, true, 1);
+  refusedOf16 = 16;
+  for (unsigned first = 0; first <= count; ++first) { // that is not lost
+    lost = {spheres.begin(), spheres.begin() + first};
+    const unsigned expected = first + (4 - first % 3) % 3; // the next one that accepts
+    for (const HostScene *host : {&own, &embree}) {
+      RtslState state = ray(own.deviceLaunch(), {0, 0, 0}, {0, 0, 1}, INFINITY);
+      asked.clear();
+      found.clear();
+      const std::uint32_t answer = host->traverse(state, RTSL_INVOKE_ANY_HIT | RTSL_IN_ORDER);
+      ASSERT_EQ(answer, expected < count ? RTSL_HIT : RTSL_MISS) << first;
+      ASSERT_EQ(state.instance, expected < count ? expected : RTSL_NO_HIT) << first;
+      ASSERT_EQ(asked.size(), std::min(expected, count) - first);
+    }
+  }
+}
+
 TEST(AnyHit, InAnyOrderTheNearestAcceptedHitCounts) {
   Scene scene = layers(5, false);
   HostScene host(scene, true, 1);
