@@ -1,4 +1,4 @@
-//===- StepCosts.cpp - what the steps of the megakernel cost --------------===//
+//===- StepCosts.cpp - what steps of the megakernel and tests cost --------===//
 //
 // Only the ratios matter, and only roughly: costs are powers of two. An operation on a vector
 // counts once for each element, a division or root as the instructions that it becomes, and a
@@ -10,6 +10,9 @@
 #include "codegen/emit/LlvmModule.h"
 
 #include "llvm/ADT/DenseMap.h"
+#include "llvm/ADT/SmallPtrSet.h"
+#include "llvm/Analysis/CFG.h"
+#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/InstrTypes.h"
 #include "llvm/IR/Instructions.h"
 #include "llvm/IR/IntrinsicInst.h"
@@ -29,6 +32,8 @@ constexpr std::uint64_t ofDivision = 8, ofRuntimeFunction = 32, ofSample = 300, 
 /// warp takes longer than a single lane would.
 constexpr std::uint64_t divergence = 4;
 constexpr std::uint64_t unit = 16; // instructions of a step with the cost 1
+/// A sphere takes 150, a parallelogram 110 (docs/gpu.md).
+constexpr std::uint64_t cheapIntersect = 200;
 constexpr unsigned bitsOfStep = 4, mostSteps = 64 / bitsOfStep;
 
 class Estimate {
@@ -89,6 +94,23 @@ llvm::SmallVector<const llvm::Function *> statesOf(const llvm::Function &runStat
   return states;
 }
 
+/// Has the function, or one that it calls, a loop? A recursion is one.
+bool mayLoop(const llvm::Function &function,
+             llvm::SmallPtrSetImpl<const llvm::Function *> &callers) {
+  if (!callers.insert(&function).second)
+    return true;
+  llvm::SmallVector<std::pair<const llvm::BasicBlock *, const llvm::BasicBlock *>> backEdges;
+  llvm::FindFunctionBackedges(function, backEdges);
+  bool found = !backEdges.empty();
+  for (const llvm::Instruction &instruction : llvm::instructions(function))
+    if (const auto *call = llvm::dyn_cast<llvm::CallBase>(&instruction))
+      if (const llvm::Function *callee = call->getCalledFunction();
+          callee && !callee->isDeclaration())
+        found = found || mayLoop(*callee, callers);
+  callers.erase(&function);
+  return found;
+}
+
 unsigned logarithm(std::uint64_t instructions) {
   const std::uint64_t units = std::max<std::uint64_t>(instructions / unit, 1);
   return std::min(llvm::Log2_64(units), (1u << bitsOfStep) - 1);
@@ -110,6 +132,14 @@ std::uint64_t stepCosts(const llvm::Module &module) {
         std::uint64_t(logarithm(instructions[std::min<std::size_t>(step, instructions.size() - 1)]))
         << (bitsOfStep * step);
   return costs;
+}
+
+bool isIntersectCheap(const llvm::Module &module) {
+  const llvm::Function *intersect = module.getFunction("rtsl_rt_Primitive_intersect");
+  if (!intersect || intersect->isDeclaration())
+    return false;
+  llvm::SmallPtrSet<const llvm::Function *, 8> callers;
+  return !mayLoop(*intersect, callers) && Estimate()(*intersect) <= cheapIntersect;
 }
 
 } // namespace rtsl::codegen

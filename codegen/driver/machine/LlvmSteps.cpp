@@ -167,6 +167,7 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
   const bool runsOn = !options.schedule && schedule != Schedule::Majority;
   codegen::defineConstant(module, "rtsl_states_run_on", std::uint32_t(runsOn));
   codegen::defineConstant(module, "rtsl_samples_at_once", samplesAtOnce(module));
+  codegen::defineConstant(module, "rtsl_is_intersect_cheap", codegen::isIntersectCheap(module));
   codegen::defineConstant(module, "rtsl_has_half_pairs", architecture(options.gpu) >= 80);
   codegen::defineForward(module, "rtsl_least_of_warp",
                          architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"

@@ -59,6 +59,9 @@ __attribute__((weak)) uint32_t rtsl_rays_read_launch(void) {
 __attribute__((weak)) uint32_t rtsl_is_fast(void) {
   return 0;
 }
+__attribute__((weak)) uint32_t rtsl_is_intersect_cheap(void) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
   return RTSL_SCHEDULE_MAJORITY;
 }

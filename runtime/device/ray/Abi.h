@@ -103,6 +103,9 @@ uint32_t rtsl_has_half_pairs(void);
 uint32_t rtsl_generates(const RtslLaunch *launch);
 /// Whether the program was compiled with --fp=fast.
 uint32_t rtsl_is_fast(void);
+/// Whether `intersect` of all primitives takes so few instructions that to test the box of a single
+/// primitive does not pay.
+uint32_t rtsl_is_intersect_cheap(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
 /// Whether the program has materials with `transmittance`, and lights. In the engine `classic` they

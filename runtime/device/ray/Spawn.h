@@ -136,8 +136,8 @@ inline float foreignError(Vec3 origin) {
 /// startOf for rays that leave no surface, as those of cameras.
 inline RayStart startInSpace(uint32_t primitive, Vec3 origin, Vec3 direction) {
   float length = largest(direction);
-  return {length > 0 && length < infinity ? foreignError(origin) / length : 0.0f, 0, RTSL_NO_HIT,
-          primitive};
+  return {length > 0 && length < infinity ? roughQuotient(foreignError(origin), length) : 0.0f, 0,
+          RTSL_NO_HIT, primitive};
 }
 
 /// startOf for origins that are not the hit point. It is passed values, so that a state in

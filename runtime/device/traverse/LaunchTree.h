@@ -69,7 +69,7 @@ struct EnteredList {
 template <typename Limit, typename Visit>
 void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
                    uint32_t leaves, Limit limit, Visit visit) {
-  if (count == 1 && !rtsl_is_fast()) { // its exact test will do
+  if (count == 1 && (!rtsl_is_fast() || rtsl_is_intersect_cheap())) { // its own test will do
     visit(RtslLeafItem{0, 0}, ray);
     return;
   }

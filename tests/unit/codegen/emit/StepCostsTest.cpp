@@ -82,3 +82,40 @@ TEST(StepCosts, TraversalDependsOnTheScene) {
   EXPECT_EQ(tree.of(Traversal), Costs(states).of(Traversal));
   EXPECT_GT(few.of(Sample), few.of(First));
 }
+
+namespace {
+
+/// Is `intersect` cheap in a program with these functions?
+bool isCheap(const std::string &functions) {
+  llvm::LLVMContext context;
+  return isIntersectCheap(*parseLlvm(functions, context));
+}
+
+} // namespace
+
+TEST(StepCosts, AnIntersectIsCheapIfItIsShortAndHasNoLoop) {
+  const std::string intersect = R"(
+    define void @rtsl_rt_Primitive_intersect(ptr %s, i32 %object) {
+      %a = call i32 @sphere(ptr %s)
+      %b = call i32 @sphere(ptr %s) ; one function in two places is no recursion
+      ret void
+    })";
+  EXPECT_TRUE(isCheap(intersect + stateOf("sphere", 80)));
+  EXPECT_FALSE(isCheap(intersect + stateOf("sphere", 800)));
+  EXPECT_FALSE(isCheap(intersect + R"(
+    define i32 @sphere(ptr %s) {
+      br label %next
+    next:
+      %v = load i1, ptr %s
+      br i1 %v, label %next, label %end
+    end:
+      ret i32 0
+    })"));
+  EXPECT_FALSE(isCheap(intersect + R"(
+    define i32 @sphere(ptr %s) {
+      call void @rtsl_rt_Primitive_intersect(ptr %s, i32 0)
+      ret i32 0
+    })"));
+  EXPECT_FALSE(isCheap("declare void @rtsl_rt_Primitive_intersect(ptr, i32)"));
+  EXPECT_FALSE(isCheap(stateOf("sphere", 3)));
+}
