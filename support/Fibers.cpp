@@ -13,14 +13,6 @@ namespace rtsl {
 
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool mayInterleave = false;
-#elif defined(__has_feature)
-constexpr bool mayInterleave = !__has_feature(address_sanitizer);
-#else
-constexpr bool mayInterleave = true;
-#endif
-
 /// Memory for a stack, which takes as much as is used of it. The page below it cannot be accessed.
 class FiberStack {
 public:
@@ -39,7 +31,8 @@ public:
   ~FiberStack() { release(); }
 
   bool isValid() const { return memory != MAP_FAILED; }
-  void *end() const { return static_cast<std::byte *>(memory) + bytes; }
+  void *lowest() const { return memory; }
+  std::size_t size() const { return bytes; }
 
 private:
   void release() {
@@ -60,12 +53,12 @@ void Fibers::run(unsigned count, std::uint64_t stackBytes,
     return work(0);
   std::vector<FiberStack> memory;
   Fibers fibers(work);
-  for (unsigned number = 1; mayInterleave && number < std::min(count, most); ++number) {
+  for (unsigned number = 1; number < std::min(count, most); ++number) {
     FiberStack stack(stackBytes + stackMargin);
     if (!stack.isValid())
       break;
     memory.push_back(std::move(stack));
-    fibers.add(memory.back().end());
+    fibers.add(memory.back().lowest(), memory.back().size());
   }
   if (memory.empty())
     return work(0);
@@ -80,10 +73,11 @@ void Fibers::run(unsigned count, std::uint64_t stackBytes,
 
 /// It begins when its turn comes: switchStacks takes the address from the stack. At the beginning
 /// of a function there is a return address, here null, and then a multiple of 16 bytes.
-void Fibers::add(void *stackEnd) {
-  void **top = static_cast<void **>(stackEnd) - 2;
+void Fibers::add(void *stack, std::size_t bytes) {
+  void **top = reinterpret_cast<void **>(static_cast<std::byte *>(stack) + bytes) - 2;
   *--top = nullptr;
   *--top = reinterpret_cast<void *>(&begin);
+  announced[count] = {stack, bytes};
   next[count - 1] = count;
   stacks[count++] = top;
 }
@@ -101,12 +95,13 @@ void Fibers::runOne(unsigned number) {
 void Fibers::begin() {
   Fibers &fibers = *current;
   const unsigned number = fibers.running;
+  fibers.announced[number].arrive();
   fibers.runOne(number);
   unsigned before = number;
   while (fibers.next[before] != number)
     before = fibers.next[before];
   fibers.next[before] = fibers.next[number];
-  fibers.pause(); // for good: no one goes on with it
+  fibers.goOn(false);
   __builtin_unreachable();
 }
 

@@ -8,7 +8,10 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "support/AnnouncedStack.h"
+
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <functional>
@@ -23,7 +26,7 @@ public:
   /// each pause the next one goes on. work(0) runs on the thread's own stack, the others have
   /// `stackBytes` each, beside stackMargin (WorkerThreads.h). If memory for stacks is short, some
   /// are left out. Rethrows an exception of `work` when all have ended. Only work(0) runs within a
-  /// fiber, as a part of it, and under AddressSanitizer, which knows one stack of a thread.
+  /// fiber, as a part of it.
   static void run(unsigned count, std::uint64_t stackBytes,
                   const std::function<void(unsigned)> &work);
 
@@ -41,16 +44,22 @@ public:
 
   /// Lets the others go on, until each of them has paused or ended.
   [[gnu::always_inline]] void pause() {
-    const unsigned from = running;
-    running = next[from];
-    if (running != from)
-      switchStacks(stacks[from], stacks[running]);
+    if (next[running] != running)
+      goOn(true);
   }
 
 private:
   explicit Fibers(const std::function<void(unsigned)> &work) : work(work) {}
 
-  void add(void *stackEnd);
+  void add(void *stack, std::size_t bytes);
+  /// With the next one; `returns`: until it is this one's turn.
+  [[gnu::always_inline]] void goOn(bool returns) {
+    const unsigned from = running;
+    running = next[from];
+    announced[from].leaveFor(announced[running], returns);
+    switchStacks(stacks[from], stacks[running]);
+    announced[from].arrive();
+  }
   void runOne(unsigned number);
   [[noreturn]] static void begin();
 
@@ -92,7 +101,8 @@ private:
   unsigned count = 1, running = 0;
   std::array<unsigned, most> next{}; // a ring of those that have not ended
   std::array<void *, most> stacks{}; // where those that pause go on: the end of the stack
-  std::exception_ptr failure = {};   // the first
+  std::array<AnnouncedStack, most> announced;
+  std::exception_ptr failure = {}; // the first
 };
 
 } // namespace rtsl

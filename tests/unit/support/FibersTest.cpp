@@ -17,15 +17,7 @@ void pause() {
     fibers->pause();
 }
 
-bool areSeveral() {
-  bool several = false;
-  Fibers::run(2, 0, [&](unsigned) { several = Fibers::ofThread() != nullptr; });
-  return several;
-}
-
 TEST(Fibers, TakeTurnsAtPauses) {
-  if (!areSeveral())
-    GTEST_SKIP() << "AddressSanitizer knows one stack of a thread";
   std::string turns;
   Fibers::run(3, 0, [&](unsigned number) {
     for (unsigned i = 0; i <= 2 * number; ++i) {
@@ -48,8 +40,6 @@ TEST(Fibers, OneHasNoOther) {
 }
 
 TEST(Fibers, WithinOneThereIsOne) {
-  if (!areSeveral())
-    GTEST_SKIP() << "AddressSanitizer knows one stack of a thread";
   std::string turns;
   Fibers::run(2, 0, [&](unsigned number) {
     Fibers::run(2, 0, [&](unsigned inner) {
@@ -89,8 +79,7 @@ TEST(Fibers, KeepTheirNumbers) {
   std::vector<Numbers> inTurns(Fibers::most);
   Fibers::run(Fibers::most + 1, 1 << 20,
               [&](unsigned number) { inTurns.at(number) = compute(number); });
-  const unsigned count = areSeveral() ? Fibers::most : 1;
-  for (unsigned number = 0; number < count; ++number) {
+  for (unsigned number = 0; number < Fibers::most; ++number) {
     const Numbers alone = compute(number); // which does not pause outside fibers
     EXPECT_EQ(inTurns[number].sum, alone.sum) << number;
     EXPECT_EQ(inTurns[number].total, alone.total) << number;
@@ -98,7 +87,7 @@ TEST(Fibers, KeepTheirNumbers) {
 }
 
 TEST(Fibers, ThrowTheFirstExceptionWhenAllHaveEnded) {
-  const unsigned thrower = areSeveral() ? 2 : 0;
+  constexpr unsigned thrower = 2;
   unsigned ended = 0;
   try {
     Fibers::run(4, 0, [&](unsigned number) {
@@ -112,7 +101,7 @@ TEST(Fibers, ThrowTheFirstExceptionWhenAllHaveEnded) {
   } catch (const std::runtime_error &error) {
     EXPECT_EQ(error.what(), "number " + std::to_string(thrower));
   }
-  EXPECT_EQ(ended, thrower == 2 ? 3u : 0u);
+  EXPECT_EQ(ended, 3u);
   EXPECT_EQ(Fibers::ofThread(), nullptr);
 }
 
