@@ -44,12 +44,13 @@ Scene sceneOf(Mesh mesh) {
 
 struct MeshQuery::Implementation {
   Scene scene;
-  unsigned threads;
+  unsigned threads, raysInTurns;
   HostScene trees;
   RtslLaunch launch;
 
-  Implementation(Mesh mesh, unsigned threads)
-      : scene(sceneOf(std::move(mesh))), threads(threads), trees(scene, true, threads) {
+  Implementation(Mesh mesh, unsigned threads, unsigned raysInTurns)
+      : scene(sceneOf(std::move(mesh))), threads(threads), raysInTurns(raysInTurns),
+        trees(scene, true, threads) {
     refresh();
   }
 
@@ -61,8 +62,9 @@ struct MeshQuery::Implementation {
   /// Traces all rays, and calls take(i, state, whether it hits something).
   template <typename Take>
   void trace(const QueryRay *rays, std::size_t count, std::uint32_t how, Take take) const {
+    const unsigned inTurns = raysInTurns != 0 ? raysInTurns : trees.raysInTurns();
     forRangesInParallel(threads, count, 4096, [&](std::size_t next, std::size_t end) {
-      Fibers::run(trees.raysInTurns(), 0, [&](unsigned) {
+      Fibers::run(inTurns, 0, [&](unsigned) {
         RtslState state{};
         state.launch = &launch;
         state.rayMask = ~0u;
@@ -81,8 +83,8 @@ struct MeshQuery::Implementation {
   }
 };
 
-MeshQuery::MeshQuery(Mesh mesh, unsigned threads)
-    : self(std::make_unique<Implementation>(std::move(mesh), threads)) {}
+MeshQuery::MeshQuery(Mesh mesh, unsigned threads, unsigned raysInTurns)
+    : self(std::make_unique<Implementation>(std::move(mesh), threads, raysInTurns)) {}
 MeshQuery::~MeshQuery() = default;
 
 void MeshQuery::nearest(const QueryRay *rays, std::size_t count, QueryHit *hits) const {

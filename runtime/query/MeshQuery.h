@@ -30,8 +30,10 @@ struct QueryHit {
 
 class MeshQuery {
 public:
-  /// Builds the trees. `threads` 0: one per core, also for queries. Throws BadMesh, OutOfMemory.
-  explicit MeshQuery(Mesh mesh, unsigned threads = 0);
+  /// Builds the trees. `threads` 0: one per core, also for queries, of which each traces so many
+  /// rays in turns (support/Fibers.h), at most Fibers::most; 0: by the size of the trees. Throws
+  /// BadMesh, OutOfMemory.
+  explicit MeshQuery(Mesh mesh, unsigned threads = 0, unsigned raysInTurns = 0);
   ~MeshQuery();
 
   /// The nearest hit of each ray. A ray that is not finite or has no direction hits nothing.
