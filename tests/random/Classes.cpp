@@ -225,8 +225,9 @@ void Generator::makeRayGeneration(const Targets &targets) {
   if (program.traces && first.type->element == types.color) {
     std::string element = first.name;
     for (unsigned i = 0; i != first.type->count; ++i)
-      element += program.inRange ? "[rt_LaunchIndex.x % uint(" + element + ".length())]"
-                                 : "[int(rt_LaunchIndex.x) - " + std::to_string(below(3)) + "]";
+      element += program.inRange || i != 0
+                     ? "[rt_LaunchIndex.x % uint(" + element + ".length())]"
+                     : "[int(rt_LaunchIndex.x) - " + std::to_string(below(3)) + "]";
     Node &body = *members->children.back()->children[0];
     body.children.insert(
         body.children.begin() + 1,

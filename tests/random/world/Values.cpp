@@ -89,8 +89,11 @@ void World::fill(const MemberInfo &member, std::uint8_t *to, std::uint32_t key) 
   if (type.bufferRank != 0) {
     RtslBuffer buffer{};
     std::size_t count = 1;
+    // Where an index out of range ends the sample, few are empty, or hardly any ray would be sent.
+    const bool isFilled =
+        program.inRange || !mayBeEmpty || (program.raises && (key >> 12 & 3) != 0);
     for (unsigned i = 0; i != type.bufferRank; ++i) {
-      buffer.size[i] = (key >> 4 * i) % 3 + (program.inRange || !mayBeEmpty ? 1 : 0);
+      buffer.size[i] = (key >> 4 * i) % 3 + (isFilled ? 1 : 0);
       count *= buffer.size[i];
     }
     buffers.emplace_back(count * type.elementSize / 4 + 1);
