@@ -64,18 +64,12 @@ LogicalResult IlluminanceOp::verify() {
   return mlir::success();
 }
 
-/// Whether a `rtsl.break` or `rtsl.continue` in `region`, directly or in a nested structured op,
-/// may belong to `loop`.
-static bool mayJump(LoopOp loop, mlir::Region *region) {
-  return region == &loop.getBody();
-}
-
 /// Finds the op that a `rtsl.break` or `rtsl.continue` belongs to.
 static LogicalResult verifyJump(mlir::Operation *op, bool switchCounts) {
   mlir::Region *region = op->getParentRegion();
   while (mlir::Operation *parent = region->getParentOp()) {
     if (auto loop = llvm::dyn_cast<LoopOp>(parent)) {
-      if (mayJump(loop, region))
+      if (region == &loop.getBody())
         return mlir::success();
       return op->emitOpError() << "is in a loop's `cond` or `step`; it is only for the body";
     }
@@ -102,9 +96,6 @@ LogicalResult ReturnOp::verify() {
     return emitOpError() << "is in no function";
   for (mlir::Region *region = (*this)->getParentRegion(); region->getParentOp() != function;
        region = region->getParentOp()->getParentRegion()) {
-    auto loop = llvm::dyn_cast<LoopOp>(region->getParentOp());
-    if (loop && !mayJump(loop, region))
-      return emitOpError() << "is in a loop's `cond` or `step`; it is only for the body";
     if (!llvm::isa<IfOp, LoopOp, SwitchOp, IlluminanceOp>(region->getParentOp()))
       return emitOpError() << "is in `" << region->getParentOp()->getName()
                            << "`, which it cannot leave";

@@ -468,8 +468,8 @@ def Rtsl_LoopOp : Rtsl_Op<"loop", [NoRegionArguments]> {
     Runs `cond`, which ends in `rtsl.condition`, then, while that is true, `do` and `step`. With
     `post_test` the test comes after `step`: `do`, `step`, `cond`, and again. A missing `cond` is
     always true, a missing `step` does nothing. `rtsl.continue` and `rtsl.yield` in the body go to
-    `step`, `rtsl.break` leaves the loop. `cond` and `step` contain no break, continue or return of
-    their own.
+    `step`, `rtsl.break` leaves the loop. `cond` and `step` contain no break or continue of their
+    own; they may return, as where `ignoreIntersection` in a called function ends `anyHit`.
 
     ```mlir
     rtsl.loop cond {

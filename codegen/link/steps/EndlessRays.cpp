@@ -87,13 +87,14 @@ private:
       return then.end || otherwise.end;
     }
     if (auto loop = llvm::dyn_cast<ir::LoopOp>(op)) {
-      const Untraced body = walk(loop.getBody());
+      const Untraced body = walk(loop.getBody()), condition = walk(loop.getCondition());
       add(body, true);
+      exits.returns |= condition.returns;
       if (loop.getPostTest())
         return body.end || body.continues || body.breaks;
       if (loop.getCondition().empty())
         return body.breaks;
-      return walk(loop.getCondition()).end || body.breaks; // the loop may run no iteration
+      return condition.end || body.breaks; // the loop may run no iteration
     }
     // Lights and cases: possibly none runs.
     const bool isSwitch = llvm::isa<ir::SwitchOp>(op);

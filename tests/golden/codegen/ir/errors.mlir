@@ -184,7 +184,7 @@ func.func @f(%c: i1) {
   rtsl.loop cond {
     rtsl.if %c {
       // expected-error @below {{is in a loop's `cond` or `step`; it is only for the body}}
-      rtsl.return
+      rtsl.continue
     }
     rtsl.condition %c
   } do {

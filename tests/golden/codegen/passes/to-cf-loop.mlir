@@ -109,3 +109,32 @@ func.func @switchInLoop(%v: i32) {
   }
   rtsl.return
 }
+
+// A condition may return, in a structured op of its own.
+// CHECK-LABEL: func.func @conditionReturns(
+// CHECK-SAME: %[[ARG0:.*]]: i1, %[[ARG1:.*]]: i1, %[[ARG2:.*]]: !rtsl.ptr<i1>) {
+// CHECK-NEXT: cf.br ^bb1
+// CHECK-NEXT: ^bb1:
+// CHECK-NEXT: cf.cond_br %[[ARG0]], ^bb2, ^bb3
+// CHECK-NEXT: ^bb2:
+// CHECK-NEXT: return
+// CHECK-NEXT: ^bb3:
+// CHECK-NEXT: cf.cond_br %[[ARG1]], ^bb4, ^bb5
+// CHECK-NEXT: ^bb4:
+// CHECK-NEXT: rtsl.store %[[ARG0]], %[[ARG2]] : !rtsl.ptr<i1>
+// CHECK-NEXT: cf.br ^bb1
+// CHECK-NEXT: ^bb5:
+// CHECK-NEXT: return
+// CHECK-NEXT: }
+func.func @conditionReturns(%a: i1, %b: i1, %p: !rtsl.ptr<i1>) {
+  rtsl.loop cond {
+    rtsl.if %a {
+      rtsl.return
+    }
+    rtsl.condition %b
+  } do {
+    rtsl.store %a, %p : !rtsl.ptr<i1>
+    rtsl.yield
+  }
+  rtsl.return
+}
