@@ -274,12 +274,13 @@ private:
       render.countedStates = summary.stateNames.size();
     }
     Progress progress(what);
+    runtime::RenderOptions shown = render; // whose `progress` must not outlive this
     if (!options.quiet && !options.isOpenEnded())
-      render.progress = [&](double share) { progress.update(share); };
+      shown.progress = [&](double share) { progress.update(share); };
     const Clock::time_point begin = Clock::now();
     auto building = showPhase("building trees");
     const std::unique_ptr<runtime::Backend> backend =
-        target->prepare(*scene, render, options.keptTrees.get());
+        target->prepare(*scene, shown, options.keptTrees.get());
     building.reset();
     const double seconds = secondsSince(begin);
     runtime::Image image = options.isInPasses(render.samplesPerPixel)
