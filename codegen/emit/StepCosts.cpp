@@ -139,7 +139,7 @@ bool isIntersectCheap(const llvm::Module &module) {
   if (!intersect || intersect->isDeclaration())
     return false;
   llvm::SmallPtrSet<const llvm::Function *, 8> callers;
-  return !mayLoop(*intersect, callers) && Estimate()(*intersect) <= cheapIntersect;
+  return Estimate()(*intersect) <= cheapIntersect && !mayLoop(*intersect, callers);
 }
 
 } // namespace rtsl::codegen

@@ -12,17 +12,12 @@ namespace {
 
 using rtsl::Fibers;
 
-void pause() {
-  if (Fibers *fibers = Fibers::ofThread())
-    fibers->pause();
-}
-
 TEST(Fibers, TakeTurnsAtPauses) {
   std::string turns;
   Fibers::run(3, 0, [&](unsigned number) {
     for (unsigned i = 0; i <= 2 * number; ++i) {
       turns += char('a' + number);
-      pause();
+      Fibers::pauseThread();
     }
   });
   EXPECT_EQ(turns, "abcbcbccc");
@@ -44,7 +39,7 @@ TEST(Fibers, WithinOneThereIsOne) {
   Fibers::run(2, 0, [&](unsigned number) {
     Fibers::run(2, 0, [&](unsigned inner) {
       turns += std::to_string(inner) + char('a' + number);
-      pause();
+      Fibers::pauseThread();
       turns += char('a' + number);
     });
   });
@@ -67,7 +62,7 @@ Numbers compute(unsigned number) {
     third ^= other;
     for (double &a : doubles)
       a += 0.5 * a + number;
-    pause();
+    Fibers::pauseThread();
     for (double &a : doubles)
       a *= 0.5;
   }
@@ -91,10 +86,10 @@ TEST(Fibers, ThrowTheFirstExceptionWhenAllHaveEnded) {
   unsigned ended = 0;
   try {
     Fibers::run(4, 0, [&](unsigned number) {
-      pause();
+      Fibers::pauseThread();
       if (number == thrower)
         throw std::runtime_error("number " + std::to_string(number));
-      pause();
+      Fibers::pauseThread();
       ++ended;
     });
     FAIL() << "no exception";

@@ -219,10 +219,10 @@ private:
     launch.render.prints = options.prints;
     launch.compileSeconds = secondsSince(start);
     Progress progress(count == 1 ? "running" : fmt::format("running {} of {}", number + 1, count));
+    runtime::RenderOptions shown = launch.render; // whose `progress` must not outlive this
     if (!options.quiet)
-      launch.render.progress = [&](double share) { progress.update(share); };
-    const std::unique_ptr<runtime::Backend> backend =
-        target->prepare(*scene, launch.render, nullptr);
+      shown.progress = [&](double share) { progress.update(share); };
+    const std::unique_ptr<runtime::Backend> backend = target->prepare(*scene, shown, nullptr);
     if (const auto gpus = target->gpus(); !gpus.empty())
       launch.gpu = gpus.front();
     picture = backend->render(&launch.statistics);
@@ -231,7 +231,6 @@ private:
     launch.outputs = scene->outputs();
     repeat(*backend, launch);
     progress.finish();
-    launch.render.progress = nullptr;
     warn(launch);
     launches.push_back(std::move(launch));
     // The scene owns the elements of buffers without a name.

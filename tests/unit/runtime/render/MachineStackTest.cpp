@@ -23,8 +23,7 @@ TEST(MachineStack, IsTheFibersOwn) {
     auto *const mine = static_cast<std::uint8_t *>(rtsl_machine_stack(size));
     EXPECT_EQ(mine == ofThread, number == 0);
     std::fill_n(mine, size, std::uint8_t(number + 1));
-    if (Fibers *fibers = Fibers::ofThread())
-      fibers->pause();
+    Fibers::pauseThread();
     EXPECT_EQ(std::count(mine, mine + size, std::uint8_t(number + 1)), std::ptrdiff_t(size));
     EXPECT_EQ(rtsl_machine_stack(size), mine);
     ++fibersThatRan;
