@@ -1,12 +1,13 @@
 # rtsl_bitcode(library symbol TARGET SOURCES...): compiles freestanding C++ to LLVM bitcode for a
 # TARGET, host or gpu, and embeds the linked module into a static library, as the bytes between the
-# symbols <symbol>Begin and <symbol>End.
+# symbols <symbol>Begin and <symbol>End. RTSL_IN_PROGRAM is defined: what the code asks of the
+# program that it is linked into (runtime/device/ray/Abi.h) folds there.
 find_program(RTSL_CLANG NAMES clang++-22 PATHS /usr/lib/llvm-22/bin REQUIRED)
 find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/bin REQUIRED)
 
 # No errno: a square root is then one instruction.
 set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno
-    -fno-exceptions -fno-rtti -fno-threadsafe-statics -Wall -Wextra)
+    -fno-exceptions -fno-rtti -fno-threadsafe-statics -DRTSL_IN_PROGRAM -Wall -Wextra)
 # The features are those of the host's baseline and no others, so that the code generator may inline
 # these functions into shaders. For a GPU the code generator replaces them by those of the requested
 # architecture.

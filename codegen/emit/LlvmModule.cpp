@@ -9,6 +9,7 @@
 #include "codegen/emit/rewrites/SelectByMask.h"
 #include "codegen/emit/rewrites/UniteAddresses.h"
 #include "codegen/emit/rewrites/UnrollLoops.h"
+#include "codegen/emit/rewrites/ZeroProducts.h"
 #include "codegen/emit/rewrites/gpu/Approximations.h"
 #include "codegen/emit/rewrites/gpu/Conversions.h"
 #include "codegen/emit/rewrites/gpu/DivideZeros.h"
@@ -355,6 +356,15 @@ static void addUnrolling(llvm::PassBuilder &builder) {
       });
 }
 
+/// Folds products with zeros whenever LLVM has combined instructions.
+static void addZeroProducts(llvm::PassBuilder &builder) {
+  builder.registerPeepholeEPCallback(
+      [](llvm::FunctionPassManager &passes, llvm::OptimizationLevel) {
+        passes.addPass(ZeroProductsPass());
+        passes.addPass(llvm::InstSimplifyPass());
+      });
+}
+
 /// Adds passes of functions after LLVM's own, unless nothing is optimised.
 template <typename... Passes>
 static void addLast(llvm::PassBuilder &builder) {
@@ -398,7 +408,10 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   if (machine.getTargetTriple().isNVPTX()) {
     // What a GPU computes in another way than LLVM expects, which would move a division after its
     // select, and knows nothing of instructions of PTX.
-    addLast<DivideZerosPass, ConversionsPass, ApproximationsPass, GlobalPointersPass>(builder);
+    addLast<DivideZerosPass, ConversionsPass, ApproximationsPass>(builder);
+    if (options.floatingPoint == FloatingPoint::Fast)
+      addLast<llvm::EarlyCSEPass>(builder); // quotients by the same divisor have one reciprocal now
+    addLast<GlobalPointersPass>(builder);
     keepStatesInLoop(callbacks);
   } else if (machine.getMCSubtargetInfo()->checkFeatures("+avx512vl")) { // masks for 128 bits
     addLast<SelectByMaskPass>(builder);
@@ -411,6 +424,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
   if (module.getFunction("rtsl_record_store"))
     addRecordPacking(builder);
   addUnrolling(builder);
+  if (options.floatingPoint == FloatingPoint::Fast)
+    addZeroProducts(builder);
 
   static constexpr const llvm::OptimizationLevel *levels[] = {
       &llvm::OptimizationLevel::O0, &llvm::OptimizationLevel::O1, &llvm::OptimizationLevel::O2,

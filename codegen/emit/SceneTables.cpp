@@ -100,6 +100,10 @@ void defineSceneTables(mlir::ModuleOp module) {
   }
 }
 
+bool hasConstantRecords(const llvm::Module &module) {
+  return module.getNamedGlobal(recordsName) != nullptr;
+}
+
 mlir::Value sceneRecords(mlir::OpBuilder &builder, mlir::Location location) {
   auto module = builder.getInsertionBlock()->getParentOp()->getParentOfType<mlir::ModuleOp>();
   return ir::attr::records.of(module) ? addressOf(builder, location, recordsName) : mlir::Value();

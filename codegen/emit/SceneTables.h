@@ -10,6 +10,7 @@
 
 #include "mlir/Dialect/LLVMIR/LLVMDialect.h"
 #include "mlir/IR/BuiltinOps.h"
+#include "llvm/IR/Module.h"
 
 namespace rtsl::codegen {
 
@@ -17,6 +18,9 @@ namespace rtsl::codegen {
 /// rtsl_listed_instances, rtsl_listed_boxes, rtsl_listed_pairs and rtsl_mesh_attributes
 /// (runtime/device/ray/Abi.h), which otherwise read the launch.
 void defineSceneTables(mlir::ModuleOp module);
+
+/// Has the LLVM IR of such a module the records of the scene's objects as constants?
+bool hasConstantRecords(const llvm::Module &module);
 
 /// In a function of such a program, the address of the records; null if they are not constants.
 mlir::Value sceneRecords(mlir::OpBuilder &builder, mlir::Location location);

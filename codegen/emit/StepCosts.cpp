@@ -32,8 +32,6 @@ constexpr std::uint64_t ofDivision = 8, ofRuntimeFunction = 32, ofSample = 300, 
 /// warp takes longer than a single lane would.
 constexpr std::uint64_t divergence = 4;
 constexpr std::uint64_t unit = 16; // instructions of a step with the cost 1
-/// A sphere takes 150, a parallelogram 110 (docs/gpu.md).
-constexpr std::uint64_t cheapIntersect = 200;
 constexpr unsigned bitsOfStep = 4, mostSteps = 64 / bitsOfStep;
 
 class Estimate {
@@ -134,12 +132,20 @@ std::uint64_t stepCosts(const llvm::Module &module) {
   return costs;
 }
 
-bool isIntersectCheap(const llvm::Module &module) {
+std::optional<std::uint64_t> intersectCost(const llvm::Module &module) {
   const llvm::Function *intersect = module.getFunction("rtsl_rt_Primitive_intersect");
-  if (!intersect || intersect->isDeclaration())
-    return false;
   llvm::SmallPtrSet<const llvm::Function *, 8> callers;
-  return Estimate()(*intersect) <= cheapIntersect && !mayLoop(*intersect, callers);
+  if (!intersect || intersect->isDeclaration() || mayLoop(*intersect, callers))
+    return std::nullopt;
+  Estimate estimate;
+  if (!llvm::isa<llvm::SwitchInst>(intersect->getEntryBlock().getTerminator())) // one class
+    return estimate(*intersect);
+  std::uint64_t most = 0;
+  for (const llvm::Instruction &instruction : llvm::instructions(*intersect))
+    if (const auto *call = llvm::dyn_cast<llvm::CallBase>(&instruction))
+      if (const llvm::Function *callee = call->getCalledFunction())
+        most = std::max(most, estimate(*callee));
+  return most;
 }
 
 } // namespace rtsl::codegen

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 namespace llvm {
 class Module;
@@ -13,7 +14,8 @@ namespace rtsl::codegen {
 /// instructions of the states in a module before it is linked with device code.
 std::uint64_t stepCosts(const llvm::Module &module);
 
-/// rtsl_is_intersect_cheap, for such a module.
-bool isIntersectCheap(const llvm::Module &module);
+/// The instructions of `intersect` of the primitives of such a module, the most of all classes.
+/// Nothing if it may loop, or if the module has none.
+std::optional<std::uint64_t> intersectCost(const llvm::Module &module);
 
 } // namespace rtsl::codegen

@@ -202,8 +202,10 @@ LlvmCode PartCompiler::rest() {
   const bool isMegakernel = options.target == Target::HostMegakernel;
   code.organisation = options.organisation.value_or(Organisation::Megakernel);
   const bool keepsRecords = isMegakernel && code.organisation != Organisation::Megakernel;
-  if (isMegakernel)
+  if (isMegakernel) {
     decideWhetherLanesTakePixels(code, options, program);
+    decideListedTests(code, options, program);
+  }
   if (keepsRecords)
     beginRecords(code, program);
   std::vector<std::string_view> linked = bitcodes;

@@ -4,6 +4,7 @@
 #include "codegen/driver/Compilation.h"
 #include "codegen/driver/Steps.h"
 #include "codegen/emit/Ptx.h"
+#include "codegen/emit/SceneTables.h"
 #include "codegen/emit/StepCosts.h"
 #include "codegen/emit/patterns/ConvertToLlvm.h"
 #include "codegen/emit/rewrites/CheckNumbers.h"
@@ -153,6 +154,35 @@ void decideWhetherLanesTakePixels(LlvmCode &code, const CompileOptions &options,
   codegen::defineConstant(*code.module, "rtsl_takes_pixels", code.takesPixels);
 }
 
+/// So many instructions of `intersect` cost less than a test of its box, in a scene of one
+/// primitive: a sphere takes 150, a parallelogram 110 (docs/gpu.md).
+constexpr std::uint64_t cheapIntersect = 200;
+
+/// Is it faster to test all primitives of a list, in an unrolled loop, than those whose boxes a ray
+/// enters? If the lanes of a warp stay together, boxes leave out most, and the cache of instructions
+/// has to hold the rest of a larger program, too. docs/gpu.md has the figures.
+static bool gainsFromTestingAll(const llvm::Module &module, const runtime::Program &program,
+                                std::uint64_t listed, std::uint64_t cost) {
+  constexpr std::uint64_t longestIntersect = 400, longestList = 6400, largestAlike = 1500;
+  return listed > 1 && !(program.sceneNeeds & RTSL_HAS_TRANSFORMS) && cost <= longestIntersect &&
+         listed * cost <= longestList &&
+         (program.paths == runtime::Paths::Random || module.getInstructionCount() < largestAlike);
+}
+
+void decideListedTests(LlvmCode &code, const CompileOptions &options,
+                       const runtime::Program &program) {
+  llvm::Module &module = *code.module;
+  const std::uint64_t listed = codegen::knownConstant(module, "rtsl_listed_instances").value_or(0);
+  const std::optional<std::uint64_t> cost = codegen::intersectCost(module);
+  // Tests of boxes that a ray does not enter must not print or raise an exception.
+  const bool mayTestAll = options.floatingPoint == FloatingPoint::Fast &&
+                          !(program.slots.features & RTSL_FEATURE_EVENTS);
+  code.testsAllListed = mayTestAll && codegen::hasConstantRecords(module) && cost &&
+                        gainsFromTestingAll(module, program, listed, *cost);
+  codegen::defineConstant(module, "rtsl_tests_all_listed", code.testsAllListed);
+  codegen::defineConstant(module, "rtsl_is_intersect_cheap", cost && *cost <= cheapIntersect);
+}
+
 /// How the lanes of a warp choose their steps.
 static void defineSchedule(llvm::Module &module, const CompileOptions &options,
                            const runtime::Program &program) {
@@ -167,7 +197,6 @@ static void defineSchedule(llvm::Module &module, const CompileOptions &options,
   const bool runsOn = !options.schedule && schedule != Schedule::Majority;
   codegen::defineConstant(module, "rtsl_states_run_on", std::uint32_t(runsOn));
   codegen::defineConstant(module, "rtsl_samples_at_once", samplesAtOnce(module));
-  codegen::defineConstant(module, "rtsl_is_intersect_cheap", codegen::isIntersectCheap(module));
   codegen::defineConstant(module, "rtsl_has_half_pairs", architecture(options.gpu) >= 80);
   codegen::defineForward(module, "rtsl_least_of_warp",
                          architecture(options.gpu) >= 80 ? "rtsl_least_by_instruction"
@@ -208,6 +237,7 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
   code.organisation = forGpu ? organisationFor(options, program, *code.module)
                              : options.organisation.value_or(Organisation::Megakernel);
   decideWhetherLanesTakePixels(code, options, program);
+  decideListedTests(code, options, program);
   if (forGpu) {
     codegen::alignMembers(*code.module);
     defineSchedule(*code.module, options, program);
@@ -233,13 +263,16 @@ LlvmCode megakernel(mlir::ModuleOp ir, const CompileOptions &options,
 /// More registers are better than more warps if rays wait for others and the lanes of a warp stay
 /// together, and if a kernel has only one step or its shared memory leaves room for only a few
 /// warps. docs/gpu.md has the figures.
-static std::uint32_t registersFor(const LlvmCode &code, runtime::Paths paths) {
+static std::uint32_t registersFor(const LlvmCode &code, const runtime::Program &program) {
+  const runtime::Paths paths = program.paths;
   if (code.organisation != Organisation::Megakernel)
     return 168;
   if (code.isWhole || code.takesPixels)
     return 64;
   if (paths == runtime::Paths::Alike)
     return 128;
+  if (code.testsAllListed && program.needs & RTSL_NEEDS_EMITTERS)
+    return 96;
   return paths == runtime::Paths::Single && !hasList(code) ? 80 : 72;
 }
 
@@ -250,7 +283,7 @@ LlvmCode gpuKernel(Compilation &compilation) {
       isWhole ? std::move(compilation.whole) : mlir::ModuleOp(*compilation.ir).clone();
   LlvmCode code =
       makeKernel(*ir, compilation.options, *compilation.program, /*forGpu=*/true, isWhole);
-  code.registers = registersFor(code, compilation.program->paths);
+  code.registers = registersFor(code, *compilation.program);
   return code;
 }
 

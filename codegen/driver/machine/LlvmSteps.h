@@ -49,6 +49,7 @@ struct LlvmCode {
   bool isWhole = false;           // it has no states
   bool hasThreadOfSample = false; // a GPU has a thread for each sample, if not for each pixel
   bool takesPixels = false;       // lanes render whole pixels where a job allows it
+  bool testsAllListed = false;    // rays test all primitives of a list
   std::uint32_t registers = 0;    // that a thread of a kernel may have, on a GPU
 };
 
@@ -66,6 +67,11 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
 /// Of a self-contained program whose organisation is known.
 void decideWhetherLanesTakePixels(LlvmCode &code, const CompileOptions &options,
                                   const runtime::Program &program);
+
+/// Adds the constants rtsl_is_intersect_cheap and rtsl_tests_all_listed: how rays of a megakernel
+/// test the primitives of a list.
+void decideListedTests(LlvmCode &code, const CompileOptions &options,
+                       const runtime::Program &program);
 
 /// The bitcode of runtime/device for a GPU's program, on a GPU or on the CPU.
 const std::vector<std::string_view> &megakernelCode(bool forGpu);

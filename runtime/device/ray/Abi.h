@@ -106,6 +106,9 @@ uint32_t rtsl_is_fast(void);
 /// Whether `intersect` of all primitives takes so few instructions that to test the box of a single
 /// primitive does not pay.
 uint32_t rtsl_is_intersect_cheap(void);
+/// Whether rays test all primitives of a list, one after the other in an unrolled loop, instead of
+/// those whose boxes they enter. With --fp=fast only, where boxes do not decide which hits count.
+uint32_t rtsl_tests_all_listed(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
 /// Whether the program has materials with `transmittance`, and lights. In the engine `classic` they

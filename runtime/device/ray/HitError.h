@@ -67,6 +67,8 @@ inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
 /// `hit(t, error)`: the rule of Hit.h, except for hits that may be the start of the ray. `error`
 /// may be errorNotStated.
 inline bool reportHitWithin(RtslState &state, float t, float error) {
+  if (InOrder::isOn(state))
+    return InOrder::reportHit(state, t, error);
   if (t > state.Epsilon && t < state.HitDistance && mayBeWhereItStarts(state, t, error))
     return false;
   if (!reportHit(state, t))

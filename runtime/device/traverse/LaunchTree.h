@@ -1,6 +1,7 @@
 //===- LaunchTree.h - the tree of a launch, or its list of instances ------===//
 #pragma once
 
+#include "runtime/device/ray/HitError.h"
 #include "runtime/device/ray/ListedBox.h"
 #include "runtime/device/ray/ListedPairs.h"
 #include "runtime/device/ray/Rough.h"
@@ -61,11 +62,27 @@ struct EnteredList {
   }
 };
 
+/// Calls visit(item, ray) for all of `count` primitives, whatever it returns. The loop is unrolled:
+/// all that an `intersect` reads of its object is constant, and the lanes of a GPU test the same
+/// primitive together. One that the ray leaves follows at the end, if it has a hit that may count.
+template <typename Visit>
+void forEachInOrder(RtslState &state, uint32_t count, const TriangleRay &ray, Visit visit) {
+  {
+    const InOrder inOrder(state);
+#ifdef __clang__
+#pragma clang loop unroll(full)
+#endif
+    for (uint32_t i = 0; i < count; ++i)
+      visit(RtslLeafItem{i, 0}, ray);
+  }
+  if (state.isStartPutOff)
+    visit(RtslLeafItem{state.leaves, 0}, ray);
+}
+
 /// Calls visit(item, ray) for the instances, at most 32 primitives, whose boxes the ray enters
 /// between tMin and limit(), until it returns true; `leaves` as for EnteredList. All boxes are
 /// tested first: the lanes of a GPU that have primitives left then test them together, each its
-/// own. Unrolling both loops completely would make all that they read of the scene constant, and is
-/// slower: the program exceeds the instruction cache.
+/// own. Unrolling both loops completely would be slower: the program exceeds the instruction cache.
 template <typename Limit, typename Visit>
 void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &ray, float tMin,
                    uint32_t leaves, Limit limit, Visit visit) {
@@ -85,14 +102,21 @@ void forEachListed(const RtslLaunch &launch, uint32_t count, const TriangleRay &
 /// true. `ray` is the ray in world space, or, where the launch has transforms, the SearchRay in the
 /// item's space. It passes over instances with a space that enter(instance) is false for.
 struct LaunchTree {
-  bool putsOff; // as in traverseBvh
+  bool putsOff;                           // as in traverseBvh
+  [[maybe_unused]] bool testsAll = false; // of a list, if the program does (rtsl_tests_all_listed)
 
   template <typename Limit, typename Enter, typename Visit>
-  void forEach(const RtslState &state, const TriangleRay &ray, Limit limit, Enter enter,
+  void forEach(RtslState &state, const TriangleRay &ray, Limit limit, Enter enter,
                Visit visit) const {
     const RtslLaunch &launch = *state.launch;
     const float tMin = maximum(state.Epsilon, 0.0f);
     if (const uint32_t count = rtsl_listed_instances(&launch)) {
+#ifdef RTSL_IN_PROGRAM
+      if (testsAll && rtsl_tests_all_listed()) {
+        forEachInOrder(state, count, ray, visit);
+        return;
+      }
+#endif
       const bool isKnown = (rtsl_needs(&launch) & RTSL_NEEDS_HIT_ERRORS) != 0;
       forEachListed(launch, count, ray, tMin, isKnown ? state.leaves : RTSL_NO_HIT, limit, visit);
       return;

@@ -34,7 +34,7 @@ uint32_t findHit(RtslState &state, uint32_t how, const Slots &slots, const Tree 
 template <typename Slots>
 uint32_t traverseDevice(RtslState &state, uint32_t how, const Slots &slots) {
   // A ray that ends at its first hit gains more from an early one.
-  return findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT)});
+  return findHit(state, how, slots, LaunchTree{!(how & RTSL_FIRST_HIT), /*testsAll=*/true});
 }
 
 } // namespace rtsl::device

@@ -30,7 +30,8 @@ static llvm::Value *approximateQuotient(llvm::Instruction &division) {
   builder.setFastMathFlags(division.getFastMathFlags());
   auto *root = llvm::dyn_cast<llvm::Instruction>(b);
   if (!root || !mayBeApproximate(*root) || !match(root, m_Sqrt(m_Value(square))))
-    return builder.CreateIntrinsic(llvm::Intrinsic::nvvm_div_full, {a, b});
+    return builder.CreateFMul(a,
+                              builder.CreateIntrinsic(llvm::Intrinsic::nvvm_rcp_approx_ftz_f, {b}));
   return builder.CreateFMul(
       a, builder.CreateIntrinsic(llvm::Intrinsic::nvvm_rsqrt_approx_f, {square}));
 }

@@ -1,11 +1,12 @@
 //===- Approximations.h - division and square root on a GPU ---------------===//
 //
-// A GPU has instructions that approximate 1/x and 1/sqrt(x); the nearest float takes eight more and
-// a branch. With --fp=fast the code of shaders uses what PTX has for numbers of any size, so that
-// infinities, NaNs and subnormal numbers stay what they are ("div", "sqrt" and "rsqrt" in its
-// manual). The bounds in units in the last place were measured (docs/fast.md).
+// A GPU has instructions that approximate 1/x and 1/sqrt(x); the nearest float takes twelve more
+// and a branch. With --fp=fast the code of shaders uses them. Infinities and NaNs stay what they
+// are; of the divisors subnormal ones count as 0, and those above 2^126 as infinite ("rcp", "sqrt"
+// and "rsqrt" in the manual of PTX). The bounds in units in the last place were measured
+// (docs/fast.md).
 //
-//   fdiv fast %a, %b             =>  div.full                       3 units
+//   fdiv fast %a, %b             =>  %a times rcp.approx.ftz of %b  3 units
 //   fdiv fast %a, (sqrt fast %b) =>  %a times rsqrt.approx of %b    3
 //   sqrt fast %a                 =>  sqrt.approx                    1
 //

@@ -17,19 +17,20 @@ WAYS = (
 
 
 class Lists(Case):
-    def scene(self, count, camera=(0, 0, 9), **render):
-        """A heap of so many primitives, some of which are moved, around a lamp."""
+    def scene(self, count, camera=(0, 0, 9), clay="Lambert", kinds=3, moves=True, **render):
+        """A heap of so many primitives of up to three kinds, some of which are moved, around a
+        lamp."""
         dice = random.Random(count)
 
         def one(number):
             place = [dice.uniform(-2, 2) for _ in range(3)]
-            kinds = (
+            classes = (
                 {"class": "Sphere", "center": place, "radius": dice.uniform(0.2, 1)},
                 {"class": "Parallelogram", "constructor": [place, [1, 0.3, 0], [0, 1, 0.5]]},
                 {"class": "Box", "low": place, "high": [x + 0.7 for x in place]},
             )
-            made = {"primitive": kinds[number % 3], "material": "clay"}
-            if number % 4 == 3:
+            made = {"primitive": classes[number % kinds], "material": "clay"}
+            if moves and number % 4 == 3:
                 made["transform"] = {"scale": [1, 0.5, 2], "rotate": [0, 20 * number, 0]}
             return made
 
@@ -45,7 +46,7 @@ class Lists(Case):
                         "constructor": {"eye": camera, "target": [0, 0, 0], "up": [0, 1, 0]},
                     },
                     "materials": {
-                        "clay": {"class": "Lambert"},
+                        "clay": {"class": clay},
                         "lamp": {"class": "Emitter", "radiance": 9},
                     },
                     "objects": [
@@ -71,6 +72,10 @@ class Lists(Case):
         )
         return json.loads(out)
 
+    def ptx(self, *arguments):
+        out, _ = self.run_rtslc("compile", "scene.json", "--emit=ptx", "-o", "-", *arguments)
+        return out
+
     def test_every_way_gives_the_same_bits(self):
         for count in (1, 8, 13, 32, 33):
             self.scene(count)
@@ -85,6 +90,27 @@ class Lists(Case):
             self.render("a.exr", *arguments)
             self.render("b.exr", "--keep=tree", *arguments)
             self.assert_same_bits("a.exr", "b.exr", arguments)
+
+    def test_fast_programs_for_gpus_test_all_primitives(self):
+        """In an unrolled loop, where what a ray leaves comes last. Its copies of `intersect` may be
+        rounded otherwise than that for a tree."""
+        for count, clay, kinds in ((13, "Lambert", 2), (13, "Dielectric", 1), (7, "Conductor", 2)):
+            self.scene(count, clay=clay, kinds=kinds, moves=False, spp=16)
+            has_boxes = {
+                precision: "listed_boxes" in self.ptx(f"--fp={precision}")
+                for precision in ("strict", "fast")
+            }
+            self.assertEqual(has_boxes, {"strict": True, "fast": False}, (count, clay))
+            way = ("--target=host-megakernel", "--fp=fast")
+            self.render("list.exr", *way)
+            self.render("tree.exr", *way, "--keep=tree")
+            self.run_rtslc("compare", "tree.exr", "list.exr", "--threshold", "1e-3")
+
+    def test_lists_that_fast_programs_for_gpus_test_by_their_boxes(self):
+        """Where an `intersect` has a loop, takes many instructions, or has a space of its own."""
+        for arguments in ({"kinds": 3, "moves": False}, {"kinds": 2, "moves": True}):
+            self.scene(13, **arguments)
+            self.assertIn("listed_boxes", self.ptx("--fp=fast"), arguments)
 
     def test_hits_outside_of_their_boxes(self):
         """A plane whose box lies before another plane, which it is behind. With --fp=fast its hits

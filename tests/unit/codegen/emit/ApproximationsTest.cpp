@@ -32,7 +32,7 @@ std::string rewritten(const std::string &body) {
 
 TEST(Approximations, TakeThePlaceOfWhatFastModeMarks) {
   EXPECT_EQ(rewritten("%q = fdiv reassoc arcp float %a, %b\nret float %q\n"),
-            "llvm.nvvm.div.full ret ");
+            "llvm.nvvm.rcp.approx.ftz.f fmul ret ");
   EXPECT_EQ(rewritten("%r = call reassoc arcp float @llvm.sqrt.f32(float %a)\nret float %r\n"),
             "llvm.nvvm.sqrt.approx.f ret ");
 }
@@ -43,7 +43,7 @@ TEST(Approximations, QuotientsByARootAreProducts) {
   EXPECT_EQ(rewritten(root + "br label %next\nnext:\n%q = fdiv arcp float %a, %r\nret float %q\n"),
             "llvm.nvvm.sqrt.approx.f br llvm.nvvm.rsqrt.approx.f fmul ret ");
   EXPECT_EQ(rewritten(root + "%q = fdiv arcp float %r, %a\nret float %q\n"),
-            "llvm.nvvm.sqrt.approx.f llvm.nvvm.div.full ret ");
+            "llvm.nvvm.sqrt.approx.f llvm.nvvm.rcp.approx.ftz.f fmul ret ");
 }
 
 TEST(Approximations, StrictCodeStays) {
@@ -52,5 +52,5 @@ TEST(Approximations, StrictCodeStays) {
             "llvm.sqrt.f32 ret ");
   EXPECT_EQ(rewritten("%r = call float @llvm.sqrt.f32(float %b)\n"
                       "%q = fdiv arcp float %a, %r\nret float %q\n"),
-            "llvm.sqrt.f32 llvm.nvvm.div.full ret ");
+            "llvm.sqrt.f32 llvm.nvvm.rcp.approx.ftz.f fmul ret ");
 }

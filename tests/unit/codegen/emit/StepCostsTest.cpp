@@ -85,24 +85,46 @@ TEST(StepCosts, TraversalDependsOnTheScene) {
 
 namespace {
 
-/// Is `intersect` cheap in a program with these functions?
-bool isCheap(const std::string &functions) {
+/// The cost of `intersect` in a program with these functions.
+std::optional<std::uint64_t> costOfIntersect(const std::string &functions) {
   llvm::LLVMContext context;
-  return isIntersectCheap(*parseLlvm(functions, context));
+  return intersectCost(*parseLlvm(functions, context));
 }
+
+const std::string ofOneClass = R"(
+  define void @rtsl_rt_Primitive_intersect(ptr %s, i32 %object) {
+    %a = call i32 @sphere(ptr %s)
+    %b = call i32 @sphere(ptr %s) ; one function in two places is no recursion
+    ret void
+  })";
 
 } // namespace
 
-TEST(StepCosts, AnIntersectIsCheapIfItIsShortAndHasNoLoop) {
+TEST(StepCosts, AnIntersectCostsItsInstructions) {
+  EXPECT_EQ(costOfIntersect(ofOneClass + stateOf("sphere", 80)), 2 * 81u);
+  EXPECT_EQ(costOfIntersect(ofOneClass + stateOf("sphere", 800)), 2 * 801u);
+}
+
+TEST(StepCosts, AnIntersectOfSeveralClassesCostsThatOfTheLongest) {
   const std::string intersect = R"(
     define void @rtsl_rt_Primitive_intersect(ptr %s, i32 %object) {
+      switch i32 %object, label %none [ i32 1, label %one
+                                        i32 2, label %other ]
+    none:
+      ret void
+    one:
       %a = call i32 @sphere(ptr %s)
-      %b = call i32 @sphere(ptr %s) ; one function in two places is no recursion
+      ret void
+    other:
+      %b = call i32 @side(ptr %s)
       ret void
     })";
-  EXPECT_TRUE(isCheap(intersect + stateOf("sphere", 80)));
-  EXPECT_FALSE(isCheap(intersect + stateOf("sphere", 800)));
-  EXPECT_FALSE(isCheap(intersect + R"(
+  EXPECT_EQ(costOfIntersect(intersect + stateOf("sphere", 80) + stateOf("side", 50)), 81u);
+  EXPECT_EQ(costOfIntersect(intersect + stateOf("sphere", 30) + stateOf("side", 50)), 51u);
+}
+
+TEST(StepCosts, NothingIsKnownOfAnIntersectThatMayLoop) {
+  EXPECT_FALSE(costOfIntersect(ofOneClass + R"(
     define i32 @sphere(ptr %s) {
       br label %next
     next:
@@ -111,11 +133,11 @@ TEST(StepCosts, AnIntersectIsCheapIfItIsShortAndHasNoLoop) {
     end:
       ret i32 0
     })"));
-  EXPECT_FALSE(isCheap(intersect + R"(
+  EXPECT_FALSE(costOfIntersect(ofOneClass + R"(
     define i32 @sphere(ptr %s) {
       call void @rtsl_rt_Primitive_intersect(ptr %s, i32 0)
       ret i32 0
     })"));
-  EXPECT_FALSE(isCheap("declare void @rtsl_rt_Primitive_intersect(ptr, i32)"));
-  EXPECT_FALSE(isCheap(stateOf("sphere", 3)));
+  EXPECT_FALSE(costOfIntersect("declare void @rtsl_rt_Primitive_intersect(ptr, i32)"));
+  EXPECT_FALSE(costOfIntersect(stateOf("sphere", 3)));
 }
