@@ -117,7 +117,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   linking::dropUnusedClasses(context);
   linking::emptyReferences(context);
   linking::findUsedObjects(context);
-  linking::deriveHitErrors(context);
+  program.raysLeavePlanes = linking::deriveHitErrors(context);
   if (!request.hasCounts && !request.keep.has(Item::Counts))
     ir::attr::singlePrimitives.set(ir);
   const linking::ImageChannels imageChannels = linking::findImageChannels(context);

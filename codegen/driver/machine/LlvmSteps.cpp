@@ -59,6 +59,7 @@ void defineFacts(LlvmCode &code, const CompileOptions &options, const runtime::P
   codegen::defineConstant(*code.module, "rtsl_light_passes", program.lightPasses);
   codegen::defineConstant(*code.module, "rtsl_has_primitives", program.hasPrimitives);
   codegen::defineConstant(*code.module, "rtsl_rays_read_launch", program.raysReadLaunch);
+  codegen::defineConstant(*code.module, "rtsl_rays_leave_planes", program.raysLeavePlanes);
   codegen::defineConstant(*code.module, "rtsl_is_fast",
                           options.floatingPoint == FloatingPoint::Fast);
 }
@@ -159,8 +160,8 @@ void decideWhetherLanesTakePixels(LlvmCode &code, const CompileOptions &options,
 constexpr std::uint64_t cheapIntersect = 200;
 
 /// Is it faster to test all primitives of a list, in an unrolled loop, than those whose boxes a ray
-/// enters? If the lanes of a warp stay together, boxes leave out most, and the cache of instructions
-/// has to hold the rest of a larger program, too. docs/gpu.md has the figures.
+/// enters? If the lanes of a warp stay together, boxes leave out most, and the cache of
+/// instructions has to hold the rest of a larger program, too. docs/gpu.md has the figures.
 static bool gainsFromTestingAll(const llvm::Module &module, const runtime::Program &program,
                                 std::uint64_t listed, std::uint64_t cost) {
   constexpr std::uint64_t longestIntersect = 400, longestList = 6400, largestAlike = 1500;

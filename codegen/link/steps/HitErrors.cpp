@@ -87,7 +87,7 @@ ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint) {
   return floatingPoint == FloatingPoint::Fast ? fastErrors : strictErrors;
 }
 
-void deriveHitErrors(LinkContext &context) {
+bool deriveHitErrors(LinkContext &context) {
   const std::set<std::string> senders = findSenders(context);
   const std::map<std::string, std::string> sendersOn = findSendersOn(context, senders);
   std::map<std::string, Finding> findings;
@@ -124,6 +124,8 @@ void deriveHitErrors(LinkContext &context) {
                      [&](const DerivedHitError &one) { return !sendersOn.count(one.className); }),
       derived.end());
   warnOfUnboundHits(derived, context.module, context.diagnostics);
+  return derived.size() == sendersOn.size() &&
+         llvm::all_of(derived, [](const DerivedHitError &one) { return one.isPlane; });
 }
 
 } // namespace rtsl::linking

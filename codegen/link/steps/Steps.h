@@ -106,8 +106,9 @@ void emptyReferences(LinkContext &context);
 /// The errors of the elementary functions of a program.
 ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
 
-/// HitErrors.cpp: error bounds of t for the primitives that rays leave.
-void deriveHitErrors(LinkContext &context);
+/// HitErrors.cpp: error bounds of t for the primitives that rays leave. Whether all of these are
+/// planes.
+bool deriveHitErrors(LinkContext &context);
 
 /// Erases the methods that are never run. Runs after slots are resolved.
 void dropUnreached(LinkContext &context);

@@ -5,6 +5,7 @@
 #include "codegen/ir/Rtsl.h"
 #include "codegen/passes/Pipeline.h"
 #include "codegen/passes/Simplify.h"
+#include "codegen/passes/errors/Planes.h"
 #include "codegen/passes/variables/HoistVariables.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
@@ -133,6 +134,7 @@ std::vector<DerivedHitError> deriveHitErrors(mlir::ModuleOp ir, mlir::SymbolTabl
   for (FuncOp method : methods) {
     DerivedHitError &one = derived.emplace_back();
     one.className = ir::attr::className.of(method).str();
+    one.isPlane = isOfPlane(method);
     one.hasFunction = boundHitError(method, elementary, one.unbound);
     ir::attr::methodName.removeFrom(method);
     ir::attr::hitError.set(method);

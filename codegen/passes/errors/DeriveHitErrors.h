@@ -25,6 +25,7 @@ constexpr llvm::StringLiteral hitErrorMethod = "rt_boundHitError";
 struct DerivedHitError {
   std::string className;
   bool hasFunction = false; // some hit has a derived bound
+  bool isPlane = false;     // Planes.h
   std::vector<UnboundHit> unbound;
 };
 

@@ -53,6 +53,9 @@ __attribute__((weak)) uint32_t rtsl_rays_leave_hits(void) {
 __attribute__((weak)) uint32_t rtsl_has_primitives(void) {
   return 1;
 }
+__attribute__((weak)) uint32_t rtsl_rays_leave_planes(void) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_rays_read_launch(void) {
   return 1;
 }

@@ -116,6 +116,8 @@ uint32_t rtsl_rays_leave_hits(void);
 uint32_t rtsl_light_passes(const RtslLaunch *launch);
 /// Whether the scene has primitives of classes; otherwise it has triangles alone.
 uint32_t rtsl_has_primitives(void);
+/// Whether all primitives that rays leave are planes: such a ray does not meet its own again.
+uint32_t rtsl_rays_leave_planes(void);
 /// Whether any method but those of the camera and `generate` reads LaunchIndex or LaunchSize.
 /// Otherwise rays that shaders send do not have them.
 uint32_t rtsl_rays_read_launch(void);

@@ -62,8 +62,8 @@ inline bool reportHit(RtslState &state, float t) {
 /// While it exists, all primitives of a list are tested in the order of their instances, and hits
 /// are compared at their own distances: with --fp=fast, where boxes do not decide which hits count.
 /// Then a hit wins if it is nearer than the one so far, and a program that does not ask for the
-/// result of `hit` makes no other comparison. Hits on the primitive that the ray leaves do not count
-/// yet: whether one is the ray's own start takes long to decide (HitError.h).
+/// result of `hit` makes no other comparison. Hits on the primitive that the ray leaves do not
+/// count yet: whether one is the ray's own start takes long to decide (HitError.h).
 class InOrder {
 public:
   explicit InOrder(RtslState &state) : state(state) {
@@ -90,7 +90,7 @@ public:
     const bool isLeft = (rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS) != 0 &&
                         state.candidateInstance == state.leaves;
     const bool isAhead = t > state.Epsilon, isNearest = isAhead & (t < state.HitDistance);
-    state.isStartPutOff |= uint32_t(isLeft & isAhead);
+    state.isStartPutOff |= uint32_t(isLeft & isAhead & !rtsl_rays_leave_planes());
     const bool counts = isNearest & !isLeft;
     if (!isLeft & isAhead & (t < state.nearest)) {
       commit(state, t, t, state.candidateInstance, 0);

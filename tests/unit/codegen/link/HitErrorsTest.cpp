@@ -71,6 +71,43 @@ TEST(HitErrors, AreLeftOutWhereNoRayLeaves) {
   EXPECT_FALSE(elsewhere.function(boundOfBall));
 }
 
+/// Is a primitive with this `intersect` seen to be a plane, which a ray does not meet again?
+bool isPlane(const std::string &statements) {
+  Linked linked(primitive(statements), ballOf("Mirror"));
+  return linked.program.raysLeavePlanes;
+}
+
+TEST(HitErrors, PlanesAreMetOnce) {
+  EXPECT_TRUE(isPlane(plane));
+  const std::string n = "vec3 n = center, o = rt_RayOrigin, d = rt_RayDirection;";
+  EXPECT_TRUE(isPlane(n + "hit((center.x - dot(n, o)) / dot(n, d));"));
+  EXPECT_TRUE(isPlane(n + "hit(dot(n, vec3(1.0) - o) / dot(d, center));"));
+  EXPECT_TRUE(isPlane(n + "hit(dot(o - n, n) / -dot(d, n));"));
+  EXPECT_TRUE(isPlane(n + "n = cross(n, vec3(1.0, 2.0, 3.0));"
+                          "hit(-(dot(n, o) - 2.0 * center.y) / dot(n, d));"));
+  EXPECT_TRUE(isPlane(n + "float slope = dot(n, d); if (slope == 0.0) return;"
+                          "float t = dot(n - o, n) / slope; if (length(o + t * d) < 1.0) hit(t);"));
+}
+
+TEST(HitErrors, OtherSurfacesMayBeMetAgain) {
+  const std::string n = "vec3 n = center, o = rt_RayOrigin, d = rt_RayDirection;";
+  EXPECT_FALSE(isPlane(n + "float b = dot(o, d); hit(-b - sqrt(b * b - dot(o, o) + 1.0));"));
+  EXPECT_FALSE(isPlane(n + "hit((1.0 - o.x) / d.x); hit((2.0 - o.x) / d.x);")) << "two planes";
+  EXPECT_FALSE(isPlane("for (int i = 0; i < 3; ++i)"
+                       "  hit((heights[i] - rt_RayOrigin.x) / rt_RayDirection.x);"));
+  EXPECT_FALSE(isPlane(n + "float h = 0.0; for (int i = 0; i < 3; ++i) { h = heights[i];"
+                           "  if (h > o.y) break; } hit((h - o.x) / d.x);"));
+  EXPECT_FALSE(isPlane(n + "float h = o.y > 0.0 ? 1.0 : 2.0; hit((h - o.x) / d.x);"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x - o.x) / d.y);"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x + o.x) / d.x);"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x - 2.0 * o.x) / d.x);"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x - o.x) / (d.x + 1.0));"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x - o.x) / (d.x + d.y));"));
+  EXPECT_FALSE(isPlane(n + "hit((n.x - o.x * d.x) / d.x);"));
+  EXPECT_FALSE(isPlane(n + "hit((dot(n, vec3(1.0)) - dot(n, o)) / dot(vec3(heights[0]), d));"));
+  EXPECT_FALSE(isPlane(n + "hit((rand() - o.x) / d.x);"));
+}
+
 TEST(HitErrors, AreNotDerivedWhereTheyAreStated) {
   Linked linked(primitive("hit(center.x, 0.5);"), ballOf("Mirror"));
   EXPECT_FALSE(linked.function(boundOfBall));
