@@ -29,28 +29,45 @@ struct Component {
   unsigned index = 0;
 };
 
-/// A sum of components of the ray's origin and direction, each times one that does not depend on
-/// the ray, and of a number that does not.
+/// A sum of few components of the ray's origin and direction, each times one that does not depend
+/// on the ray, and of a number that does not.
 struct LinearForm {
   /// What multiplies the ray's component (none: 1), which vector of the ray, and which component.
   using Term = std::tuple<const void *, unsigned, bool, unsigned>;
+  static constexpr int mostTimes = 16;
   std::map<Term, int> terms; // how often each is added
   bool hasRest = false;
 
   static Term term(Component factor, bool isDirection, unsigned index) {
     return {factor.of.getAsOpaquePointer(), factor.index, isDirection, index};
   }
-  void add(const LinearForm &other, int sign) {
-    for (const auto &[term, times] : other.terms)
-      if ((terms[term] += sign * times) == 0)
-        terms.erase(term);
+  /// Whether it still is one of few.
+  bool add(const LinearForm &other, int sign) {
     hasRest |= other.hasRest;
+    for (const auto &[term, times] : other.terms) {
+      const int sum = terms[term] += sign * times;
+      if (sum == 0)
+        terms.erase(term);
+      if (sum > mostTimes || sum < -mostTimes)
+        return false;
+    }
+    return true;
   }
 };
 
 class Analysis {
 public:
   std::optional<LinearForm> formOf(Component component) {
+    const auto key = std::make_pair(component.of, component.index);
+    if (const auto known = forms.find(key); known != forms.end())
+      return known->second;
+    const std::optional<LinearForm> form = compute(component);
+    forms[key] = form;
+    return form;
+  }
+
+private:
+  std::optional<LinearForm> compute(Component component) {
     if (isIndependent(component.of))
       return LinearForm{{}, /*hasRest=*/true};
     mlir::Operation *op = component.of.getDefiningOp();
@@ -75,7 +92,6 @@ public:
     return std::nullopt;
   }
 
-private:
   static std::optional<LinearForm> ofRay(ir::LoadOp load, unsigned index) {
     auto state = load.getAddress().getDefiningOp<ir::StateOp>();
     if (!state || (state.getName() != "RayOrigin" && state.getName() != "RayDirection"))
@@ -87,10 +103,7 @@ private:
 
   static std::optional<LinearForm> sum(std::optional<LinearForm> a,
                                        const std::optional<LinearForm> &b, int sign) {
-    if (!a || !b)
-      return std::nullopt;
-    a->add(*b, sign);
-    return a;
+    return a && b && a->add(*b, sign) ? a : std::nullopt;
   }
 
   std::optional<LinearForm> product(Component factor, const std::optional<LinearForm> &form) {
@@ -149,6 +162,7 @@ private:
                : value;
   }
 
+  llvm::DenseMap<std::pair<Value, unsigned>, std::optional<LinearForm>> forms;
   llvm::DenseMap<mlir::Operation *, bool> independent;
   llvm::StringMap<Value> loaded; // by member
 };

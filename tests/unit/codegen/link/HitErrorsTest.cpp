@@ -106,6 +106,10 @@ TEST(HitErrors, OtherSurfacesMayBeMetAgain) {
   EXPECT_FALSE(isPlane(n + "hit((n.x - o.x * d.x) / d.x);"));
   EXPECT_FALSE(isPlane(n + "hit((dot(n, vec3(1.0)) - dot(n, o)) / dot(vec3(heights[0]), d));"));
   EXPECT_FALSE(isPlane(n + "hit((rand() - o.x) / d.x);"));
+  std::string doubled = n + "float x = o.x;";
+  for (int i = 0; i < 100; ++i)
+    doubled += "x += x;"; // as many times as there are ways to x in the expression
+  EXPECT_FALSE(isPlane(doubled + "hit((1.0 - x) / d.x);"));
 }
 
 TEST(HitErrors, AreNotDerivedWhereTheyAreStated) {
