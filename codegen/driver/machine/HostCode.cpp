@@ -7,7 +7,7 @@
 #include "codegen/driver/machine/MachineStages.h"
 #include "codegen/emit/Jit.h"
 #include "codegen/emit/Parts.h"
-#include "codegen/emit/rewrites/DoublePrecision.h"
+#include "codegen/emit/rewrites/arithmetic/DoublePrecision.h"
 #include "codegen/link/Link.h"
 #include "codegen/passes/Pipeline.h"
 #include "runtime/program/DeviceBitcode.h"

@@ -10,7 +10,7 @@ namespace rtsl::codegen {
 
 namespace {
 
-constexpr llvm::StringLiteral mark = "rtsl-launch";
+constexpr llvm::StringLiteral launchMark = "rtsl-launch";
 
 /// The argument that a use passes on, if it is one of a call of a function whose code is known.
 llvm::Argument *passedAs(const llvm::Use &use) {
@@ -87,7 +87,8 @@ void receive(llvm::Argument &argument) {
     }
   llvm::Function &function = *argument.getParent();
   function.removeParamAttrs(argument.getArgNo(), llvm::AttributeMask(argument.getAttributes()));
-  function.addParamAttr(argument.getArgNo(), llvm::Attribute::get(function.getContext(), mark));
+  function.addParamAttr(argument.getArgNo(),
+                        llvm::Attribute::get(function.getContext(), launchMark));
   // What the launch refers to is now memory of an argument.
   llvm::MemoryEffects effects = function.getMemoryEffects();
   function.setMemoryEffects(
@@ -97,7 +98,7 @@ void receive(llvm::Argument &argument) {
 } // namespace
 
 bool isLaunch(const llvm::Argument &argument) {
-  return argument.getParent()->getAttributes().hasParamAttr(argument.getArgNo(), mark);
+  return argument.getParent()->getAttributes().hasParamAttr(argument.getArgNo(), launchMark);
 }
 
 void passLaunches(llvm::Module &module) {

@@ -1,8 +1,9 @@
 //===- Approximations.cpp - division and square root on a GPU -------------===//
 #include "codegen/emit/rewrites/gpu/Approximations.h"
 
+#include "codegen/emit/rewrites/ReplaceEach.h"
+
 #include "llvm/IR/IRBuilder.h"
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicsNVPTX.h"
 #include "llvm/IR/PatternMatch.h"
 
@@ -36,24 +37,11 @@ static llvm::Value *approximateQuotient(llvm::Instruction &division) {
       a, builder.CreateIntrinsic(llvm::Intrinsic::nvvm_rsqrt_approx_f, {square}));
 }
 
-/// Replaces each instruction for which there is an approximation. True if there was any.
-static bool replaceAll(llvm::Function &function,
-                       llvm::function_ref<llvm::Value *(llvm::Instruction &)> approximate) {
-  bool changed = false;
-  for (llvm::Instruction &instruction : llvm::make_early_inc_range(llvm::instructions(function)))
-    if (llvm::Value *value = approximate(instruction)) {
-      instruction.replaceAllUsesWith(value);
-      instruction.eraseFromParent();
-      changed = true;
-    }
-  return changed;
-}
-
 llvm::PreservedAnalyses ApproximationsPass::run(llvm::Function &function,
                                                 llvm::FunctionAnalysisManager &) {
-  bool changed = replaceAll(function, approximateQuotient); // first, by roots that are roots still
-  changed |= replaceAll(function, approximateRoot);
-  return changed ? llvm::PreservedAnalyses::none() : llvm::PreservedAnalyses::all();
+  bool changed = replaceEach(function, approximateQuotient); // first, by roots that are roots still
+  changed |= replaceEach(function, approximateRoot);
+  return preservedBy(changed);
 }
 
 } // namespace rtsl::codegen

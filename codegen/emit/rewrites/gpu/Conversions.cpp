@@ -1,8 +1,9 @@
 //===- Conversions.cpp - floats to integers on a GPU -------------------===//
 #include "codegen/emit/rewrites/gpu/Conversions.h"
 
+#include "codegen/emit/rewrites/ReplaceEach.h"
+
 #include "llvm/IR/IRBuilder.h"
-#include "llvm/IR/InstIterator.h"
 #include "llvm/IR/IntrinsicInst.h"
 #include "llvm/IR/IntrinsicsNVPTX.h"
 
@@ -20,21 +21,18 @@ static llvm::Intrinsic::ID instructionFor(const llvm::IntrinsicInst &conversion)
                                            : llvm::Intrinsic::nvvm_f2ui_rz;
 }
 
+static llvm::Value *inPtx(llvm::Instruction &instruction) {
+  const auto *conversion = llvm::dyn_cast<llvm::IntrinsicInst>(&instruction);
+  const llvm::Intrinsic::ID id =
+      conversion ? instructionFor(*conversion) : llvm::Intrinsic::not_intrinsic;
+  return id != llvm::Intrinsic::not_intrinsic
+             ? llvm::IRBuilder<>(&instruction).CreateIntrinsic(id, {conversion->getArgOperand(0)})
+             : nullptr;
+}
+
 llvm::PreservedAnalyses ConversionsPass::run(llvm::Function &function,
                                              llvm::FunctionAnalysisManager &) {
-  bool changed = false;
-  for (llvm::Instruction &instruction : llvm::make_early_inc_range(llvm::instructions(function))) {
-    auto *conversion = llvm::dyn_cast<llvm::IntrinsicInst>(&instruction);
-    const llvm::Intrinsic::ID id =
-        conversion ? instructionFor(*conversion) : llvm::Intrinsic::not_intrinsic;
-    if (id == llvm::Intrinsic::not_intrinsic)
-      continue;
-    llvm::IRBuilder<> builder(conversion);
-    conversion->replaceAllUsesWith(builder.CreateIntrinsic(id, {conversion->getArgOperand(0)}));
-    conversion->eraseFromParent();
-    changed = true;
-  }
-  return changed ? llvm::PreservedAnalyses::none() : llvm::PreservedAnalyses::all();
+  return preservedBy(replaceEach(function, inPtx));
 }
 
 } // namespace rtsl::codegen

@@ -1,4 +1,4 @@
-#include "codegen/emit/rewrites/FoldKnownCalls.h"
+#include "codegen/emit/rewrites/arithmetic/FoldKnownCalls.h"
 #include "math/Elementary.h"
 #include "tests/unit/codegen/emit/ParseLlvm.h"
 

@@ -1,4 +1,4 @@
-#include "codegen/emit/rewrites/ZeroProducts.h"
+#include "codegen/emit/rewrites/arithmetic/ZeroProducts.h"
 #include "tests/unit/codegen/emit/ParseLlvm.h"
 
 #include "llvm/IR/InstIterator.h"

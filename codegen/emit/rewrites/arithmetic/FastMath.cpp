@@ -1,5 +1,5 @@
 //===- FastMath.cpp - arithmetic for --fp=fast ----------------------------===//
-#include "codegen/emit/rewrites/FastMath.h"
+#include "codegen/emit/rewrites/arithmetic/FastMath.h"
 
 #include "llvm/IR/InstIterator.h"
 #include "llvm/IR/Module.h"

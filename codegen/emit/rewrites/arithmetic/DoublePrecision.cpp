@@ -1,5 +1,5 @@
 //===- DoublePrecision.cpp - arithmetic for --fp=double -------------------===//
-#include "codegen/emit/rewrites/DoublePrecision.h"
+#include "codegen/emit/rewrites/arithmetic/DoublePrecision.h"
 
 #include "math/Refraction.h"
 #include "runtime/program/NumberCheck.h"

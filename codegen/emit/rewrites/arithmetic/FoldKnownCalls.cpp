@@ -1,12 +1,11 @@
 //===- FoldKnownCalls.cpp - elementary functions of constants -------------===//
-#include "codegen/emit/rewrites/FoldKnownCalls.h"
+#include "codegen/emit/rewrites/arithmetic/FoldKnownCalls.h"
 
+#include "codegen/emit/rewrites/ReplaceEach.h"
 #include "codegen/ir/dialect/RtslOps.h"
 
 #include "llvm/ADT/STLExtras.h"
 #include "llvm/IR/Constants.h"
-#include "llvm/IR/InstIterator.h"
-#include "llvm/IR/Instructions.h"
 
 #include <optional>
 
@@ -34,21 +33,10 @@ static llvm::Constant *evaluate(const llvm::CallInst &call) {
 
 llvm::PreservedAnalyses FoldKnownCallsPass::run(llvm::Function &function,
                                                 llvm::FunctionAnalysisManager &) {
-  bool hasChanged = false;
-  for (llvm::Instruction &instruction : llvm::make_early_inc_range(llvm::instructions(function))) {
-    auto *call = llvm::dyn_cast<llvm::CallInst>(&instruction);
-    llvm::Constant *result = call ? evaluate(*call) : nullptr;
-    if (!result)
-      continue;
-    call->replaceAllUsesWith(result);
-    call->eraseFromParent();
-    hasChanged = true;
-  }
-  if (!hasChanged)
-    return llvm::PreservedAnalyses::all();
-  llvm::PreservedAnalyses preserved;
-  preserved.preserveSet<llvm::CFGAnalyses>();
-  return preserved;
+  return preservedBy(replaceEach(function, [](llvm::Instruction &instruction) {
+    const auto *call = llvm::dyn_cast<llvm::CallInst>(&instruction);
+    return call ? evaluate(*call) : nullptr;
+  }));
 }
 
 } // namespace rtsl::codegen

@@ -1,5 +1,5 @@
 //===- CheckNumbers.cpp - where a number stops being finite ----------------===//
-#include "codegen/emit/rewrites/CheckNumbers.h"
+#include "codegen/emit/rewrites/arithmetic/CheckNumbers.h"
 
 #include "codegen/emit/RuntimeFunctions.h"
 #include "codegen/ir/SourcePlace.h"
