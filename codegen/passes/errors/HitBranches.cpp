@@ -6,15 +6,13 @@
 #include "mlir/IR/PatternMatch.h"
 #include "mlir/Transforms/RegionUtils.h"
 #include "llvm/ADT/STLExtras.h"
-#include "llvm/ADT/SetVector.h"
 
 namespace rtsl {
 
 using mlir::Block;
 using Blocks = llvm::SetVector<Block *>;
 
-/// The blocks that come directly or indirectly after one of these.
-static Blocks blocksAfter(llvm::ArrayRef<Block *> starts) {
+Blocks blocksAfter(llvm::ArrayRef<Block *> starts) {
   Blocks after;
   for (Block *start : starts)
     after.insert(start->succ_begin(), start->succ_end());

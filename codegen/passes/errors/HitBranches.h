@@ -10,11 +10,16 @@
 #pragma once
 
 #include "mlir/Dialect/Func/IR/FuncOps.h"
+#include "llvm/ADT/SetVector.h"
 
 namespace rtsl {
 
 /// Removes these branches from a function of level 2, and what only they depend on. A branch
 /// remains if a hit may have come before it, or if it may run again.
 void takeBranchesToHits(mlir::func::FuncOp intersect);
+
+/// The blocks that come directly or indirectly after one of these. A block that comes after itself
+/// is in a loop.
+llvm::SetVector<mlir::Block *> blocksAfter(llvm::ArrayRef<mlir::Block *> starts);
 
 } // namespace rtsl

@@ -1,14 +1,13 @@
 #include "codegen/passes/errors/Planes.h"
 
-#include "codegen/ir/BaseAddress.h"
 #include "codegen/ir/Rtsl.h"
+#include "codegen/passes/errors/HitBranches.h"
 
 #include "mlir/Dialect/Arith/IR/Arith.h"
 #include "mlir/Dialect/Vector/IR/VectorOps.h"
 #include "mlir/Interfaces/SideEffectInterfaces.h"
 #include "llvm/ADT/DenseMap.h"
 #include "llvm/ADT/STLExtras.h"
-#include "llvm/ADT/SetVector.h"
 #include "llvm/ADT/StringMap.h"
 
 #include <map>
@@ -167,20 +166,15 @@ private:
   llvm::StringMap<Value> loaded; // by member
 };
 
-/// May the block run several times?
-bool isInLoop(mlir::Block *block) {
-  llvm::SetVector<mlir::Block *> after(block->succ_begin(), block->succ_end());
-  for (std::size_t i = 0; i < after.size(); ++i)
-    after.insert(after[i]->succ_begin(), after[i]->succ_end());
-  return after.contains(block);
-}
-
 } // namespace
 
 bool isOfPlane(mlir::func::FuncOp intersect) {
   llvm::SmallVector<ir::HitOp> hits;
   intersect.walk([&](ir::HitOp hit) { hits.push_back(hit); });
-  if (hits.size() != 1 || isInLoop(hits.front()->getBlock()))
+  if (hits.size() != 1)
+    return false;
+  mlir::Block *block = hits.front()->getBlock();
+  if (blocksAfter(block).contains(block)) // in a loop
     return false;
   auto quotient = hits.front().getT().getDefiningOp<arith::DivFOp>();
   if (!quotient)

@@ -11,6 +11,7 @@
 
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Hit.h"
+#include "runtime/device/ray/InOrder.h"
 #include "runtime/device/ray/Vector.h"
 
 namespace rtsl::device {
@@ -47,17 +48,11 @@ __attribute__((cold, noinline)) inline float derivedErrorOfCandidate(RtslState &
   return derivedHitError(state, primitive, t, rtsl_rt_Primitive_rt_boundHitError);
 }
 
-/// Does the ray leave the candidate? Other primitives of the same object are other surfaces.
-inline bool leavesCandidate(const RtslState &state) {
-  return state.candidateInstance == state.leaves &&
-         (!hasCounts(*state.launch) || state.candidatePrimitive == state.leavesPrimitive);
-}
-
 /// Does the ray leave the candidate, and is t so small that the hit may be its own start? Then it
 /// is not certain that the hit is ahead (Pharr, Jakob and Humphreys, "Physically Based Rendering",
 /// 3rd edition, 2016, 3.9.6).
 inline bool mayBeWhereItStarts(RtslState &state, float t, float error) {
-  if (!(rtsl_needs(state.launch) & RTSL_NEEDS_HIT_ERRORS) || !leavesCandidate(state))
+  if (!leavesCandidate(state))
     return false;
   if (error == errorNotStated)
     error = derivedErrorOfCandidate(state, t);

@@ -69,7 +69,7 @@ typedef struct RtslState {
   float candidateNear,
       candidateFar; // range of the ray in the box of the RTSL primitive that is being tested
   uint32_t areAttributesLost; // 1: a hit that lost has overwritten those of the hit so far
-  uint32_t isInOrder;         // 1: all primitives are tested in their order (InOrder), and
+  uint32_t isInOrder;         // 1: all primitives are tested in their order (InOrder.h), and
   uint32_t isStartPutOff;     // 1: one that the ray leaves has a hit that may count
   int32_t wantedChild;        // while `visit` of a selector runs: which child leads on,
   uint32_t isChildVisited;    // and 1: visitChild was called with it

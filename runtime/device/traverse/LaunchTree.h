@@ -1,7 +1,7 @@
 //===- LaunchTree.h - the tree of a launch, or its list of instances ------===//
 #pragma once
 
-#include "runtime/device/ray/HitError.h"
+#include "runtime/device/ray/InOrder.h"
 #include "runtime/device/ray/ListedBox.h"
 #include "runtime/device/ray/ListedPairs.h"
 #include "runtime/device/ray/Rough.h"
