@@ -49,6 +49,11 @@ enum class Schedule : std::uint32_t {
 /// (runtime/device/organisations/Persistent.h). The picture is the same, bit for bit.
 enum class Organisation : std::uint8_t { Megakernel, Wavefront, Persistent };
 
+/// Which states of a wavefront have a kernel that looks for lights before the one that shades
+/// (runtime/device/engines/KnownLights.h): large ones, all that call `illuminate`, or none. The
+/// picture is the same, bit for bit.
+enum class LightKernels : std::uint8_t { Auto, Always, Never };
+
 struct CompileOptions {
   std::uint32_t colorComponents = 3; // 1 to RTSL_MAX_COLOR
   bool checkIndices = true;
@@ -77,6 +82,7 @@ struct CompileOptions {
   /// The organisation of programs for GPUs and for Target::HostMegakernel; for the latter, none
   /// means Megakernel.
   std::optional<Organisation> organisation;
+  LightKernels lightKernels = LightKernels::Auto;
   /// Samples have a color that is wanted, and not only output buffers.
   bool rendersPicture = true;
   /// Megakernels count the steps of warps (runtime/device/organisations/StepCounts.h).

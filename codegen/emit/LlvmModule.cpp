@@ -3,6 +3,7 @@
 
 #include "codegen/emit/rewrites/FoldConstantFunctions.h"
 #include "codegen/emit/rewrites/JoinCalls.h"
+#include "codegen/emit/rewrites/LightsAlone.h"
 #include "codegen/emit/rewrites/NarrowLoads.h"
 #include "codegen/emit/rewrites/PackRecords.h"
 #include "codegen/emit/rewrites/SelectByMask.h"
@@ -380,6 +381,16 @@ static void addLast(llvm::PassBuilder &builder) {
 /// with 1000 instead of 225 pictures take 0.9 to 1 of the time, and compiling 1.1.
 static constexpr int inlinerThreshold = 1000;
 
+/// Leaves nothing but rays to lights in the kernels that look for them: early, so that less is left
+/// to optimise, and once more when LLVM has found that more variables are not read.
+static void addLightsAlone(llvm::PassBuilder &builder) {
+  builder.registerScalarOptimizerLateEPCallback(
+      [](llvm::FunctionPassManager &functions, llvm::OptimizationLevel) {
+        functions.addPass(LightsAlonePass());
+      });
+  addLast<LightsAlonePass>(builder);
+}
+
 void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineOptions &options) {
   llvm::PipelineTuningOptions tuning;
   if (options.optimization > 1 && !options.isMegakernel && !machine.getTargetTriple().isNVPTX())
@@ -423,6 +434,8 @@ void optimize(llvm::Module &module, llvm::TargetMachine &machine, const MachineO
 
   if (module.getFunction("rtsl_record_store"))
     addRecordPacking(builder);
+  if (module.getFunction("rtsl_knows_lights"))
+    addLightsAlone(builder);
   addUnrolling(builder);
   if (options.floatingPoint == FloatingPoint::Fast)
     addZeroProducts(builder);

@@ -102,7 +102,7 @@ void GpuRenderer::loadKernels(const GpuCode &code) {
     kernel = blocks->kernel();
     return;
   }
-  waves.emplace(device, program, code.wave, code.laneBytes);
+  waves.emplace(device, program, code.ptx, code.wave, code.laneBytes, channels());
   const auto &kernels = waves->stepKernels();
   kernel = *std::max_element(kernels.begin(), kernels.end(), [](const auto &a, const auto &b) {
     return a.registers < b.registers;

@@ -4,6 +4,8 @@
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 
@@ -19,18 +21,34 @@ constexpr std::uint64_t memoryShare = 4;
 
 } // namespace
 
-GpuWaves::GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const WaveFacts &facts,
-                   std::uint64_t stackBytes)
+GpuWaves::GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const std::string &ptx,
+                   const WaveFacts &facts, std::uint64_t stackBytes, std::uint32_t colorComponents)
     : device(device), begin(device.kernel("rtsl_wave_begin", program)),
       sampleKernel(device.kernel("rtsl_wave_sample", program)) {
   queueKernels.push_back(device.kernel("rtsl_wave_trace", program));
-  for (std::uint32_t state = 1; state <= facts.states; ++state)
+  lightKernels.emplace_back();
+  memory.lightWords = 0;
+  for (std::uint32_t state = 1; state <= facts.states; ++state) {
     queueKernels.push_back(
-        device.kernel(("rtsl_wave_state_" + std::to_string(state)).c_str(), program));
+        device.kernel(fmt::format("rtsl_wave_state_{}", state).c_str(), program));
+    CudaDevice::Kernel &light = lightKernels.emplace_back();
+    if (!hasLightKernel(ptx, state))
+      continue;
+    light = device.kernel(lightKernel(state).c_str(), program);
+    memory.makePlaceForLights(colorComponents);
+  }
   memory.slots = 0;
   memory.queues = std::uint32_t(queueKernels.size());
   memory.groups = facts.groups;
   memory.stackBytes = facts.hasStacks ? stackBytes : 0;
+}
+
+std::string GpuWaves::lightKernel(std::size_t state) {
+  return fmt::format("rtsl_wave_light_{}", state);
+}
+
+bool GpuWaves::hasLightKernel(const std::string &ptx, std::size_t state) {
+  return ptx.find(fmt::format(".entry {}(", lightKernel(state))) != std::string::npos;
 }
 
 std::uint64_t GpuWaves::slotBytes() const {
@@ -81,8 +99,11 @@ double GpuWaves::run(const RtslJob &job, Address rays) {
       continue;
     }
     for (std::size_t queue = 0; queue < counts.size(); ++queue)
-      if (counts[queue] != 0)
+      if (counts[queue] != 0) {
+        if (lightKernels[queue].function)
+          launch(lightKernels[queue], counts[queue], arguments);
         launch(queueKernels[queue], counts[queue], arguments);
+      }
     device.clear(countsOfTurn, countBytes);
     begins = true;
   }

@@ -13,6 +13,7 @@
 #include "runtime/program/Program.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace rtsl::runtime {
@@ -25,9 +26,9 @@ class GpuWaves {
 public:
   using Address = CudaDevice::Address;
 
-  /// `stackBytes` are for the rays of a sample. Throws NoDevice.
-  GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const WaveFacts &facts,
-           std::uint64_t stackBytes);
+  /// `stackBytes` are for the rays of a sample; `ptx` is the program's. Throws NoDevice.
+  GpuWaves(CudaDevice &device, const CudaDevice::Module &program, const std::string &ptx,
+           const WaveFacts &facts, std::uint64_t stackBytes, std::uint32_t colorComponents);
 
   /// Decides how many samples are in flight, of so many that there are in all, and returns the
   /// bytes of memory that they need. Throws OutOfMemory.
@@ -40,6 +41,10 @@ public:
   /// Runs the job, with `rays` of the size that setSlots() returned. Returns the seconds.
   double run(const RtslJob &job, Address rays);
 
+  /// The kernel that looks for the lights of a state (KnownLights.h), of which there may be none.
+  static std::string lightKernel(std::size_t state);
+  static bool hasLightKernel(const std::string &ptx, std::size_t state);
+
   /// The kernels in the order of the steps: traversal, the beginning of samples, and states.
   std::vector<CudaDevice::Kernel> stepKernels() const;
 
@@ -50,6 +55,8 @@ private:
   CudaDevice &device;
   CudaDevice::Kernel begin, sampleKernel;
   std::vector<CudaDevice::Kernel> queueKernels; // traversal, and states
+  // by queue: looks for the lights of its slots first (KnownLights.h); no function: there is none
+  std::vector<CudaDevice::Kernel> lightKernels;
   device::WaveMemory memory;
 };
 

@@ -251,11 +251,11 @@ int sum(const RtslJob &job) {
 const char *const kernels[] = {
     "rtsl_render",        "rtsl_sum",         "rtsl_wave_begin", "rtsl_wave_trace",
     "rtsl_wave_sample",   "rtsl_wave_state_", "rtsl_persistent", "rtsl_render_samples",
-    "rtsl_render_pixels",
+    "rtsl_render_pixels", "rtsl_wave_light_",
 #define RTSL_BUILD_STEP(name, call) "rtsl_build_" #name,
 #include "runtime/device/trees/Steps.def"
 };
-constexpr std::size_t programKernels = 9;
+constexpr std::size_t programKernels = 10;
 constexpr const char *entry = ".entry ";
 
 bool hasKernel(const char *code, const char *name) {

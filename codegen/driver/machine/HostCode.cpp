@@ -205,6 +205,7 @@ LlvmCode PartCompiler::rest() {
   if (isMegakernel) {
     decideWhetherLanesTakePixels(code, options, program);
     decideListedTests(code, options, program);
+    decideKnownLights(code, options, program);
   }
   if (keepsRecords)
     beginRecords(code, program);
@@ -213,7 +214,7 @@ LlvmCode PartCompiler::rest() {
     linked = {runtime::deviceBitcode(), runtime::listTraversalBitcode(), runtime::deviceBitcode()};
   linkDeviceCode(code, linked, exports);
   if (keepsRecords)
-    endRecords(code, program);
+    endRecords(code, options, program);
   code.options.isMegakernel = isMegakernel;
   return code;
 }

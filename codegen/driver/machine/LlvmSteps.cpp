@@ -184,6 +184,22 @@ void decideListedTests(LlvmCode &code, const CompileOptions &options,
   codegen::defineConstant(module, "rtsl_is_intersect_cheap", cost && *cost <= cheapIntersect);
 }
 
+/// Do shaders write to the buffers of a scene?
+static bool writesBuffers(const runtime::Program &program) {
+  return llvm::any_of(program.classes, [](const runtime::ClassInfo &info) {
+    return llvm::any_of(info.members, [](const auto &member) { return member.type.isOutput; });
+  });
+}
+
+/// A state that runs twice must do nothing else that is seen.
+void decideKnownLights(LlvmCode &code, const CompileOptions &options,
+                       const runtime::Program &program) {
+  code.knowsLights = code.organisation == Organisation::Wavefront &&
+                     options.lightKernels != LightKernels::Never &&
+                     !(program.slots.features & RTSL_FEATURE_EVENTS) && !writesBuffers(program);
+  codegen::defineConstant(*code.module, "rtsl_knows_lights", code.knowsLights);
+}
+
 /// How the lanes of a warp choose their steps.
 static void defineSchedule(llvm::Module &module, const CompileOptions &options,
                            const runtime::Program &program) {
@@ -217,8 +233,12 @@ static std::vector<std::string> kernels(const LlvmCode &code) {
   if (code.organisation == Organisation::Persistent)
     return {"rtsl_persistent", "rtsl_block_state", "rtsl_sum", "rtsl_slots_have_stacks",
             "rtsl_record_groups"};
-  return {"rtsl_wave_begin", "rtsl_wave_sample",       "rtsl_wave_trace",   "rtsl_wave_state",
-          "rtsl_sum",        "rtsl_slots_have_stacks", "rtsl_record_groups"};
+  std::vector<std::string> names = {
+      "rtsl_wave_begin", "rtsl_wave_sample",       "rtsl_wave_trace",   "rtsl_wave_state",
+      "rtsl_sum",        "rtsl_slots_have_stacks", "rtsl_record_groups"};
+  if (code.knowsLights)
+    names.push_back("rtsl_wave_light");
+  return names;
 }
 
 /// What a program exports on a GPU.
@@ -239,6 +259,7 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
                              : options.organisation.value_or(Organisation::Megakernel);
   decideWhetherLanesTakePixels(code, options, program);
   decideListedTests(code, options, program);
+  decideKnownLights(code, options, program);
   if (forGpu) {
     codegen::alignMembers(*code.module);
     defineSchedule(*code.module, options, program);
@@ -251,7 +272,7 @@ static LlvmCode makeKernel(mlir::ModuleOp ir, const CompileOptions &options,
   if (llvm::Function *whole = code.module->getFunction("rtsl_render_whole"))
     whole->setName("rtsl_render");
   if (keepsRecords)
-    endRecords(code, program);
+    endRecords(code, options, program);
   code.options.isMegakernel = true;
   return code;
 }
@@ -294,15 +315,21 @@ void beginRecords(LlvmCode &code, const runtime::Program &program) {
                           std::uint32_t(program.stateNames.size() + besideStates));
 }
 
-void endRecords(LlvmCode &code, const runtime::Program &program) {
-  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()));
+/// From this number of instructions on, before optimisation and without those of the runtime, the
+/// kernel of a state that shades is so large that a kernel of its own for its rays to lights is a
+/// gain (docs/gpu.md).
+constexpr unsigned largeState = 1800;
+
+void endRecords(LlvmCode &code, const CompileOptions &options, const runtime::Program &program) {
+  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()),
+                          options.lightKernels == LightKernels::Always ? 0 : largeState);
   codegen::declareRecords(*code.module);
 }
 
 const std::vector<std::string> &hostEntries(std::optional<Organisation> organisation) {
   static const std::vector<std::string> lanes = {"rtsl_lane_bytes", "rtsl_run_lane"};
   static const std::vector<std::string> waves = {"rtsl_wave_bytes", "rtsl_run_wave",
-                                                 "rtsl_wave_state"};
+                                                 "rtsl_wave_state", "rtsl_wave_light"};
   static const std::vector<std::string> blocks = {"rtsl_block_bytes", "rtsl_run_block",
                                                   "rtsl_block_state"};
   return organisation == Organisation::Wavefront    ? waves

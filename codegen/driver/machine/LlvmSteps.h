@@ -50,6 +50,7 @@ struct LlvmCode {
   bool hasThreadOfSample = false; // a GPU has a thread for each sample, if not for each pixel
   bool takesPixels = false;       // lanes render whole pixels where a job allows it
   bool testsAllListed = false;    // rays test all primitives of a list
+  bool knowsLights = false;       // states of a wavefront may look for lights first (KnownLights.h)
   std::uint32_t registers = 0;    // that a thread of a kernel may have, on a GPU
 };
 
@@ -57,6 +58,10 @@ struct LlvmCode {
 /// and their source locations are added there (CheckNumbers.h).
 LlvmCode translate(mlir::ModuleOp ir, const codegen::MachineOptions &options,
                    std::vector<Place> *numberPlaces = nullptr);
+
+/// Decides rtsl_knows_lights.
+void decideKnownLights(LlvmCode &code, const CompileOptions &options,
+                       const runtime::Program &program);
 
 /// Is the program bound to a scene whose few primitives are tested one after the other?
 bool hasList(const LlvmCode &code);
@@ -92,7 +97,7 @@ hostEntries(std::optional<Organisation> organisation = std::nullopt);
 /// To be called before linking with the device code of an organisation that keeps samples in
 /// records, and after it.
 void beginRecords(LlvmCode &code, const runtime::Program &program);
-void endRecords(LlvmCode &code, const runtime::Program &program);
+void endRecords(LlvmCode &code, const CompileOptions &options, const runtime::Program &program);
 
 void linkDeviceCode(LlvmCode &code, llvm::ArrayRef<std::string_view> bitcodes,
                     std::vector<std::string> exports);

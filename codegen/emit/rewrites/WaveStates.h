@@ -16,8 +16,10 @@ class Module;
 namespace rtsl::codegen {
 
 /// Replaces `rtsl_wave_state`, or `rtsl_block_state`, by copies for the states 1 to `count`, which
-/// call only what their state consists of: `rtsl_wave_state_1` and so on. Where they are declared
-/// it also defines `rtsl_wave_run_state` and `rtsl_block_run_state`, the switch over them.
-void makeWaveStates(llvm::Module &module, unsigned count);
+/// call only what their state consists of: `rtsl_wave_state_1` and so on; likewise, if it is there,
+/// `rtsl_wave_light`, for the states that call `illuminate` and have at least `litFrom`
+/// instructions, without those of the runtime. Where they are declared it also defines
+/// `rtsl_wave_run_state`, `rtsl_block_run_state` and `rtsl_wave_run_light`, the switch over them.
+void makeWaveStates(llvm::Module &module, unsigned count, unsigned litFrom);
 
 } // namespace rtsl::codegen

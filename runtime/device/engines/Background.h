@@ -54,6 +54,17 @@ struct EmittedLight {
   float radiance[RTSL_MAX_COLOR];
 };
 
+/// Calls visit(i, pointer to word i) for its words.
+template <typename Light, typename Visit>
+void forEachLightWord(Light &light, uint32_t components, Visit visit) {
+  visit(0, &light.direction.x);
+  visit(1, &light.direction.y);
+  visit(2, &light.direction.z);
+  visit(3, &light.distance);
+  visit(4, &light.density);
+  forEachComponent(components, [&](uint32_t i) { visit(5 + i, &light.radiance[i]); });
+}
+
 /// Is the direction behind the plane of this normal? No direction is for a normal of 0.
 inline bool isBehind(Vec3 normal, Vec3 direction) {
   return dot(direction, normal) < 0;

@@ -1,6 +1,7 @@
 //===- BeginRay.h - the state of a ray that begins ------------------------===//
 #pragma once
 
+#include "runtime/device/engines/KnownLights.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Box.h"
 #include "runtime/device/ray/Color.h"
@@ -17,6 +18,7 @@ inline void beginState(RtslState &state, const RtslLaunch *launch) {
   state.launch = launch;
   makeUndefined(state, &state, &state + 1);
   state.launch = launch;
+  knowNoLights(state);
 }
 
 /// Copies what is the same for all rays of a sample from one of them.

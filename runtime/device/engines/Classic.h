@@ -12,6 +12,7 @@
 #include "runtime/device/engines/BeginRay.h"
 #include "runtime/device/engines/CameraCone.h"
 #include "runtime/device/engines/Emitters.h"
+#include "runtime/device/engines/KnownLights.h"
 #include "runtime/device/engines/ShadowRay.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
@@ -79,7 +80,8 @@ inline bool maySpawn(RtslState &parent, uint32_t *dimension) {
   if (!isShallow) {
     raise(parent, RTSL_EXCEPTION_STACK_OVERFLOW);
     if (RtslStatus *status = parent.launch->status)
-      countUp(&status->raysTooDeep);
+      if (!wantsLights(parent))
+        countUp(&status->raysTooDeep);
   }
   return isShallow && !isAbandoned(parent);
 }

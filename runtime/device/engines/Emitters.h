@@ -197,6 +197,12 @@ inline void describeEmitter(RtslState &state) {
 /// parts: a primitive draws its own.
 struct EmitterChoice {
   float emitter, part, u, v;
+
+  /// The rest of the first number, where the background is chosen below `ofBackground`.
+  EmitterChoice ofEmitter(float ofBackground) const {
+    return {ofBackground != 0 ? (emitter - ofBackground) / (1 - ofBackground) : emitter, part, u,
+            v};
+  }
 };
 
 /// An emitter and a part of it; of one that is a single primitive: 0.
@@ -281,6 +287,27 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   return light;
 }
 
+/// What `choice` leads to, found now or before (KnownLights.h). False while lights are wanted.
+RTSL_WHERE_LIGHTS_ARE_KNOWN inline bool findKnown(RtslState &state, Vec3 point, Vec3 side,
+                                                  EmitterChoice choice, float ofBackground,
+                                                  EmittedLight &light) {
+  const ShadowRay ray = shadowRayFrom(state, point);
+  LightQuestion question(LightQuestion::Surface, point, side, ray.randomKey);
+  question.add(choice.emitter);
+  question.add(choice.part);
+  question.add(choice.u);
+  question.add(choice.v);
+  const auto search = [&] {
+    return choice.emitter < ofBackground
+               ? lookAtBackground(ray, leftHit(state), side)
+               : lookAtEmitter(ray, leftHit(state), side, choice.ofEmitter(ofBackground));
+  };
+  const uint32_t components = rtsl_color_components(state.launch);
+  return lookForLight(state, question, light, search, [&](auto &answer, auto visit) {
+    forEachLightWord(answer, components, visit);
+  });
+}
+
 /// `illuminate(P [, side])`. Always takes four numbers, whether it needs them or not.
 inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   const RtslLaunch &launch = *state.launch;
@@ -304,12 +331,14 @@ inline bool illuminateBySurface(RtslState &state, Vec3 point, Vec3 side) {
   if (ofBackground == 0 && rtsl_emitter_count(&launch) == 0)
     return false;
   EmittedLight light;
-  if (choice.emitter < ofBackground) {
+  if (mayKnowLights()) {
+    if (!findKnown(state, point, side, choice, ofBackground, light))
+      return false;
+  } else if (choice.emitter < ofBackground) {
     light = lookAtBackground(shadowRayFrom(state, point), leftHit(state), side);
   } else {
-    if (ofBackground != 0) // the rest of the draw
-      choice.emitter = (choice.emitter - ofBackground) / (1 - ofBackground);
-    light = lookAtEmitter(shadowRayFrom(state, point), leftHit(state), side, choice);
+    light = lookAtEmitter(shadowRayFrom(state, point), leftHit(state), side,
+                          choice.ofEmitter(ofBackground));
   }
   const float length = squareRoot(dot(light.direction, light.direction));
   if (!(light.density > 0 && length > 0) || isBlack(light.radiance, components))

@@ -68,6 +68,9 @@ __attribute__((weak)) uint32_t rtsl_is_intersect_cheap(void) {
 __attribute__((weak)) uint32_t rtsl_tests_all_listed(void) {
   return 0;
 }
+__attribute__((weak)) uint32_t rtsl_knows_lights(void) {
+  return 0;
+}
 __attribute__((weak)) uint32_t rtsl_schedule(const RtslLaunch *) {
   return RTSL_SCHEDULE_MAJORITY;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/device/engines/BeginRay.h"
+#include "runtime/device/engines/KnownLights.h"
 #include "runtime/device/ray/Abi.h"
 #include "runtime/device/ray/Color.h"
 #include "runtime/device/ray/Events.h"
@@ -135,6 +136,18 @@ inline bool doesLightPass(const RtslLaunch &launch) {
   return rtsl_light_passes(&launch) && !rtsl_generates(&launch);
 }
 
+/// found = traverseShadow(...), now or before (KnownLights.h). False while lights are wanted.
+RTSL_WHERE_LIGHTS_ARE_KNOWN inline bool findKnown(RtslState &shading, Vec3 point, Vec3 direction,
+                                                  RayStart start, float distance, uint32_t &found) {
+  const ShadowRay ray = shadowRayFrom(shading, point);
+  LightQuestion question(LightQuestion::Light, point, direction, ray.randomKey);
+  question.add(start.epsilon);
+  question.add(distance);
+  return lookForLight(
+      shading, question, found, [&] { return traverseShadow(ray, direction, start, distance); },
+      [](auto &answer, auto visit) { visit(0, &answer); });
+}
+
 /// Whether light arrives at `point` from the light that wrote LightDistance to `shading`.
 /// Multiplies LightColor by what surfaces between the two let pass.
 inline bool isLit(RtslState &shading, Vec3 point) {
@@ -147,7 +160,11 @@ inline bool isLit(RtslState &shading, Vec3 point) {
   if (!(start.epsilon < distance))
     return true;
   const ShadowRay ray = shadowRayFrom(shading, point);
-  const uint32_t found = traverseShadow(ray, direction, start, distance);
+  uint32_t found;
+  if (!mayKnowLights())
+    found = traverseShadow(ray, direction, start, distance);
+  else if (!findKnown(shading, point, direction, start, distance, found))
+    return false;
   if (found == RTSL_BAD_RAY)
     raise(shading, RTSL_EXCEPTION_BAD_RAY);
   const RtslLaunch &launch = *shading.launch;

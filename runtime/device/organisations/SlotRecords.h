@@ -6,6 +6,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/engines/KnownLights.h"
 #include "runtime/device/organisations/JobLaunch.h"
 #include "runtime/device/organisations/LaneRecord.h"
 #include "runtime/device/organisations/Megakernel.h"
@@ -61,21 +62,34 @@ private:
   uint64_t stackBytes;
 };
 
-/// Loads the rays of a slot, runs a step of them, and stores them. Returns the next step.
+/// Loads the rays of a slot, and calls run(flight).
 template <typename Run>
-RTSL_INLINED int32_t runOnSlot(const RtslJob &job, const SlotRecords &records, uint32_t slot,
-                               Run run) {
+RTSL_INLINED void withFlight(const RtslJob &job, const SlotRecords &records, uint32_t slot,
+                             Run run) {
   Flight flight;
   alignas(16) char level[mostLevelBytes];
   Rays &rays = flight.rays;
   rays.bottom = hasLevelInRecord() ? level : records.stack(slot);
   records.load(slot, flight);
-  rays.ray.state.launch = launchOf(job);
-  if (hasEvents(rays.ray.state))
-    rays.ray.state.events = &rays.events;
+  RtslState &state = rays.ray.state;
+  state.launch = launchOf(job);
+  knowNoLights(state);
+  if (hasEvents(state))
+    state.events = &rays.events;
   run(flight);
-  records.store(slot, flight);
-  return rays.next;
+}
+
+/// Loads the rays of a slot, runs a step of them, and stores them. Returns the next step.
+template <typename Run>
+RTSL_INLINED int32_t runOnSlot(const RtslJob &job, const SlotRecords &records, uint32_t slot,
+                               Run run) {
+  int32_t next;
+  withFlight(job, records, slot, [&](Flight &flight) RTSL_ALWAYS_INLINE {
+    run(flight);
+    records.store(slot, flight);
+    next = flight.rays.next;
+  });
+  return next;
 }
 
 /// Ends the sample of a slot, if it has one, and begins sample `following` of the slice, if there

@@ -2,7 +2,8 @@
 //
 // Linked into programs with the organisation `wavefront`, for the GPU and for
 // `--target=host-megakernel`, in place of the entry points of Megakernel.cpp. The code generator
-// makes a copy of rtsl_wave_state for each state (codegen/emit/rewrites/WaveStates.h).
+// makes a copy of rtsl_wave_state for each state, and one of rtsl_wave_light for large ones that
+// call `illuminate` (codegen/emit/rewrites/WaveStates.h).
 //
 //===----------------------------------------------------------------------===//
 #include "runtime/device/organisations/Wavefront.h"
@@ -12,6 +13,10 @@
 using namespace rtsl;
 
 extern "C" {
+
+/// Defined by the code generator for each copy of rtsl_wave_state: whether it has one of
+/// rtsl_wave_light.
+uint32_t rtsl_are_lights_known();
 
 /// Whether slots have a stack; a constant.
 uint32_t rtsl_slots_have_stacks() {
@@ -39,9 +44,9 @@ uint32_t threadCount() {
 }
 
 device::Wave waveOf(const RtslJob &job) {
-  return device::Wave(
-      {job.slots, queuesOfWave(device::launchOf(job)), rtsl_record_groups(), job.laneBytes},
-      job.lanes);
+  return device::Wave({job.slots, queuesOfWave(device::launchOf(job)), rtsl_record_groups(),
+                       job.laneBytes, device::lightWordsOfSlot(device::launchOf(job))},
+                      job.lanes);
 }
 
 } // namespace
@@ -66,6 +71,12 @@ __attribute__((nvptx_kernel)) void rtsl_wave_sample(const RtslJob job, uint32_t 
 __attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob job, uint32_t turn,
                                                    int32_t number) {
   device::stateWave(job, waveOf(job), turn, number, threadNumber(), threadCount(),
+                    rtsl_are_lights_known(), device::RunThisState());
+}
+
+__attribute__((nvptx_kernel)) void rtsl_wave_light(const RtslJob job, uint32_t turn,
+                                                   int32_t number) {
+  device::lightWave(job, waveOf(job), turn, number, threadNumber(), threadCount(),
                     device::RunThisState());
 }
 
@@ -75,17 +86,25 @@ __attribute__((nvptx_kernel)) void rtsl_wave_state(const RtslJob job, uint32_t t
 
 extern "C" {
 
-/// Defined by the code generator: the copy of rtsl_wave_state for `number`.
+/// Defined by the code generator: the copies of rtsl_wave_state and rtsl_wave_light for `number`;
+/// of the second there may be none.
 void rtsl_wave_run_state(const RtslJob *job, const device::Wave *wave, uint32_t turn,
+                         int32_t number);
+void rtsl_wave_run_light(const RtslJob *job, const device::Wave *wave, uint32_t turn,
                          int32_t number);
 
 void rtsl_wave_state(const RtslJob *job, const device::Wave *wave, uint32_t turn, int32_t number) {
-  device::stateWave(*job, *wave, turn, number, 0, 1, device::RunThisState());
+  device::stateWave(*job, *wave, turn, number, 0, 1, rtsl_are_lights_known(),
+                    device::RunThisState());
+}
+
+void rtsl_wave_light(const RtslJob *job, const device::Wave *wave, uint32_t turn, int32_t number) {
+  device::lightWave(*job, *wave, turn, number, 0, 1, device::RunThisState());
 }
 
 static device::WaveMemory memoryOfThread(uint32_t maxDepth, uint32_t referenceChain) {
   return {device::slotsOfThread, queuesOfWave(nullptr), rtsl_record_groups(),
-          device::slotStackBytes(maxDepth, referenceChain)};
+          device::slotStackBytes(maxDepth, referenceChain), device::lightWordsOfSlot(nullptr)};
 }
 
 /// The counterparts of rtsl_lane_bytes and rtsl_run_lane.
@@ -108,8 +127,10 @@ void rtsl_run_wave(const RtslJob *job, uint32_t lane) {
       return;
     for (; wave.isAnyInFlight(turn); ++turn) {
       device::traceWave(*job, wave, turn, 0, 1);
-      for (uint32_t state = 1; state <= wave.states(); ++state)
+      for (uint32_t state = 1; state <= wave.states(); ++state) {
+        rtsl_wave_run_light(job, &wave, turn, int32_t(state));
         rtsl_wave_run_state(job, &wave, turn, int32_t(state));
+      }
       wave.clearCounts(turn);
     }
   }

@@ -17,6 +17,7 @@
 //===----------------------------------------------------------------------===//
 #pragma once
 
+#include "runtime/device/engines/KnownLights.h"
 #include "runtime/device/organisations/QueuePlace.h"
 #include "runtime/device/organisations/SlotRecords.h"
 #include "runtime/device/organisations/StepCounts.h"
@@ -33,9 +34,9 @@ public:
   Wave(const WaveMemory &size, uint8_t *memory)
       : size(size), counts(reinterpret_cast<uint32_t *>(memory)),
         queues(reinterpret_cast<uint32_t *>(memory + size.countBytes())),
+        lights(reinterpret_cast<uint32_t *>(memory + size.lightsAt())),
         records(size.slots, memory + size.countBytes() + size.queueBytes(),
-                memory + size.countBytes() + size.queueBytes() + size.recordBytes(),
-                size.stackBytes) {}
+                memory + size.stacksAt(), size.stackBytes) {}
 
   uint32_t slots() const { return size.slots; }
   uint32_t states() const { return size.queues - 1; }
@@ -58,6 +59,11 @@ public:
       counts[(turn & 1) * size.queues + queue] = 0;
   }
 
+  /// What a state of the slot, which is about to run, does with lights.
+  void beginLights(RtslState &state, LightPhase phase, uint32_t slot) const {
+    KnownLights::begin(state, phase, lights + slot, size.slots);
+  }
+
   /// Lets the slot wait for a step in a turn. All lanes of the warp call together. Slots that have
   /// ended their sample are in no queue, nor are lanes with Step::nothing, which have no slot.
   void put(uint32_t turn, int32_t step, uint32_t slot) const;
@@ -67,7 +73,7 @@ private:
   static uint32_t queueOfStep(int32_t step) { return step == Step::trace ? 0 : uint32_t(step); }
 
   WaveMemory size;
-  uint32_t *counts, *queues;
+  uint32_t *counts, *queues, *lights;
 
 public:
   SlotRecords records;
@@ -128,16 +134,44 @@ inline void sampleWave(const RtslJob &job, const Wave &wave, uint32_t turn, uint
   }
 }
 
+/// May states look for lights first? A constant. Not if that would change stacks in memory.
+inline bool knowsLights() {
+  return rtsl_knows_lights() && hasLevelInRecord();
+}
+/// Words of a slot for what is known of lights.
+inline uint32_t lightWordsOfSlot(const RtslLaunch *launch) {
+  return knowsLights() ? knownLightWords(rtsl_color_components(launch)) : 0;
+}
+
 /// Runs state `number`, by run(rays), which is inlined here: the code generator copies this once
-/// for each state.
+/// for each state. `areLightsKnown`: lightWave has run before.
 template <typename Run>
 RTSL_INLINED void stateWave(const RtslJob &job, const Wave &wave, uint32_t turn, int32_t number,
-                            uint32_t lane, uint32_t lanes, Run run) {
-  const auto runRays = [&](Flight &flight) RTSL_ALWAYS_INLINE { run(flight.rays); };
+                            uint32_t lane, uint32_t lanes, bool areLightsKnown, Run run) {
   runQueue(job, wave, turn, number, lane, lanes,
            [&](bool takesPart, uint32_t slot) RTSL_ALWAYS_INLINE {
+             const auto runRays = [&](Flight &flight) RTSL_ALWAYS_INLINE {
+               if (knowsLights() && areLightsKnown)
+                 wave.beginLights(flight.rays.ray.state, lightsKnown, slot);
+               run(flight.rays);
+             };
              return takesPart ? runOnSlot(job, wave.records, slot, runRays) : Step::nothing;
            });
+}
+
+/// Looks for the lights that state `number` is about to ask for, of the same slots; nothing else
+/// changes.
+template <typename Run>
+RTSL_INLINED void lightWave(const RtslJob &job, const Wave &wave, uint32_t turn, int32_t number,
+                            uint32_t lane, uint32_t lanes, Run run) {
+  const uint32_t count = knowsLights() ? wave.count(turn, number) : 0;
+  for (uint32_t at = lane; at < count; at += lanes) {
+    const uint32_t slot = wave.queue(turn, number)[at];
+    withFlight(job, wave.records, slot, [&](Flight &flight) RTSL_ALWAYS_INLINE {
+      wave.beginLights(flight.rays.ray.state, lightsWanted, slot);
+      run(flight.rays);
+    });
+  }
 }
 
 } // namespace rtsl::device

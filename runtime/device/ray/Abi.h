@@ -109,6 +109,8 @@ uint32_t rtsl_is_intersect_cheap(void);
 /// Whether rays test all primitives of a list, one after the other in an unrolled loop, instead of
 /// those whose boxes they enter. With --fp=fast only, where boxes do not decide which hits count.
 uint32_t rtsl_tests_all_listed(void);
+/// Whether states of a wavefront may look for lights before they shade (KnownLights.h).
+uint32_t rtsl_knows_lights(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
 /// Whether the program has materials with `transmittance`, and lights. In the engine `classic` they

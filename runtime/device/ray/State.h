@@ -73,6 +73,11 @@ typedef struct RtslState {
   uint32_t isStartPutOff;     // 1: one that the ray leaves has a hit that may count
   int32_t wantedChild;        // while `visit` of a selector runs: which child leads on,
   uint32_t isChildVisited;    // and 1: visitChild was called with it
+  // What a state of a wavefront knows of lights (KnownLights.h).
+  uint32_t lightCalls;  // how many questions it has asked
+  uint32_t lightPhase;  // LightPhase
+  uint32_t lightStride; // from one word of its slot to the next, in words
+  uint32_t *lights;     // the first word
   // Of the triangle that is the hit so far, where the traversal has read its vertices; null: not
   // known. Never read on a GPU.
   const float *vertices; // coordinate `axis` of vertex i: (3 i + axis) * RTSL_VERTEX_STRIDE

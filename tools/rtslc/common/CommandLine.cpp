@@ -175,6 +175,12 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
       "a kernel for each step, with queues of samples between them; persistent, in one kernel "
       "whose blocks have queues of their own; auto: megakernel or wavefront, by the rays and "
       "the size of the program. The picture is the same");
+  addChoice(command, "--light-kernels", options.compile.lightKernels,
+            Choices<LightKernels>{{"auto", LightKernels::Auto},
+                                  {"always", LightKernels::Always},
+                                  {"never", LightKernels::Never}},
+            "whether the states of a wavefront look for lights in a kernel of their own, before "
+            "the one that shades: auto, large states. The picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
   addChoice(command, "--sampler", options.compile.sampler,

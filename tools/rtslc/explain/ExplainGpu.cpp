@@ -3,6 +3,7 @@
 
 #include "KernelFigures.h"
 #include "runtime/gpu/GpuThreads.h"
+#include "runtime/gpu/GpuWaves.h"
 #include "runtime/package/NativeCode.h"
 #include "tools/rtslc/common/ScenePackage.h"
 
@@ -152,8 +153,13 @@ std::optional<std::string> explainGpu(const GpuRequest &what, Diagnostics &diagn
   whole.wave = waves.wave;
   std::vector<std::pair<std::string, std::string>> kernels = {
       {"rtsl_wave_trace", "traversal"}, {"rtsl_wave_sample", "begin samples"}};
-  for (std::size_t state = 1; state <= waves.stateNames.size(); ++state)
-    kernels.push_back({fmt::format("rtsl_wave_state_{}", state), waves.stateNames[state - 1]});
+  for (std::size_t state = 1; state <= waves.stateNames.size(); ++state) {
+    const std::string &name = waves.stateNames[state - 1];
+    if (runtime::GpuWaves::hasLightKernel(waves.ptx, state))
+      kernels.push_back(
+          {runtime::GpuWaves::lightKernel(state), fmt::format("{}: its lights", name)});
+    kernels.push_back({fmt::format("rtsl_wave_state_{}", state), name});
+  }
   whole.steps = rowsOf(waves, 0, options.gpu, kernels, whole.assembler);
   return what.isJson ? jsonOf(whole) : textOf(whole);
 }
