@@ -12,7 +12,7 @@ WAYS = (
     ["-O2"],
     ["-O3", "--trace=split"],
     ["-O2", "--target=host-megakernel"],
-    ["-O1", "--target=host-megakernel", "--organisation=wavefront"],
+    ["-O1", "--target=host-megakernel", "--organisation=wavefront", "--light-kernels=always"],
     ["-O2", "--target=host-megakernel", "--organisation=persistent"],
     ["-O0", "--undefined=nan"],
     ["-O1", "--traversal=device", "--trace=split", "--undefined=bytes"],
