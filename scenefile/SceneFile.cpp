@@ -83,8 +83,10 @@ public:
       if (const JsonValue *render = root.find("render"))
         libraryEngine = readRender(*render, root.find("rayGeneration"), scene, errors);
       readPasses();
-      if (!isPart)
+      if (!isPart) {
         requireStart();
+        warnOfRayGeneration();
+      }
       if (libraryEngine)
         useLibraryEngine(scene, *libraryEngine);
       else if (scene.render.engine == runtime::Engine::Programs)
@@ -171,6 +173,14 @@ private:
       requireCamera(fmt::format("a scene for the engine `{}`", libraryEngine->string));
     else
       require(root, "rayGeneration", "a scene for the engine `programs`");
+  }
+
+  /// Warns of a ray generation that does not run because no engine is chosen.
+  void warnOfRayGeneration() {
+    const JsonValue *render = root.find("render"), *unused = root.find("rayGeneration");
+    const bool isChosen = render && render->find("engine");
+    if (unused && !isChosen && scene.render.engine == runtime::Engine::Classic)
+      scene.warnings.push_back({message::rayGenerationIgnored(), unused->place()});
   }
 
   void readImports(const JsonValue &value) {

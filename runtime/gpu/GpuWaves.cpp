@@ -51,6 +51,12 @@ bool GpuWaves::hasLightKernel(const std::string &ptx, std::size_t state) {
   return ptx.find(fmt::format(".entry {}(", lightKernel(state))) != std::string::npos;
 }
 
+std::uint32_t GpuWaves::lightBytes(std::uint32_t colorComponents) {
+  device::WaveMemory memory{};
+  memory.makePlaceForLights(colorComponents);
+  return memory.lightWords * std::uint32_t(sizeof(std::uint32_t));
+}
+
 std::uint64_t GpuWaves::slotBytes() const {
   device::WaveMemory one = memory;
   one.slots = 1024; // in which sizes that are rounded up do not count

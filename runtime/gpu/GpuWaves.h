@@ -1,8 +1,9 @@
 //===- GpuWaves.h - runs the kernels of a wavefront -----------------------===//
 //
 // A turn starts a kernel for each step that samples in flight wait for, one after the other, and
-// then reads how many wait for each step in the next turn. When none is in flight any more, others
-// begin (runtime/device/organisations/Wavefront.h).
+// then reads how many wait for each step in the next turn; a large state may have a kernel that
+// looks for its lights before. When no sample is in flight any more, others begin
+// (runtime/device/organisations/Wavefront.h).
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -44,6 +45,8 @@ public:
   /// The kernel that looks for the lights of a state (KnownLights.h), of which there may be none.
   static std::string lightKernel(std::size_t state);
   static bool hasLightKernel(const std::string &ptx, std::size_t state);
+  /// What a sample in flight takes for it.
+  static std::uint32_t lightBytes(std::uint32_t colorComponents);
 
   /// The kernels in the order of the steps: traversal, the beginning of samples, and states.
   std::vector<CudaDevice::Kernel> stepKernels() const;

@@ -321,8 +321,10 @@ void beginRecords(LlvmCode &code, const runtime::Program &program) {
 constexpr unsigned largeState = 1800;
 
 void endRecords(LlvmCode &code, const CompileOptions &options, const runtime::Program &program) {
-  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()),
-                          options.lightKernels == LightKernels::Always ? 0 : largeState);
+  const unsigned litFrom = !code.knowsLights                              ? ~0u
+                           : options.lightKernels == LightKernels::Always ? 0
+                                                                          : largeState;
+  codegen::makeWaveStates(*code.module, unsigned(program.stateNames.size()), litFrom);
   codegen::declareRecords(*code.module);
 }
 

@@ -33,6 +33,7 @@ struct GpuExplanation {
   std::uint64_t laneBytes = 0;
   std::uint32_t frameBytes = 0, maxDepth = 0;
   runtime::WaveFacts wave;
+  std::uint32_t lightBytes = 0; // of a sample in flight, if states look for lights first
 };
 
 std::vector<Row> rowsOf(const runtime::Package &package, unsigned maxRegisters,
@@ -80,6 +81,8 @@ std::string jsonOf(const GpuExplanation &of) {
   json["depth"] = of.maxDepth;
   json["frameBytes"] = of.frameBytes;
   json["recordBytes"] = 16 * of.wave.groups;
+  if (of.lightBytes)
+    json["lightBytes"] = of.lightBytes;
   json["hasStacks"] = of.wave.hasStacks;
   return json.dump(2) + "\n";
 }
@@ -111,8 +114,9 @@ std::string textOf(const GpuExplanation &of) {
     text += textOf(step, width);
   text += fmt::format("\nRays that wait for others take {} bytes a lane, for a depth of {}; the "
                       "largest frame has {} bytes.\nA sample in flight of a wavefront takes {} "
-                      "bytes{}.\n",
+                      "bytes{}{}.\n",
                       of.laneBytes, of.maxDepth, of.frameBytes, 16 * of.wave.groups,
+                      of.lightBytes ? fmt::format(", and {} for its lights", of.lightBytes) : "",
                       of.wave.hasStacks ? ", and a stack of its own" : "");
   if (of.maxRegisters)
     text +=
@@ -155,9 +159,11 @@ std::optional<std::string> explainGpu(const GpuRequest &what, Diagnostics &diagn
       {"rtsl_wave_trace", "traversal"}, {"rtsl_wave_sample", "begin samples"}};
   for (std::size_t state = 1; state <= waves.stateNames.size(); ++state) {
     const std::string &name = waves.stateNames[state - 1];
-    if (runtime::GpuWaves::hasLightKernel(waves.ptx, state))
+    if (runtime::GpuWaves::hasLightKernel(waves.ptx, state)) {
       kernels.push_back(
           {runtime::GpuWaves::lightKernel(state), fmt::format("{}: its lights", name)});
+      whole.lightBytes = runtime::GpuWaves::lightBytes(options.colorComponents);
+    }
     kernels.push_back({fmt::format("rtsl_wave_state_{}", state), name});
   }
   whole.steps = rowsOf(waves, 0, options.gpu, kernels, whole.assembler);

@@ -212,7 +212,7 @@ private:
     for (const Warning &warning : scene->warnings())
       messages.report(warning);
     Launch launch;
-    if (description.rayGeneration)
+    if (description.rayGeneration && description.render.engine != runtime::Engine::Classic)
       launch.rayGeneration = description.rayGeneration->className.text;
     launch.render = renderOptions(options, description.render);
     launch.render.wantsPicture = !options.picture.empty();

@@ -66,6 +66,34 @@ class BadScenes(Case):
             self.render("--set", "render.engine=wavefront"), "E0808", "no engine `wavefront`"
         )
 
+    def test_a_ray_generation_that_no_engine_runs(self):
+        self.write(
+            "Flat.rtsl",
+            "class Flat : rt_RayGeneration;\nvoid generate() { rt_SampleColor = color(1.0); }\n",
+        )
+        scene = {
+            "rtsl": 1,
+            "import": ["std.cameras", "Flat.rtsl"],
+            "camera": {
+                "class": "OrthographicCamera",
+                "constructor": {"eye": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1, 0]},
+            },
+            "rayGeneration": {"class": "Flat"},
+        }
+        self.write("scene.json", json.dumps(scene))
+        warning = "`rayGeneration` is ignored: the engine is `classic`"
+        _, error = self.run_rtslc("check", "scene.json")
+        self.assertEqual(error.count(warning), 1, error)
+        for engine in ("programs", "classic", "normals"):
+            _, error = self.run_rtslc("check", "scene.json", f"--set=render.engine={engine}")
+            self.assertNotIn(warning, error)
+        # `rtslc run` names what starts its samples.
+        size = "--set=render.size=[2, 1]"
+        _, summary = self.run_rtslc("run", "scene.json", size, "-Wno-scene")
+        self.assertRegex(summary, "^camera: 2x1")
+        _, summary = self.run_rtslc("run", "scene.json", size, "--set=render.engine=programs")
+        self.assertRegex(summary, "^Flat: 2x1")
+
     def test_overrides_are_shown_where_they_are_wrong(self):
         self.glass_scene()
         for text, code, begin, length in (
