@@ -1,8 +1,7 @@
 #include "runtime/gpu/GpuThreads.h"
 
 #include "runtime/device/organisations/Slice.h"
-
-#include <fmt/format.h>
+#include "runtime/gpu/PtxKernels.h"
 
 #include <algorithm>
 
@@ -22,9 +21,7 @@ constexpr RenderKernel kernels[] = {
 } // namespace
 
 RenderKernel renderKernelOf(const std::string &ptx) {
-  const auto isThere = [&](const RenderKernel &kernel) {
-    return ptx.find(fmt::format(".entry {}(", kernel.name)) != std::string::npos;
-  };
+  const auto isThere = [&](const RenderKernel &kernel) { return hasKernel(ptx, kernel.name); };
   const RenderKernel *found = std::find_if(std::begin(kernels), std::end(kernels), isThere);
   return found == std::end(kernels) ? kernels[2] : *found;
 }

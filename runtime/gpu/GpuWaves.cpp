@@ -1,5 +1,6 @@
 #include "runtime/gpu/GpuWaves.h"
 
+#include "runtime/gpu/PtxKernels.h"
 #include "support/Clock.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
@@ -48,7 +49,7 @@ std::string GpuWaves::lightKernel(std::size_t state) {
 }
 
 bool GpuWaves::hasLightKernel(const std::string &ptx, std::size_t state) {
-  return ptx.find(fmt::format(".entry {}(", lightKernel(state))) != std::string::npos;
+  return hasKernel(ptx, lightKernel(state));
 }
 
 std::uint32_t GpuWaves::lightBytes(std::uint32_t colorComponents) {

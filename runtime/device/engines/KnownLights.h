@@ -79,10 +79,18 @@ public:
     add(v.z);
   }
 
-  uint32_t words[size] = {};
+  /// Calls visit(i, word i) for its words, unrolled.
+  template <typename Visit>
+  void forEachWord(Visit visit) const {
+#ifdef __clang__
+#pragma clang loop unroll(full)
+#endif
+    for (uint32_t i = 0; i < size; ++i)
+      visit(i, words[i]);
+  }
 
 private:
-  uint32_t count = 0;
+  uint32_t words[size] = {}, count = 0;
 };
 
 /// The most words of an answer: of an EmittedLight.
@@ -118,19 +126,11 @@ public:
 
   bool isOf(uint32_t call, const LightQuestion &question) const {
     bool isSame = true;
-#ifdef __clang__
-#pragma clang loop unroll(full)
-#endif
-    for (uint32_t i = 0; i < LightQuestion::size; ++i)
-      isSame &= word(call, i) == question.words[i];
+    question.forEachWord([&](uint32_t i, uint32_t asked) { isSame &= word(call, i) == asked; });
     return isSame;
   }
   void storeQuestion(uint32_t call, const LightQuestion &question) const {
-#ifdef __clang__
-#pragma clang loop unroll(full)
-#endif
-    for (uint32_t i = 0; i < LightQuestion::size; ++i)
-      word(call, i) = question.words[i];
+    question.forEachWord([&](uint32_t i, uint32_t asked) { word(call, i) = asked; });
   }
   /// The words of the answer in their order.
   uint32_t &answer(uint32_t call, uint32_t i) const { return word(call, LightQuestion::size + i); }

@@ -3,6 +3,7 @@
 
 #include "runtime/gpu/CudaDevice.h"
 #include "runtime/gpu/GpuWaves.h"
+#include "runtime/gpu/PtxKernels.h"
 #include "support/Error.h"
 
 #include <fcntl.h>
@@ -144,7 +145,7 @@ std::optional<KernelFigures> figuresInLog(const std::string &log, const std::str
 }
 
 unsigned instructionsInPtx(const std::string &ptx, const std::string &kernel) {
-  const std::size_t entry = ptx.find(fmt::format(".entry {}(", kernel));
+  const std::size_t entry = runtime::findKernel(ptx, kernel);
   const std::size_t begin = ptx.find("\n{", entry), end = ptx.find("\n}", begin);
   if (entry == std::string::npos || end == std::string::npos)
     return 0;
