@@ -1,5 +1,6 @@
 #include "runtime/gpu/CudaDevice.h"
 
+#include "runtime/gpu/PtxKernels.h"
 #include "support/Error.h"
 #include "support/ErrorMessages.h"
 
@@ -8,6 +9,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <vector>
 
 namespace rtsl::runtime {
 
@@ -128,15 +130,30 @@ void CudaDevice::downloadMeanwhile(void *to, Address from, std::size_t bytes) {
   std::memcpy(to, pageLocked, bytes);
 }
 
-CudaDevice::Module CudaDevice::compile(const char *ptx, unsigned maxRegisters) {
+CudaDevice::Module CudaDevice::compile(const std::string &ptx, unsigned maxRegisters) {
   std::string errors(4096, '\0'), log(65536, '\0');
   const auto value = [](std::uintptr_t number) { return reinterpret_cast<void *>(number); };
-  int options[] = {cuda::ErrorLogBuffer,     cuda::ErrorLogBufferBytes, cuda::InfoLogBuffer,
-                   cuda::InfoLogBufferBytes, cuda::LogVerbose,          cuda::MaxRegisters};
-  void *values[] = {errors.data(), value(errors.size() - 1), log.data(), value(log.size() - 1),
-                    value(1),      value(maxRegisters)};
+  std::vector<int> options;
+  std::vector<void *> values;
+  const auto add = [&](cuda::JitOption option, void *setting) {
+    options.push_back(option);
+    values.push_back(setting);
+  };
+  add(cuda::ErrorLogBuffer, errors.data());
+  add(cuda::ErrorLogBufferBytes, value(errors.size() - 1));
+  add(cuda::InfoLogBuffer, log.data());
+  add(cuda::InfoLogBufferBytes, value(log.size() - 1));
+  add(cuda::LogVerbose, value(1));
+  if (maxRegisters) {
+    add(cuda::MaxRegisters, value(maxRegisters));
+    if (maxRegisters < mostRegistersStated(ptx))
+      add(cuda::OverrideDirectives, value(1));
+  }
+  if (driver->compilesInThreads())
+    add(cuda::ThreadsOfCompiler, value(0)); // one for each core
   Module code;
-  const int status = driver->moduleLoad(&code.handle, ptx, maxRegisters ? 6 : 5, options, values);
+  const int status = driver->moduleLoad(&code.handle, ptx.c_str(), unsigned(options.size()),
+                                        options.data(), values.data());
   errors.resize(errors.find('\0'));
   log.resize(log.find('\0'));
   code.log = std::move(log);

@@ -60,8 +60,9 @@ public:
     std::string log; // what the driver's compiler says of it; empty if the driver had compiled it
                      // before, and kept it on disk
   };
-  /// Compiles PTX for the device. `maxRegisters` 0: as many as the code needs.
-  Module compile(const char *ptx, unsigned maxRegisters = 0);
+  /// Compiles PTX for the device. A thread has at most `maxRegisters`, or as many as its kernel
+  /// states if those are fewer; 0: as many as the code needs.
+  Module compile(const std::string &ptx, unsigned maxRegisters = 0);
   void unload(const Module &code);
 
   struct Kernel {

@@ -12,6 +12,8 @@ namespace rtsl::runtime::cuda {
 
 /// CUDA 10.0: the first that supports PTX 6.3, which sm_75 needs.
 static constexpr int oldestDriver = 10000;
+/// CUDA 13.0: the first that is known to accept JitOption::ThreadsOfCompiler.
+static constexpr int driverWithThreads = 13000;
 
 static std::string versionText(int number) {
   return fmt::format("{}.{}", number / 1000, number % 1000 / 10);
@@ -66,7 +68,6 @@ void Driver::open() {
   find(eventRecord, "cuEventRecord");
   find(eventElapsedTime, "cuEventElapsedTime");
 
-  int version = 0;
   check(driverGetVersion(&version), "cuDriverGetVersion");
   if (version < oldestDriver)
     throw Error(message::driverTooOld(versionText(version), versionText(oldestDriver)));
@@ -89,6 +90,10 @@ Driver::Driver() {
 
 Driver::~Driver() {
   dlclose(library);
+}
+
+bool Driver::compilesInThreads() const {
+  return version >= driverWithThreads;
 }
 
 void Driver::check(int status, const char *call) const {

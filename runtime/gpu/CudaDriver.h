@@ -37,6 +37,8 @@ enum JitOption {
   ErrorLogBuffer = 5,
   ErrorLogBufferBytes = 6,
   LogVerbose = 12,
+  OverrideDirectives = 33, // by MaxRegisters
+  ThreadsOfCompiler = 34,  // "split compile"; from CUDA 13.0 on
 };
 
 /// The driver, while the object exists. Constructing it throws NoDevice without a driver, with one
@@ -51,6 +53,8 @@ public:
   Driver &operator=(const Driver &) = delete;
 
   int devices() const { return deviceCount; }
+  /// Does its compiler use several threads if it is told to?
+  bool compilesInThreads() const;
   /// Throws OutOfMemory or Internal, unless the status is Success.
   void check(int status, const char *call) const;
 
@@ -102,6 +106,7 @@ private:
 
   void *library = nullptr;
   int deviceCount = 0;
+  int version = 0; // 13000: CUDA 13.0
 };
 
 } // namespace rtsl::runtime::cuda

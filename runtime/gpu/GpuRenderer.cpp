@@ -66,7 +66,7 @@ GpuRenderer::GpuRenderer(CudaDevice &device, const GpuCode &code, FlatScene scen
                          const RenderOptions &options, std::shared_ptr<DeviceTrees> kept)
     : Megakernel(std::move(scene), options, std::move(kept)), device(device) {
   const Clock::time_point start = Clock::now();
-  program = device.compile(code.ptx.c_str(), code.maxRegisters);
+  program = device.compile(code.ptx, code.maxRegisters);
   loadKernels(code);
   figures.device = device.name();
   figures.loadSeconds = secondsSince(start);

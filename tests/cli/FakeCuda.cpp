@@ -1,10 +1,10 @@
 // Stands in for libcuda.so.1: devices whose memory is the process's, and whose kernel rtsl_render,
 // or the kernels of a wavefront, paint a pattern after having checked that they were launched as
-// they have to be. There are
-// FAKE_CUDA_DEVICES of them, or one; a thread that uses memory of another one than its own fails.
-// FAKE_CUDA makes them fail in one of the ways in which drivers and devices do, or paint half of
-// the picture and go on until they are stopped, again and again ("endless"), or take longer on one
-// of them ("uneven").
+// they have to be. There are FAKE_CUDA_DEVICES of them, or one; a thread that uses memory of
+// another one than its own fails. FAKE_CUDA makes them fail in one of the ways in which drivers and
+// devices do, or paint half of the picture and go on until they are stopped, again and again
+// ("endless"), or take longer on one of them ("uneven"). The driver is of CUDA 12.4, or of 13.0
+// ("new-driver"), whose compiler has to be told to use all cores.
 #include "runtime/device/organisations/Job.h"
 #include "runtime/device/organisations/SampleSums.h"
 #include "runtime/device/trees/Clusters.h"
@@ -75,6 +75,10 @@ Copies copies;
 int deviceCount() {
   const char *count = std::getenv("FAKE_CUDA_DEVICES");
   return count ? std::atoi(count) : 1;
+}
+
+int driverVersion() {
+  return is("old-driver") ? 9020 : is("new-driver") ? 13000 : 12040;
 }
 
 int mostSharedBytes() {
@@ -281,6 +285,28 @@ int buildStep(std::size_t number, const rtsl::device::build::TreeBuild &build, s
   return Success;
 }
 
+enum JitOption {
+  maxRegisters = 0,
+  infoLog = 3,
+  errorLog = 5,
+  overrideDirectives = 33,
+  threadsOfCompiler = 34
+};
+
+std::map<int, void *> optionsOf(unsigned count, const int *options, void *const *values) {
+  std::map<int, void *> given;
+  for (unsigned i = 0; i < count; ++i)
+    given[options[i]] = values[i];
+  return given;
+}
+
+/// By the first kernel that does.
+unsigned long registersStated(const void *ptx) {
+  const char *const directive = ".maxnreg ";
+  const char *const found = std::strstr(static_cast<const char *>(ptx), directive);
+  return found ? std::strtoul(found + std::strlen(directive), nullptr, 10) : 0;
+}
+
 } // namespace
 
 extern "C" {
@@ -289,7 +315,7 @@ int cuInit(unsigned) {
   return is("no-device") ? NoDevice : Success;
 }
 int cuDriverGetVersion(int *version) {
-  *version = is("old-driver") ? 9020 : 12040;
+  *version = driverVersion();
   return Success;
 }
 int cuGetErrorString(int status, const char **text) {
@@ -423,23 +449,25 @@ int cuMemcpyDtoHAsync_v2(void *to, std::uint64_t from, std::size_t bytes, void *
   std::memcpy(to, &value, sizeof value);
   return Success;
 }
+
 int cuModuleLoadDataEx(void **module, const void *image, unsigned count, int *options,
                        void **values) {
   if (is("old-ptx"))
     return UnsupportedPtxVersion;
-  char *errors = nullptr, *log = nullptr;
-  for (unsigned i = 0; i < count; ++i) {
-    if (options[i] == 5)
-      errors = static_cast<char *>(values[i]);
-    if (options[i] == 3)
-      log = static_cast<char *>(values[i]);
-  }
+  const std::map<int, void *> given = optionsOf(count, options, values);
+  if (given.count(threadsOfCompiler) != (driverVersion() >= 13000)) // older ones do not know it
+    return InvalidValue;
+  if (given.count(maxRegisters) &&
+      reinterpret_cast<std::uintptr_t>(given.at(maxRegisters)) < registersStated(image) &&
+      !given.count(overrideDirectives))
+    return InvalidValue; // the kernel would have more
   if (is("other-gpu")) {
-    std::strcpy(errors, "SM version 120 is needed");
+    std::strcpy(static_cast<char *>(given.at(errorLog)), "SM version 120 is needed");
     return NoBinaryForGpu;
   }
-  std::strcpy(log, "ptxas info    : Function properties for rtsl_render\n"
-                   "    16 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads\n");
+  std::strcpy(static_cast<char *>(given.at(infoLog)),
+              "ptxas info    : Function properties for rtsl_render\n"
+              "    16 bytes stack frame, 8 bytes spill stores, 12 bytes spill loads\n");
   const char *code = static_cast<const char *>(image);
   *module = current;
   current->code += code;

@@ -16,6 +16,9 @@ namespace rtsl::codegen {
 namespace {
 
 constexpr unsigned numberOfRunState = 1; // the argument of rtsl_run_state
+/// A kernel that looks for lights waits for the nodes of trees most of the time, and more warps
+/// gain more than more registers do (docs/gpu.md).
+constexpr const char *registersForLights = "64";
 
 /// rtsl_run_state for one state, without its number: the switch is decided.
 llvm::Function *runThisState(llvm::Function &runState, unsigned state) {
@@ -119,6 +122,8 @@ void makeWaveStates(llvm::Module &module, unsigned count, unsigned litFrom) {
     const bool isLit = anyLight && needsLights(*run, litFrom);
     states.push_back(stateCopy(*any, *run, state, isLit));
     lights.push_back(isLit ? stateCopy(*anyLight, *run, state, isLit) : nullptr);
+    if (isLit)
+      lights.back()->addFnAttr("nvvm.maxnreg", registersForLights);
   }
   any->eraseFromParent();
   if (anyLight)

@@ -82,7 +82,7 @@ bool AssembledKernels::byDriver(const std::string &ptx, const std::vector<std::s
                                 unsigned maxRegisters) {
   try {
     runtime::CudaDevice device;
-    const runtime::CudaDevice::Module code = device.compile(ptx.c_str(), maxRegisters);
+    const runtime::CudaDevice::Module code = device.compile(ptx, maxRegisters);
     for (const std::string &one : names) {
       const runtime::CudaDevice::Kernel kernel = device.kernel(one.c_str(), code);
       const unsigned running = unsigned(device.blocksAtOnce(kernel, runtime::threadsPerBlock)) *

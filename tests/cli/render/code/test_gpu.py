@@ -122,6 +122,13 @@ class Gpu(Case):
             self.assertEqual(json.loads(out)["samples"], 200 * 150 * 40)
             self.assert_same_bits("a.exr", "lanes.exr")
 
+    def test_the_drivers_compiler_uses_all_cores(self):
+        """Older drivers refuse the option."""
+        self.render(*SMALL)
+        (self.folder / "a.exr").rename(self.folder / "old.exr")
+        self.render(*SMALL, fake="new-driver")
+        self.assert_same_bits("a.exr", "old.exr")
+
     def test_it_says_what_ran(self):
         _, error = self.render(*SMALL)
         self.assertRegex(

@@ -165,6 +165,15 @@ class LightKernels(Case):
             state = light.replace("light", "state")
             self.assertLess(kernels[light], kernels[state] / 3, light)
 
+    def test_a_light_kernel_has_fewer_registers(self):
+        scene = EXAMPLES / "cornell" / "room.json"
+        ptx, _ = self.run_rtslc(
+            *("compile", scene, "--emit=ptx", "--organisation=wavefront", "-O1", ALWAYS)
+        )
+        limited = re.findall(r"\.entry (\w+)\([^)]*\)\s*\.maxnreg 64\s", ptx)
+        self.assertGreater(len(limited), 3)
+        self.assertEqual(limited, re.findall(r"\.entry (rtsl_wave_light_\d+)", ptx))
+
     def test_small_states_have_none(self):
         scene = EXAMPLES / "cornell" / "room.json"
         self.assertFalse([name for name in self.kernels(scene, "-O1") if "light" in name])

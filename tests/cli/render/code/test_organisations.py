@@ -159,6 +159,11 @@ class OnTheStandIn(Case):
             self.assert_same_bits("a.exr", "one.exr")
             self.assertEqual(json.loads(out)["samples"], 32 * 18 * 5)
 
+    def test_a_limit_of_registers_is_that_of_all_kernels(self):
+        """Those that look for lights state a limit of their own; the stand-in compares both."""
+        for limit in ((), ("--max-registers=200",), ("--max-registers=40",)):
+            self.render("--size=32x18", "-q", WAVE, "--light-kernels=always", *limit)
+
     def test_little_shared_memory(self):
         _, error = self.render("-q", BLOCKS, fake="little-shared-memory", status=DIAGNOSED)
         self.assertRegex(
