@@ -14,7 +14,9 @@ namespace {
 struct PlaceRecord {
   std::uint64_t lastBirth = 0; // when it last made a non-finite number from finite ones; 0: never
   std::uint64_t lastSeen = 0;  // when a number there was last not finite
-  bool isMended = false;       // non-finite numbers are replaced by finite ones
+  bool makesThem = false;      // in any rendering
+  bool isMended = false;       // it makes finite numbers instead, or passes on finite ones if it
+                               // makes none
 };
 
 /// The current rendering on this thread.
@@ -42,9 +44,11 @@ Number check(Number value, bool fromFinite, std::uint32_t place) {
     return value;
   PlaceRecord &record = search->places[place];
   record.lastSeen = search->time;
-  if (fromFinite)
+  if (fromFinite) {
     record.lastBirth = search->time;
-  if (!record.isMended)
+    record.makesThem = true;
+  }
+  if (!record.isMended || (record.makesThem && !fromFinite))
     return value;
   return std::isnan(value) ? Number(1) : std::copysign(Number(large), value);
 }
@@ -74,15 +78,24 @@ std::map<std::uint32_t, PlaceRecord>::iterator latest(Search &current) {
   return best;
 }
 
-} // namespace
+/// The latest place that makes the sample finite if it alone returns finite numbers. `first` has
+/// rendered the sample.
+std::optional<std::uint32_t> originAlone(const Search &first,
+                                         const std::function<bool()> &isFinite) {
+  Search untried = first;
+  for (auto place = latest(untried); place != untried.places.end(); place = latest(untried)) {
+    place->second.isMended = true;
+    Search alone = first;
+    alone.places[place->first].isMended = true;
+    if (runOnce(alone, isFinite))
+      return place->first;
+  }
+  return std::nullopt;
+}
 
-std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite) {
-  Search current;
-  current.limit = mostNumbers;
-  if (runOnce(current, isFinite))
-    return std::nullopt;
-  // A sample with replaced numbers may take another path, but not a much longer one.
-  current.limit = 16 * current.time + 100'000;
+/// The place that makes it finite if later ones return finite numbers, too.
+std::optional<std::uint32_t> originAmongLaterOnes(Search current,
+                                                  const std::function<bool()> &isFinite) {
   for (;;) {
     const auto place = latest(current);
     if (place == current.places.end())
@@ -91,6 +104,19 @@ std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite) {
     if (runOnce(current, isFinite))
       return place->first;
   }
+}
+
+} // namespace
+
+std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite) {
+  Search first;
+  first.limit = mostNumbers;
+  if (runOnce(first, isFinite))
+    return std::nullopt;
+  // A sample with replaced numbers may take another path, but not a much longer one.
+  first.limit = 16 * first.time + 100'000;
+  const std::optional<std::uint32_t> alone = originAlone(first, isFinite);
+  return alone ? alone : originAmongLaterOnes(first, isFinite);
 }
 
 } // namespace rtsl::runtime

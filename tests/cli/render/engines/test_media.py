@@ -316,6 +316,25 @@ class Boundaries(MediaCase):
         self.assertLess(means[0][0], 0.97)
         self.assertEqual(means, [means[0]] * 3)
 
+    def test_points_of_a_lamp_on_both_sides_of_a_boundary(self):
+        """A medium that lets nothing through leaves what the surface reflects, as glass does in the
+        engine `path` that lets nothing through. Both draw the same numbers."""
+        means = []
+        for more, engine in (({"interior": "medium"}, "volume"), ({"transmission": 1e-30}, "path")):
+            glass = {"class": "Dielectric", "alpha": 0.5, **more}
+            self.row({"class": "HomogeneousMedium", "absorption": 1e4}, [glass])
+            scene = json.loads((self.folder / "scene.json").read_text())
+            del scene["objects"][0]  # the box
+            del scene["background"]
+            scene["import"] = ["std"]
+            scene["camera"]["constructor"] = [[3, 0, 50], [3, 0, 0], [0, 1, 0]]
+            lamp = {"center": [1.3, 0.5, 0.5], "radius": 0.8, "radiance": 30}
+            scene["lights"] = [{"class": "SphereLight", **lamp}]
+            self.write("scene.json", json.dumps(scene))
+            means.append(self.mean("--engine", engine)[0])
+        self.assertGreater(means[0], 0.02)
+        self.assertAlmostEqual(*means, delta=1e-3 * means[0])
+
     def test_all_of_them_bound_it(self):
         """Beer's law through boxes one behind the other that do not bend light: a material that
         forgets what its part has inside shows more."""

@@ -251,6 +251,29 @@ class NotFinite(ShaderCase):
             with self.subTest(statements=statements):
                 self.assertEqual(self.line_of_bad_number(statements, "--fp=double"), wanted)
 
+    def test_a_line_that_passes_one_on_and_makes_others(self):
+        """Its infinite number is later than the one that matters, but has no effect."""
+        statements = (
+            "float bad = zero / zero;",
+            "float sum = 0.0;",
+            "for (int i = 0; i < 2; ++i) {",
+            "  float inverse = one / (i == 0 ? bad : zero);",
+            "  sum += i == 0 ? inverse : min(inverse, 1.0);",
+            "}",
+            "rt_SampleColor = color(sum);",
+        )
+        for way in ((), ("--fp=double",)):
+            self.assertEqual(self.line_of_bad_number(statements, *way), 0)
+
+    def test_two_causes(self):
+        """No single line makes the sample finite: the first of them is named."""
+        statements = (
+            "float first = one / zero;",
+            "float second = one / zero;",
+            "rt_SampleColor = color(max(first, second));",
+        )
+        self.assertEqual(self.line_of_bad_number(statements), 0)
+
     def test_a_constant_and_a_payload(self):
         """What is computed from constants shows where that is; what a payload carries goes back to
         who made it."""
