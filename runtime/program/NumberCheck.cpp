@@ -10,19 +10,21 @@ namespace rtsl::runtime {
 
 namespace {
 
-/// The state of a place in one rendering of the sample.
+constexpr std::uint64_t never = ~std::uint64_t(0);
+
+/// A place in the renderings of the sample.
 struct PlaceRecord {
   std::uint64_t lastBirth = 0; // when it last made a non-finite number from finite ones; 0: never
   std::uint64_t lastSeen = 0;  // when a number there was last not finite
   bool makesThem = false;      // in any rendering
-  bool isMended = false;       // it makes finite numbers instead, or passes on finite ones if it
-                               // makes none
+  // From then on it makes finite numbers instead, or passes on finite ones if it makes none.
+  std::uint64_t mendedFrom = never;
 };
 
-/// The current rendering on this thread.
+/// The current rendering on this thread. Times are numbers that were checked.
 struct Search {
   std::map<std::uint32_t, PlaceRecord> places;
-  std::uint64_t time = 0;  // numbers that were checked
+  std::uint64_t time = 0;
   std::uint64_t limit = 0; // when to give up: a replaced number may make a loop endless
   std::jmp_buf giveUp;
 };
@@ -48,7 +50,7 @@ Number check(Number value, bool fromFinite, std::uint32_t place) {
     record.lastBirth = search->time;
     record.makesThem = true;
   }
-  if (!record.isMended || (record.makesThem && !fromFinite))
+  if (search->time < record.mendedFrom || (record.makesThem && !fromFinite))
     return value;
   return std::isnan(value) ? Number(1) : std::copysign(Number(large), value);
 }
@@ -72,25 +74,37 @@ std::map<std::uint32_t, PlaceRecord>::iterator latest(Search &current) {
   };
   auto best = current.places.end();
   for (auto place = current.places.begin(); place != current.places.end(); ++place)
-    if (!place->second.isMended && place->second.lastSeen != 0 &&
+    if (place->second.mendedFrom == never && place->second.lastSeen != 0 &&
         (best == current.places.end() || rank(place->second) > rank(best->second)))
       best = place;
   return best;
 }
 
-/// The latest place that makes the sample finite if it alone returns finite numbers. `first` has
-/// rendered the sample.
-std::optional<std::uint32_t> originAlone(const Search &first,
+/// The place that makes the sample finite if it alone returns finite numbers, from as late a time
+/// on as possible: of those that make non-finite numbers, or of those that only pass them on.
+/// `first` has rendered the sample.
+std::optional<std::uint32_t> originAlone(const Search &first, bool makesThem,
                                          const std::function<bool()> &isFinite) {
-  Search untried = first;
-  for (auto place = latest(untried); place != untried.places.end(); place = latest(untried)) {
-    place->second.isMended = true;
-    Search alone = first;
-    alone.places[place->first].isMended = true;
-    if (runOnce(alone, isFinite))
-      return place->first;
+  std::optional<std::uint32_t> origin;
+  std::uint64_t latestTime = 0;
+  for (const auto &[place, record] : first.places) {
+    if (record.makesThem != makesThem)
+      continue;
+    const auto isFiniteFrom = [&, place = place](std::uint64_t time) {
+      Search alone = first;
+      alone.places[place].mendedFrom = time;
+      return runOnce(alone, isFinite);
+    };
+    if (!isFiniteFrom(latestTime + 1)) // times begin with 1
+      continue;
+    origin = place;
+    ++latestTime;
+    for (std::uint64_t after = first.time + 1; after - latestTime > 1;) {
+      const std::uint64_t middle = latestTime + (after - latestTime) / 2;
+      (isFiniteFrom(middle) ? latestTime : after) = middle;
+    }
   }
-  return std::nullopt;
+  return origin;
 }
 
 /// The place that makes it finite if later ones return finite numbers, too.
@@ -100,7 +114,7 @@ std::optional<std::uint32_t> originAmongLaterOnes(Search current,
     const auto place = latest(current);
     if (place == current.places.end())
       return std::nullopt;
-    place->second.isMended = true;
+    place->second.mendedFrom = 0;
     if (runOnce(current, isFinite))
       return place->first;
   }
@@ -115,8 +129,10 @@ std::optional<std::uint32_t> findOrigin(const std::function<bool()> &isFinite) {
     return std::nullopt;
   // A sample with replaced numbers may take another path, but not a much longer one.
   first.limit = 16 * first.time + 100'000;
-  const std::optional<std::uint32_t> alone = originAlone(first, isFinite);
-  return alone ? alone : originAmongLaterOnes(first, isFinite);
+  for (const bool makesThem : {true, false})
+    if (const std::optional<std::uint32_t> place = originAlone(first, makesThem, isFinite))
+      return place;
+  return originAmongLaterOnes(first, isFinite);
 }
 
 } // namespace rtsl::runtime

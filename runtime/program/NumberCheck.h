@@ -3,14 +3,15 @@
 // A program that was compiled with checks calls rtsl_check_number for every number that a shader
 // computes, with its operands, and rtsl_check_stored_number for every number that it stores, each
 // with the number of its place in the source. A sample that is infinite or NaN is rendered again by
-// such a program, repeatedly: each time one of the places that made a number not finite returns a
-// finite number instead, the latest first, until the sample is finite; that place is the result. If
-// there are several causes, no single place is, and then one more returns finite numbers each time:
-// without the result, and the later ones, the sample would be finite.
+// such a program, repeatedly, with finite numbers in place of those that a place made of finite
+// ones. The result is the place that makes the sample finite, from as late a time on as possible.
+// If there are several causes, no single place does; then one more place makes finite numbers each
+// time, the latest first: without the result, and the later ones, the sample would be finite.
 //
 // Many numbers are rightly infinite, such as those of an inverse direction. They come earlier than
 // the cause of the problem, or do not affect the sample. But a finite number in place of one of
-// these may itself be the cause of others that are not, so places are tried alone first.
+// these may change where the sample's rays go; therefore the time counts, before which nothing
+// changes.
 //
 //===----------------------------------------------------------------------===//
 #pragma once

@@ -265,6 +265,20 @@ class NotFinite(ShaderCase):
         for way in ((), ("--fp=double",)):
             self.assertEqual(self.line_of_bad_number(statements, *way), 0)
 
+    def test_a_later_one_that_decides_where_rays_go(self):
+        """It is rightly not a number; but with a number there the sample would be another one."""
+        statements = (
+            "float missed = 0.0, sum = 0.0;",
+            "for (int i = 0; i < 2; ++i) {",
+            "  float root = sqrt(-one);",
+            "  missed += root == root ? 0.0 : 1.0;",
+            "  if (i == 0 && missed > 0.5)",
+            "    sum += one / zero;",
+            "}",
+            "rt_SampleColor = color(sum);",
+        )
+        self.assertEqual(self.line_of_bad_number(statements), 5)
+
     def test_two_causes(self):
         """No single line makes the sample finite: the first of them is named."""
         statements = (

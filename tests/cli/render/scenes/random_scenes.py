@@ -36,7 +36,7 @@ def ball(stacks, sectors):
     for i in range(stacks):
         for k in range(sectors):
             a, b = i * sectors + k + 1, i * sectors + (k + 1) % sectors + 1
-            quad = (a, a + sectors, b + sectors, b)
+            quad = (a, b, b + sectors, a + sectors)
             lines.append("f " + " ".join(f"{corner}/{corner}/{corner}" for corner in quad))
     return "\n".join(lines) + "\n"
 

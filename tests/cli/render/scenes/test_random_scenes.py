@@ -2,7 +2,9 @@
 
 import json
 import random
+import re
 import unittest
+from pathlib import Path
 
 from harness import EXAMPLES, Case, deep
 from random_scenes import Library, RandomScene, classes_of, files
@@ -53,6 +55,19 @@ class RandomScenes(Case):
             with self.subTest(seed=seed):
                 self.assert_same(seed, 2)
 
+    def assert_finite(self, seed):
+        """No class makes a number infinite or NaN of values that its ranges allow, but to report
+        what only the sample shows, such as a negative color."""
+        scene = RandomScene(self.library, seed).scene()
+        _, said = self.render_scene(scene, "-q", "-Wno-scene", "-O0", "--size=24x24", "--spp=8")
+        for file, line in re.findall(r"\bsince (.+):(\d+):\d+$", said, re.M):
+            self.assertIn("sqrt(-1.0)", Path(file).read_text().split("\n")[int(line) - 1], seed)
+
+    def test_numbers_are_finite(self):
+        for seed in range(5000, 5020):
+            with self.subTest(seed=seed):
+                self.assert_finite(seed)
+
     def test_every_class_of_the_library_takes_part(self):
         scenes = [RandomScene(self.library, seed).scene() for seed in range(300)]
         taken = set().union(*map(classes_of, scenes))
@@ -64,6 +79,12 @@ class RandomScenes(Case):
         for seed in range(1000, 1100):
             with self.subTest(seed=seed):
                 self.assert_same(seed)
+
+    @deep
+    def test_many_numbers_are_finite(self):
+        for seed in range(40000, 40500):
+            with self.subTest(seed=seed):
+                self.assert_finite(seed)
 
 
 if __name__ == "__main__":
