@@ -293,7 +293,7 @@ static std::uint32_t registersFor(const LlvmCode &code, const runtime::Program &
     return 64;
   if (paths == runtime::Paths::Alike)
     return 128;
-  if (code.testsAllListed && program.needs & RTSL_NEEDS_EMITTERS)
+  if (hasList(code) && program.needs & RTSL_NEEDS_EMITTERS)
     return 96;
   return paths == runtime::Paths::Single && !hasList(code) ? 80 : 72;
 }
