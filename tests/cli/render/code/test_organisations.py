@@ -145,8 +145,7 @@ class Organisations(Case):
 class OnTheStandIn(Case):
     """On the stand-in for a CUDA driver, which checks how kernels are launched."""
 
-    def render(self, *arguments, **how):
-        scene = EXAMPLES / "glass" / "scene.json"
+    def render(self, *arguments, scene=EXAMPLES / "glass" / "scene.json", **how):
         command = (RTSLC, "render", scene, "-o", "a.exr", "--target=gpu", "-O0")
         return self.run_with_fake_driver([*command, "-Wno-depth-limit", *arguments], **how)
 
@@ -161,8 +160,11 @@ class OnTheStandIn(Case):
 
     def test_a_limit_of_registers_is_that_of_all_kernels(self):
         """Those that look for lights state a limit of their own; the stand-in compares both."""
+        scene = EXAMPLES / "cornell" / "room.json"
+        options = (WAVE, "--light-kernels=always")
+        self.assertIn(".maxnreg 64", self.run_rtslc("compile", scene, "--emit=ptx", *options)[0])
         for limit in ((), ("--max-registers=200",), ("--max-registers=40",)):
-            self.render("--size=32x18", "-q", WAVE, "--light-kernels=always", *limit)
+            self.render("--size=32x18", "-q", *options, *limit, scene=scene)
 
     def test_little_shared_memory(self):
         _, error = self.render("-q", BLOCKS, fake="little-shared-memory", status=DIAGNOSED)
