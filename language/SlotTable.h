@@ -27,4 +27,9 @@ constexpr Slot surfaceSlots[] = {{"rt_Primitive", "generateSample"},
                                  {"rt_Miss", "sampleDirection"},
                                  {"rt_Miss", "directionPDF"}};
 
+/// Those by which the light of lights passes surfaces; the second one in the engine `classic`
+/// alone.
+constexpr Slot passingSlots[] = {{"rt_Material", "transmittance"},
+                                 {"rt_Material", "diffuseTransmittance"}};
+
 } // namespace rtsl

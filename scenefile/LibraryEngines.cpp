@@ -14,7 +14,7 @@ struct LibraryEngine {
   std::uint32_t beyond = 0; // rays that may follow the last one of a path, one after the other
 };
 constexpr LibraryEngine engines[] = {
-    {"path", "PathTracer", "bounces"},       {"volume", "VolumeTracer", "bounces", 17},
+    {"path", "PathTracer", "bounces"},       {"volume", "VolumeTracer", "bounces", 65},
     {"occlusion", "OcclusionView", nullptr}, {"normals", "NormalsView", nullptr},
     {"depth", "DepthView", nullptr},         {"id", "IdView", nullptr},
     {"albedo", "AlbedoView", nullptr},

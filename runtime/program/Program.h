@@ -193,7 +193,7 @@ struct Program {
   /// `generate` sends rays in a loop, or such that end at any hit, so that some samples take far
   /// longer than others.
   bool samplesDiffer = true;
-  bool lightPasses = true;      // lights shine through materials with `transmittance`
+  bool lightPasses = true;      // the light of lights passes some materials
   bool hasPrimitives = true;    // of classes, beside triangles
   bool raysLeavePlanes = false; // no ray leaves a primitive of a class that it may meet again
   /// Methods other than those of the camera and `generate` read LaunchIndex or LaunchSize.

@@ -67,7 +67,8 @@ uint32_t rtsl_features(RtslState *state) {
 }
 
 uint32_t rtsl_light_passes(const RtslLaunch *launch) {
-  return slotsOf(launch).rt_Material_transmittance != nullptr;
+  const auto &slots = slotsOf(launch);
+  return slots.rt_Material_transmittance || slots.rt_Material_diffuseTransmittance;
 }
 
 int32_t rtsl_run_state(RtslState *state, int32_t number, RtslRef object, void *frame) {

@@ -122,6 +122,7 @@ static RootModel materialModel() {
               {"evaluatePDF", sees, {S::PDF}, common},
               {"emission", sees, {S::EmissionColor}, common},
               {"transmittance", sees, {S::SampleColor}, common},
+              {"diffuseTransmittance", sees, {S::SampleColor}, common},
               {"closestHit", sees, sampling | StateSet{S::SampleColor},
                common | AbilitySet{A::Trace, A::Illuminance, A::CallSampling, A::CallColor},
                Payload::Required},
@@ -228,7 +229,8 @@ std::optional<Ability> abilityNeeded(const std::string &builtin) {
 }
 
 std::optional<Ability> MethodModel::calledBy() const {
-  if (name == "BSDF" || name == "sampleBSDF" || name == "evaluatePDF" || name == "emission")
+  if (name == "BSDF" || name == "sampleBSDF" || name == "evaluatePDF" || name == "emission" ||
+      name == "transmittance" || name == "diffuseTransmittance")
     return A::CallSampling;
   if (payload == Payload::None && (name == "shade" || name == "miss"))
     return A::CallColor;

@@ -51,7 +51,7 @@ enum class Ability : std::uint8_t {
   WriteScratch,
   WriteMembers, // public and private members
   WriteBuffers, // elements of output buffers
-  CallSampling, // BSDF, sampleBSDF, evaluatePDF and emission of the same object
+  CallSampling, // BSDF and the like of the same object
   Spaces,       // conversions between object space and world space
   Derivatives,  // dFdx, dFdy
   CallColor,    // shade, or miss without payload, of the same object

@@ -11,7 +11,6 @@
 #include "codegen/link/CallGraph.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
-#include "language/SlotTable.h"
 
 #include "llvm/ADT/MapVector.h"
 #include "llvm/ADT/StringExtras.h"
@@ -144,8 +143,10 @@ private:
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
         const char *does = isOne ? "for `illuminate` in" : "for `illuminance` in";
         addMethods("rt_Light", "illumination", by(does));
-        if (context.request.engine != runtime::Engine::Programs)
-          addMethods("rt_Material", "transmittance", by(does));
+        if (sendsRaysToLights(op) && !std::exchange(areRaysToLights, true))
+          for (const Slot &slot : passingSlots)
+            for (FuncOp method : methodsThatPassLight(context, slot))
+              add(method, by(does));
       }
       if (const std::uint32_t needs = needsOf(reader, op))
         addComputations(needs, by(llvm::isa<ir::StateOp>(op) ? "read by" : "for rays of"));
@@ -168,8 +169,9 @@ private:
   const LinkContext &context;
   llvm::MapVector<mlir::Operation *, Cause> reached;
   std::size_t next = 0, rendering = 0;
-  std::set<std::string> slots; // unresolved slots that have been followed
-  llvm::StringSet<> added;     // roots and methods
+  std::set<std::string> slots;  // unresolved slots that have been followed
+  llvm::StringSet<> added;      // roots and methods
+  bool areRaysToLights = false; // some have been found
 };
 
 /// "closestHit.Radiance" is started for a ray; "lookup" is not.

@@ -133,13 +133,6 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   return ir::sendsRays(op) && mayStartAtHits(reader) ? ofRaysFromHits : 0;
 }
 
-bool lightPasses(const LinkContext &context) {
-  return llvm::any_of(context.classes, [&](const LinkedClass &linked) {
-    return linked.isMet && linked.info->root == "rt_Material" &&
-           findMethod(context, linked, "transmittance");
-  });
-}
-
 std::uint32_t findNeeds(const LinkContext &context) {
   std::uint32_t needs = 0;
   for (auto function : mlir::ModuleOp(context.ir).getOps<mlir::func::FuncOp>())
@@ -185,6 +178,12 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
   // (runtime/device/engines/Emitters.h).
   const bool hasLamps = ofProgram & RTSL_NEEDS_EMITTERS;
 
+  llvm::SmallPtrSet<mlir::Operation *, 8> passing;
+  if (lightPasses(context))
+    for (const Slot &slot : passingSlots)
+      for (mlir::func::FuncOp method : methodsThatPassLight(context, slot))
+        passing.insert(method);
+
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {
     bool isLit = false;
@@ -194,7 +193,10 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
       needs |= ofLights;
     if (hasLamps && linked.info->root == "rt_Material" && findMethod(context, linked, "emission"))
       needs |= RTSL_NEEDS_NORMALS;
-    if (linked.info->root == "rt_Material" && findMethod(context, linked, "transmittance"))
+    if (llvm::any_of(passingSlots, [&](const Slot &slot) {
+          return linked.info->root == slot.base &&
+                 passing.contains(findMethod(context, linked, slot.method));
+        }))
       needs |= ofRaysFromHits; // light that passes leaves the hit
     if (isOfScratchChanges(needs))
       needs |= ofScratchChanges;

@@ -13,7 +13,6 @@
 #include "codegen/link/Reflect.h"
 #include "codegen/link/steps/Steps.h"
 #include "codegen/passes/errors/DeriveHitErrors.h"
-#include "language/SlotTable.h"
 
 namespace rtsl::linking {
 
@@ -114,7 +113,9 @@ void makeEntries(LinkContext &context) {
     for (const Slot &slot : surfaceSlots)
       makeSlot(context, slot);
   if (!context.request.isSampled && lightPasses(context))
-    makeSlot(context, {"rt_Material", "transmittance"});
+    for (const Slot &slot : passingSlots)
+      if (!methodsThatPassLight(context, slot).empty())
+        makeSlot(context, slot);
   makePayloadSlots(context);
   makeFeatures(context);
   for (LinkedClass &linked : context.classes) {

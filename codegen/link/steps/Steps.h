@@ -6,6 +6,7 @@
 #include "codegen/link/Items.h"
 #include "codegen/link/Link.h"
 #include "codegen/passes/errors/ElementaryErrors.h"
+#include "language/SlotTable.h"
 #include "mlir/Dialect/Func/IR/FuncOps.h"
 #include "mlir/IR/SymbolTable.h"
 #include "llvm/ADT/DenseMap.h"
@@ -247,8 +248,12 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
 bool isOfScratchChanges(std::uint32_t needs);
 /// Whether an operation uses the address other than to store to it.
 bool isRead(mlir::Value address);
-/// Whether lights shine through materials that have `transmittance`. Runs after unreached methods
-/// have been dropped.
+/// Whether an operation sends rays to the scene's lights.
+bool sendsRaysToLights(mlir::Operation *op);
+/// The methods of a slot of passingSlots that let light of the scene's lights pass surfaces. Runs
+/// after resolveSlots.
+std::vector<mlir::func::FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot);
+/// Whether any rays to lights may pass surfaces. Runs after unreached methods have been dropped.
 bool lightPasses(const LinkContext &context);
 /// The outputs that functions of the program read; the runtime computes no others.
 std::uint32_t findNeeds(const LinkContext &context);

@@ -54,6 +54,7 @@ __attribute__((weak)) void rtsl_rt_Material_emission(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Miss_sampleDirection(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Miss_directionPDF(RtslState *, RtslRef) {}
 __attribute__((weak)) void rtsl_rt_Material_transmittance(RtslState *, RtslRef) {}
+__attribute__((weak)) void rtsl_rt_Material_diffuseTransmittance(RtslState *, RtslRef) {}
 __attribute__((weak)) uint32_t rtsl_light_passes(const RtslLaunch *) {
   return 0;
 }

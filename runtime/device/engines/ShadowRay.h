@@ -97,9 +97,22 @@ struct PassingLight {
   float share[RTSL_MAX_COLOR];
 };
 
-/// The share of light that surfaces between the ray's origin and `distance` let pass straight on:
-/// the product of what their `transmittance` writes, 0 for materials without it. On a GPU it is a
-/// separate function, and its result a value, as that of lookAtBackground.
+/// Sets the state's SampleColor to the share of light that passes the surface that was hit.
+inline void findTransmittance(RtslState &state, uint32_t components) {
+  const RtslRef material = instanceAt(*state.launch, state.instance).material;
+  rtsl_rt_Material_transmittance(&state, material);
+  if (rtsl_generates(state.launch)) // what is not straight is left to the rays of `generate`
+    return;
+  float straight[RTSL_MAX_COLOR];
+  forEachComponent(components, [&](uint32_t i) { straight[i] = state.SampleColor[i]; });
+  setColor(state.SampleColor, components, 0);
+  rtsl_rt_Material_diffuseTransmittance(&state, material);
+  forEachComponent(components, [&](uint32_t i) { state.SampleColor[i] += straight[i]; });
+}
+
+/// The share of light that surfaces between the ray's origin and `distance` let pass, the product
+/// of what their methods say. On a GPU it is a separate function, and its result a value, as that
+/// of lookAtBackground.
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
@@ -118,7 +131,7 @@ inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, 
       return light;
     describeHit(state);
     if (passed != mostPassed)
-      rtsl_rt_Material_transmittance(&state, instanceAt(launch, state.instance).material);
+      findTransmittance(state, components);
     forEachComponent(components, [&](uint32_t i) { light.share[i] *= state.SampleColor[i]; });
     if (isBlack(light.share, components))
       return light;
@@ -131,21 +144,38 @@ inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, 
   return light;
 }
 
-/// Do materials let rays to lights pass? Engines that are a ray generation send rays of their own.
-inline bool doesLightPass(const RtslLaunch &launch) {
-  return rtsl_light_passes(&launch) && !rtsl_generates(&launch);
+/// What a ray to a light has found.
+struct ArrivingLight {
+  uint32_t found;       // as rtsl_traverse says
+  PassingLight passing; // if surfaces have been hit, and light may pass any
+};
+
+inline ArrivingLight followToLight(const ShadowRay &ray, Vec3 direction, RayStart start,
+                                   float distance) {
+  ArrivingLight light;
+  light.found = traverseShadow(ray, direction, start, distance);
+  if (light.found == RTSL_HIT && rtsl_light_passes(ray.launch))
+    light.passing = passSurfaces(ray, direction, start, distance);
+  return light;
 }
 
-/// found = traverseShadow(...), now or before (KnownLights.h). False while lights are wanted.
+/// light = followToLight(...), now or before (KnownLights.h). False while lights are wanted.
 RTSL_WHERE_LIGHTS_ARE_KNOWN inline bool findKnown(RtslState &shading, Vec3 point, Vec3 direction,
-                                                  RayStart start, float distance, uint32_t &found) {
+                                                  RayStart start, float distance,
+                                                  ArrivingLight &light) {
   const ShadowRay ray = shadowRayFrom(shading, point);
   LightQuestion question(LightQuestion::Light, point, direction, ray.randomKey);
   question.add(start.epsilon);
   question.add(distance);
+  const uint32_t passing =
+      rtsl_light_passes(shading.launch) ? rtsl_color_components(shading.launch) : 0;
   return lookForLight(
-      shading, question, found, [&] { return traverseShadow(ray, direction, start, distance); },
-      [](auto &answer, auto visit) { visit(0, &answer); });
+      shading, question, light, [&] { return followToLight(ray, direction, start, distance); },
+      [&](auto &answer, auto visit) {
+        visit(0, &answer.found);
+        if (answer.found == RTSL_HIT)
+          forEachComponent(passing, [&](uint32_t i) { visit(1 + i, &answer.passing.share[i]); });
+      });
 }
 
 /// Whether light arrives at `point` from the light that wrote LightDistance to `shading`.
@@ -159,20 +189,19 @@ inline bool isLit(RtslState &shading, Vec3 point) {
     distance -= minimum(start.epsilon, distance * 0x1p-10f);
   if (!(start.epsilon < distance))
     return true;
-  const ShadowRay ray = shadowRayFrom(shading, point);
-  uint32_t found;
+  ArrivingLight light;
   if (!mayKnowLights())
-    found = traverseShadow(ray, direction, start, distance);
-  else if (!findKnown(shading, point, direction, start, distance, found))
+    light = followToLight(shadowRayFrom(shading, point), direction, start, distance);
+  else if (!findKnown(shading, point, direction, start, distance, light))
     return false;
-  if (found == RTSL_BAD_RAY)
+  if (light.found == RTSL_BAD_RAY)
     raise(shading, RTSL_EXCEPTION_BAD_RAY);
   const RtslLaunch &launch = *shading.launch;
-  if (found != RTSL_HIT || !doesLightPass(launch))
-    return found == RTSL_MISS; // no light arrives along a bad ray
+  if (light.found != RTSL_HIT || !rtsl_light_passes(&launch))
+    return light.found == RTSL_MISS; // no light arrives along a bad ray
   const uint32_t components = rtsl_color_components(&launch);
-  const PassingLight light = passSurfaces(ray, direction, start, distance);
-  forEachComponent(components, [&](uint32_t i) { shading.LightColor[i] *= light.share[i]; });
+  forEachComponent(components,
+                   [&](uint32_t i) { shading.LightColor[i] *= light.passing.share[i]; });
   return !isBlack(shading.LightColor, components);
 }
 

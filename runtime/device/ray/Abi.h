@@ -113,8 +113,7 @@ uint32_t rtsl_tests_all_listed(void);
 uint32_t rtsl_knows_lights(void);
 /// Whether shaders of hits send rays; otherwise only `generate` does.
 uint32_t rtsl_rays_leave_hits(void);
-/// Whether the program has materials with `transmittance`, and lights. In the engine `classic` they
-/// let light pass.
+/// Whether the program has materials that let the light of lights pass, and such lights.
 uint32_t rtsl_light_passes(const RtslLaunch *launch);
 /// Whether the scene has primitives of classes; otherwise it has triangles alone.
 uint32_t rtsl_has_primitives(void);

@@ -1,0 +1,128 @@
+//===- PassingLight.cpp - surfaces that the light of lights passes --------===//
+//
+//   class Wrapper { color straight(vec3 toEye) { return material.straight(toEye); } ... }
+//
+// Rays to lights end at the first surface that they find, unless a material of the program lets
+// light pass: then what is behind such a hit must be found, too. Most materials that define
+// `transmittance` are made of others, and write what those return. So a method counts only if it
+// may write anything but black, given the classes that the scene's members refer to.
+//
+// The product of black and another value counts as black, though that value may be no number.
+//
+//===----------------------------------------------------------------------===//
+#include "codegen/ir/Attributes.h"
+#include "codegen/ir/Rays.h"
+#include "codegen/link/CallGraph.h"
+#include "codegen/link/steps/Steps.h"
+#include "runtime/device/ray/Abi.h"
+
+#include "mlir/Dialect/Arith/IR/Arith.h"
+#include "mlir/Dialect/Vector/IR/VectorOps.h"
+#include "mlir/IR/Matchers.h"
+#include "llvm/ADT/TypeSwitch.h"
+
+namespace rtsl::linking {
+
+namespace {
+
+using mlir::Value;
+using mlir::func::FuncOp;
+
+class Black {
+public:
+  explicit Black(const mlir::SymbolTable &symbols) : symbols(symbols) {}
+
+  /// Whether a function writes nothing but black to SampleColor.
+  bool isWrittenBy(FuncOp function) {
+    return writers.of(function, [&] {
+      return !function.isExternal() && !ir::anyOperation(function, [&](mlir::Operation *op) {
+        if (auto state = llvm::dyn_cast<ir::StateOp>(op))
+          return state.getName() == "SampleColor" && !isStoredTo(state);
+        if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
+          return !isWrittenBy(symbols.lookup<FuncOp>(call.getCallee()));
+        return llvm::isa<ir::CallMethodOp>(op);
+      });
+    });
+  }
+
+private:
+  /// Whether nothing but black is stored to an address, and nothing else may write there.
+  bool isStoredTo(Value address) {
+    return llvm::all_of(address.getUsers(), [&](mlir::Operation *user) {
+      auto store = llvm::dyn_cast<ir::StoreOp>(user);
+      return llvm::isa<ir::LoadOp>(user) || (store && is(store.getValue()));
+    });
+  }
+
+  bool isReturnedBy(FuncOp function) {
+    return functions.of(function, [&] {
+      return !function.isExternal() && !ir::anyOperation(function, [&](mlir::Operation *op) {
+        return llvm::isa<ir::ReturnOp>(op) && !(op->getNumOperands() == 1 && is(op->getOperand(0)));
+      });
+    });
+  }
+
+  bool is(Value value) {
+    if (mlir::matchPattern(value, mlir::m_AnyZeroFloat()))
+      return true;
+    mlir::Operation *op = value.getDefiningOp();
+    if (!op)
+      return false;
+    const auto isBlack = [&](Value operand) { return is(operand); };
+    return llvm::TypeSwitch<mlir::Operation *, bool>(op)
+        .Case([&](mlir::func::CallOp call) {
+          return call.getNumResults() == 1 &&
+                 isReturnedBy(symbols.lookup<FuncOp>(call.getCallee()));
+        })
+        .Case([&](ir::LoadOp load) {
+          return load.getAddress().getDefiningOp<ir::VarOp>() && isStoredTo(load.getAddress());
+        })
+        .Case([&](mlir::arith::MulFOp) { return llvm::any_of(op->getOperands(), isBlack); })
+        .Case<mlir::arith::AddFOp, mlir::arith::SubFOp, mlir::vector::BroadcastOp,
+              mlir::vector::FromElementsOp>(
+            [&](auto) { return llvm::all_of(op->getOperands(), isBlack); })
+        .Case([&](mlir::arith::SelectOp choice) {
+          return is(choice.getTrueValue()) && is(choice.getFalseValue());
+        })
+        .Default(false);
+  }
+
+  const mlir::SymbolTable &symbols;
+  FunctionProperty writers, functions;
+};
+
+} // namespace
+
+// `illuminate(light, P, false)` sends none.
+bool sendsRaysToLights(mlir::Operation *op) {
+  auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+  llvm::APFloat cosine(0.0f);
+  const bool isWithoutShadows =
+      light && light.getCosAngle() &&
+      mlir::matchPattern(light.getCosAngle(), mlir::m_ConstantFloat(&cosine)) &&
+      cosine.convertToFloat() == RTSL_NO_SHADOWS;
+  return isLitByLights(op) && !isWithoutShadows;
+}
+
+std::vector<FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot) {
+  std::vector<FuncOp> methods;
+  const bool isOfClassicAlone = std::string_view(slot.method) == "diffuseTransmittance";
+  if (isOfClassicAlone && context.request.engine == runtime::Engine::Programs)
+    return methods;
+  Black black(context.symbols);
+  for (const LinkedClass &linked : context.classes)
+    if (linked.isMet && linked.info->root == slot.base)
+      if (FuncOp method = findMethod(context, linked, slot.method))
+        if (!black.isWrittenBy(method))
+          methods.push_back(method);
+  return methods;
+}
+
+bool lightPasses(const LinkContext &context) {
+  return ir::anyOperation(context.ir, sendsRaysToLights) &&
+         llvm::any_of(passingSlots, [&](const Slot &slot) {
+           return !methodsThatPassLight(context, slot).empty();
+         });
+}
+
+} // namespace rtsl::linking
