@@ -251,7 +251,7 @@ def build():
         },
     )
     glass = material(
-        "pane", (0.75, 0.95, 0.85, 1), 0, 0.05, {"transmission": {"transmissionFactor": 0.95}}
+        "pane", (0.75, 0.95, 0.85, 1), 0, 0, {"transmission": {"transmissionFactor": 0.95}}
     )
     leaves = material(
         "leaf",

@@ -27,8 +27,7 @@ namespace {
 using mlir::Value;
 using mlir::func::FuncOp;
 
-/// Members, by class and name.
-using Members = std::set<std::pair<std::string, std::string>>;
+using Members = std::set<MemberKey>;
 
 Members emptyMembers(const LinkContext &context) {
   Members empty;
@@ -39,11 +38,6 @@ Members emptyMembers(const LinkContext &context) {
           !given->second.count(member->name))
         empty.insert({linked.info->name, member->name});
   return empty;
-}
-
-std::pair<std::string, std::string> keyOf(ir::MemberOp member) {
-  return {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),
-          member.getMember().str()};
 }
 
 /// A member that a constructor writes may be set.
@@ -130,6 +124,11 @@ void dropCalls(FuncOp function) {
 }
 
 } // namespace
+
+MemberKey keyOf(ir::MemberOp member) {
+  return {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),
+          member.getMember().str()};
+}
 
 void emptyReferences(LinkContext &context) {
   if (context.request.keep.has(Item::Parameters))

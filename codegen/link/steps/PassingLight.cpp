@@ -4,8 +4,9 @@
 //
 // Rays to lights end at the first surface that they find, unless a material of the program lets
 // light pass: then what is behind such a hit must be found, too. Most materials that define
-// `transmittance` are made of others, and write what those return. So a method counts only if it
-// may write anything but black, given the classes that the scene's members refer to.
+// `transmittance` are made of others, and write what those return, or multiply it by a member that
+// is 0 unless the scene says otherwise. So a method counts only if it may write anything but black,
+// given the classes that the scene's members refer to, and the members that it sets.
 //
 // The product of black and another value counts as black, though that value may be no number.
 //
@@ -30,7 +31,12 @@ using mlir::func::FuncOp;
 
 class Black {
 public:
-  explicit Black(const mlir::SymbolTable &symbols) : symbols(symbols) {}
+  explicit Black(const LinkContext &context) : context(context) {
+    mlir::ModuleOp(context.ir).walk([&](ir::MemberOp member) {
+      if (!isStoredTo(member)) // by a constructor, or as the default
+        written.insert(keyOf(member));
+    });
+  }
 
   /// Whether a function writes nothing but black to SampleColor.
   bool isWrittenBy(FuncOp function) {
@@ -39,7 +45,7 @@ public:
         if (auto state = llvm::dyn_cast<ir::StateOp>(op))
           return state.getName() == "SampleColor" && !isStoredTo(state);
         if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-          return !isWrittenBy(symbols.lookup<FuncOp>(call.getCallee()));
+          return !isWrittenBy(context.symbols.lookup<FuncOp>(call.getCallee()));
         return llvm::isa<ir::CallMethodOp>(op);
       });
     });
@@ -72,9 +78,11 @@ private:
     return llvm::TypeSwitch<mlir::Operation *, bool>(op)
         .Case([&](mlir::func::CallOp call) {
           return call.getNumResults() == 1 &&
-                 isReturnedBy(symbols.lookup<FuncOp>(call.getCallee()));
+                 isReturnedBy(context.symbols.lookup<FuncOp>(call.getCallee()));
         })
         .Case([&](ir::LoadOp load) {
+          if (auto member = load.getAddress().getDefiningOp<ir::MemberOp>())
+            return isBlackInAllObjects(member);
           return load.getAddress().getDefiningOp<ir::VarOp>() && isStoredTo(load.getAddress());
         })
         .Case([&](mlir::arith::MulFOp) { return llvm::any_of(op->getOperands(), isBlack); })
@@ -87,7 +95,16 @@ private:
         .Default(false);
   }
 
-  const mlir::SymbolTable &symbols;
+  bool isBlackInAllObjects(ir::MemberOp member) const {
+    const LinkRequest &request = context.request;
+    const MemberKey key = keyOf(member);
+    const auto given = request.givenMembers.find(key.first);
+    return given != request.givenMembers.end() && !given->second.count(key.second) &&
+           !written.count(key) && request.editable.empty() && !request.keep.has(Item::Parameters);
+  }
+
+  const LinkContext &context;
+  std::set<MemberKey> written; // with anything but black
   FunctionProperty writers, functions;
 };
 
@@ -109,7 +126,7 @@ std::vector<FuncOp> methodsThatPassLight(const LinkContext &context, const Slot 
   const bool isOfClassicAlone = std::string_view(slot.method) == "diffuseTransmittance";
   if (isOfClassicAlone && context.request.engine == runtime::Engine::Programs)
     return methods;
-  Black black(context.symbols);
+  Black black(context);
   for (const LinkedClass &linked : context.classes)
     if (linked.isMet && linked.info->root == slot.base)
       if (FuncOp method = findMethod(context, linked, slot.method))

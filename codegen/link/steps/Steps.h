@@ -100,6 +100,10 @@ bool usesSurfacesAsLights(const LinkContext &context);
 /// Records which classes the program has, once it is known which methods run.
 void noteClasses(LinkContext &context);
 
+/// A member as a method sees it: the class that the method was lowered for, and the member's name.
+using MemberKey = std::pair<std::string, std::string>;
+MemberKey keyOf(ir::MemberOp member);
+
 /// Treats optional members that no object of the scene sets as empty, and removes code that depends
 /// on their being set.
 void emptyReferences(LinkContext &context);

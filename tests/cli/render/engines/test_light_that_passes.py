@@ -1,5 +1,6 @@
 """Lamps behind materials that let light pass."""
 
+import json
 import struct
 import unittest
 
@@ -81,10 +82,15 @@ class LightThatPasses(Case):
             "render": {"engine": engine, "size": size, "spp": 1, "depth": depth},
         }
 
-    def color(self, *objects, **more):
-        picture, _ = self.render_scene(self.scene(*objects, **more), "-q")
+    def color(self, *objects, spp=1, **more):
+        """The mean over all pixels."""
+        picture, _ = self.render_scene(self.scene(*objects, **more), "-q", f"--spp={spp}")
         layers = channels(picture.read_bytes())
-        return [struct.unpack("<f", struct.pack("<I", layers[c][0]))[0] for c in "RGB"]
+        values = [
+            struct.unpack(f"<{len(layers[c])}f", struct.pack(f"<{len(layers[c])}I", *layers[c]))
+            for c in "RGB"
+        ]
+        return [sum(of_channel) / len(of_channel) for of_channel in values]
 
     def assert_passes(self, expected, *objects, **more):
         for value, share in zip(self.color(*objects, **more), expected):
@@ -141,6 +147,8 @@ class LightThatPasses(Case):
         half = [0.5 * (1 - STRAIGHT) * t for t in tint]
         self.assert_passes_in_classic(half, pane(1, "Principled", transmission=0.5, **members))
         self.assert_passes_everywhere([0] * 3, pane(1, "Principled", **members))
+        clear = {**members, "roughness": 0.02}
+        self.assert_passes_everywhere(half, pane(1, "Principled", transmission=0.5, **clear))
 
     def test_materials_of_other_materials(self):
         glass = {"class": "ThinGlass", "transmission": [0.5] * 3}
@@ -168,6 +176,51 @@ class LightThatPasses(Case):
         for material in ("Lambert", "Emitter", "Floor", "Gold"):
             with self.subTest(material):
                 self.assert_passes_everywhere([0] * 3, pane(1, material))
+
+    def test_a_lamp_lights_as_a_surface_that_shines_does(self):
+        """Which paths find behind the pane, where they find no lamp of the scene's lights."""
+        place = {"center": [0.5, 3, 0], "radius": 0.5}
+        lamp = {"class": "SphereLight", **place, "radiance": [9, 9, 9]}
+        ball = {
+            "primitive": {"class": "Sphere", **place},
+            "material": {"class": "Emitter", "radiance": [9, 9, 9]},
+        }
+        glass = {"class": "ThinGlass", "transmission": [0.5, 0.7, 0.9]}
+        clear = {"class": "Principled", "transmission": 1, "roughness": 0, "clearcoat": 1}
+        leaf = {"class": "Cutout", "material": clear, "opacity": 0.6}
+        mixed = {"class": "MixMaterial", "first": glass, "second": leaf}
+        for material in (glass, clear, leaf, mixed):
+            for engine in PATHS:
+                with self.subTest(f"{material['class']} {engine}"):
+                    above = {**pane(1, ""), "material": material}
+                    more = {"floor": "Matte", "engine": engine, "size": (16, 16), "spp": 512}
+                    listed = self.color(above, lights=[lamp], depth=6, **more)
+                    found = self.color(above, ball, lights=[], depth=6, **more)
+                    for one, other in zip(listed, found):
+                        self.assertAlmostEqual(one / other, 1, delta=0.03)
+
+    def test_rays_end_at_any_hit_where_nothing_passes(self):
+        def passing(*objects):
+            scene = json.dumps(self.scene(*objects, floor="Lambert", engine="path"))
+            said, _ = self.run_rtslc(
+                "explain", self.write("scene.json", scene), "--no-savings", "--json", "-O0"
+            )
+            return {
+                entry["subject"].removesuffix(".transmittance")
+                for item in json.loads(said)["items"]
+                for entry in item["entries"]
+                if entry["needed"] and entry["subject"].endswith(".transmittance")
+            } - {"rt_Material"}
+
+        opaque = {"class": "Principled", "roughness": 0}
+        pairs = {"first": opaque, "second": {"class": "Lambert"}, "amount": 0.5}
+        sides = {"front": opaque, "back": {"class": "NormalMap", "material": opaque}}
+        objects = pane(1, "MixMaterial", **pairs), pane(2, "TwoSided", **sides), ball(opaque)
+        self.assertEqual(passing(*objects), set())
+        clear = {**opaque, "transmission": 0.5}
+        self.assertEqual(passing(ball(clear)), {"Principled"})
+        wrapped = pane(1, "NormalMap", material={"class": "ThinGlass"})
+        self.assertEqual(passing(*objects, wrapped), {"NormalMap", "TwoSided"})
 
     def test_64_surfaces_and_no_more(self):
         panes = [pane(1 + i / 64, "MediumBoundary") for i in range(65)]
