@@ -159,8 +159,11 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
       }
     }
     info.attributes = linking::meshAttributesOf(context, info.name);
-    if (info.root == "rt_Material")
+    if (info.root == "rt_Material") {
       info.anyHit = linking::anyHitTypes(context, linked);
+      if (program.lightPasses)
+        info.opaqueIfZero = linking::opaqueIfZero(context, linked);
+    }
     program.classes.push_back(std::move(info));
   }
   program.meshAttributes = linking::describeMeshAttributes(context);

@@ -64,6 +64,11 @@ struct AttributeInfo {
   std::uint32_t changes[2] = {RTSL_NOT_READ, RTSL_NOT_READ};
 };
 
+/// A member of a class, by their names.
+struct MemberName {
+  std::string className, member;
+};
+
 struct ClassInfo {
   std::string name;
   std::string base; // "rt_Primitive", or another user class
@@ -84,6 +89,9 @@ struct ClassInfo {
   std::uint32_t attributes = 0;
   std::uint32_t anyHit =
       0; // of a material: rtslRayTypeBit of the payloads for which it has `anyHit`
+  /// Of a material: if all of these are 0, in the object and those that it refers to, no light of
+  /// the scene's lights passes it. Nothing: some may.
+  std::optional<std::vector<MemberName>> opaqueIfZero;
   /// Writes member defaults into the record at `object`. Null: there are none.
   void (*initialize)(RtslState *state, RtslRef object) = nullptr;
   /// Runs the constructor on the record at `object`. Null: there is none.

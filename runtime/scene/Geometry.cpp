@@ -153,6 +153,11 @@ RtslInstance Geometry::place(const Placement &placement, const std::string &name
   return instance;
 }
 
+/// RtslInstance::needs, as far as it depends on the material.
+static std::uint32_t needsOfMaterial(const Objects &objects, RtslRef material) {
+  return objects.needsOf(material) | (objects.isOpaque(material) ? RTSL_IS_OPAQUE : 0);
+}
+
 std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &instance,
                                     std::string name, std::uint32_t items) {
   objects.requireRole(instance.material, "rt_Material", ifClassic(objects.program(), "shade"));
@@ -160,7 +165,7 @@ std::uint32_t Geometry::addInstance(const Objects &objects, const RtslInstance &
     throw Error(message::tooManyPrimitives());
   instances.push_back(instance);
   RtslInstance &added = instances.back();
-  added.needs |= objects.needsOf(instance.material);
+  added.needs |= needsOfMaterial(objects, instance.material);
   added.anyHit = objects.at(instance.material).classInfo->anyHit;
   treeItems += items;
   instanceNames.push_back(std::move(name));
@@ -430,11 +435,21 @@ void Geometry::setValues(std::uint32_t mesh, const Program &program, std::uint32
   meshTable[mesh].attributes = meshes[mesh]->values.table();
 }
 
-void Geometry::useProgram(const Objects &objects) {
-  std::vector<std::uint32_t> wanted(meshes.size(), 0);
+void Geometry::updateNeeds(const Objects &objects) {
   std::map<RtslRef, std::uint32_t> known; // by material: a scene may have millions of instances
   for (RtslInstance &instance : instances) {
-    instance.needs = (instance.needs & RTSL_HAS_NO_BACKS) | objects.needsOf(instance.material);
+    const auto [found, isNew] = known.emplace(instance.material, 0);
+    if (isNew)
+      found->second = needsOfMaterial(objects, instance.material);
+    instance.needs = (instance.needs & RTSL_HAS_NO_BACKS) | found->second;
+  }
+}
+
+void Geometry::useProgram(const Objects &objects) {
+  updateNeeds(objects);
+  std::vector<std::uint32_t> wanted(meshes.size(), 0);
+  std::map<RtslRef, std::uint32_t> known;
+  for (const RtslInstance &instance : instances) {
     if (instance.primitive != 0 || objects.program().meshAttributes.empty())
       continue;
     const auto [found, isNew] = known.emplace(instance.material, 0);

@@ -56,6 +56,8 @@ public:
     return instances.size() + ((transformsGained + primitivesChanged) << 32);
   }
 
+  /// Updates RtslInstance::needs, which depends on the program and on members of materials.
+  void updateNeeds(const Objects &objects);
   /// Called after Objects::useProgram: updates RtslInstance::needs, and drops data of meshes that
   /// no material on them reads, unless the program keeps it.
   void useProgram(const Objects &objects);

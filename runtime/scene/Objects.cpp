@@ -247,6 +247,29 @@ std::uint32_t Objects::needsOf(RtslRef reference) const {
   return code->needs & needs;
 }
 
+bool Objects::isOpaque(RtslRef material) const {
+  const auto &conditions = at(material).classInfo->opaqueIfZero;
+  const auto isZero = [&](RtslRef reference, const MemberInfo &member) {
+    const std::uint8_t *value = records.data() + reference + member.offset;
+    return std::all_of(value, value + member.type.size,
+                       [](std::uint8_t byte) { return byte == 0; });
+  };
+  const auto holdsFor = [&](RtslRef reference, const MemberName &condition) {
+    const ClassInfo &info = *at(reference).classInfo;
+    return info.name != condition.className ||
+           std::all_of(info.members.begin(), info.members.end(), [&](const MemberInfo &member) {
+             return member.name != condition.member || isZero(reference, member);
+           });
+  };
+  if (!conditions)
+    return false;
+  const std::vector<RtslRef> reached = reachedFrom({material});
+  return std::all_of(conditions->begin(), conditions->end(), [&](const MemberName &condition) {
+    return std::all_of(reached.begin(), reached.end(),
+                       [&](RtslRef one) { return holdsFor(one, condition); });
+  });
+}
+
 std::uint32_t Objects::attributesOf(RtslRef reference) const {
   std::uint32_t attributes = 0;
   for (RtslRef one : reachedFrom({reference}))

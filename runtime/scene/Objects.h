@@ -64,6 +64,8 @@ public:
   std::vector<RtslRef> reachedFrom(std::vector<RtslRef> references) const;
   /// RTSL_NEEDS_*: the state that methods of this object and of all reachable objects read.
   std::uint32_t needsOf(RtslRef reference) const;
+  /// Does no light of the scene's lights pass this material (ClassInfo::opaqueIfZero)?
+  bool isOpaque(RtslRef material) const;
   /// Which of Program::meshAttributes these methods read, as bits.
   std::uint32_t attributesOf(RtslRef reference) const;
   /// The longest chain of references from object to object.

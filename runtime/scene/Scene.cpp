@@ -144,6 +144,8 @@ void Scene::setMember(RtslRef object, const NamedValue &value) {
     if (classOf(object).root == "rt_Primitive")
       self->geometry.updatePrimitive(
           self->objects, object, [this] { return self->launch(); }, self->warnings);
+    if (classOf(object).root == "rt_Material")
+      self->geometry.updateNeeds(self->objects);
   } catch (...) {
     self->objects.setRecord(object, before);
     throw;

@@ -31,22 +31,22 @@ using mlir::func::FuncOp;
 
 class Black {
 public:
-  explicit Black(const LinkContext &context) : context(context) {
+  /// With `assumed`, members that the scene sets count as black, too, and are added to it.
+  explicit Black(const LinkContext &context, std::set<MemberKey> *assumed = nullptr)
+      : context(context), assumed(assumed) {
     mlir::ModuleOp(context.ir).walk([&](ir::MemberOp member) {
       if (!isStoredTo(member)) // by a constructor, or as the default
         written.insert(keyOf(member));
     });
   }
 
-  /// Whether a function writes nothing but black to SampleColor.
+  /// Whether a function and what it calls write nothing but black to SampleColor.
   bool isWrittenBy(FuncOp function) {
-    return writers.of(function, [&] {
-      return !function.isExternal() && !ir::anyOperation(function, [&](mlir::Operation *op) {
-        if (auto state = llvm::dyn_cast<ir::StateOp>(op))
-          return state.getName() == "SampleColor" && !isStoredTo(state);
-        if (auto call = llvm::dyn_cast<mlir::func::CallOp>(op))
-          return !isWrittenBy(context.symbols.lookup<FuncOp>(call.getCallee()));
-        return llvm::isa<ir::CallMethodOp>(op);
+    return llvm::all_of(reachedFrom({function}, context.symbols), [&](FuncOp reached) {
+      return !reached.isExternal() && !ir::anyOperation(reached, [&](mlir::Operation *op) {
+        auto state = llvm::dyn_cast<ir::StateOp>(op);
+        return llvm::isa<ir::CallMethodOp>(op) ||
+               (state && state.getName() == "SampleColor" && !isStoredTo(state));
       });
     });
   }
@@ -82,7 +82,7 @@ private:
         })
         .Case([&](ir::LoadOp load) {
           if (auto member = load.getAddress().getDefiningOp<ir::MemberOp>())
-            return isBlackInAllObjects(member);
+            return isBlackInAllObjects(member) || isAssumed(member);
           return load.getAddress().getDefiningOp<ir::VarOp>() && isStoredTo(load.getAddress());
         })
         .Case([&](mlir::arith::MulFOp) { return llvm::any_of(op->getOperands(), isBlack); })
@@ -103,9 +103,16 @@ private:
            !written.count(key) && request.editable.empty() && !request.keep.has(Item::Parameters);
   }
 
+  bool isAssumed(ir::MemberOp member) {
+    if (assumed)
+      assumed->insert(keyOf(member));
+    return assumed;
+  }
+
   const LinkContext &context;
+  std::set<MemberKey> *assumed;
   std::set<MemberKey> written; // with anything but black
-  FunctionProperty writers, functions;
+  FunctionProperty functions;
 };
 
 } // namespace
@@ -121,10 +128,14 @@ bool sendsRaysToLights(mlir::Operation *op) {
   return isLitByLights(op) && !isWithoutShadows;
 }
 
+static bool isOfOtherEngines(const LinkContext &context, const Slot &slot) {
+  const bool isOfClassicAlone = std::string_view(slot.method) == "diffuseTransmittance";
+  return isOfClassicAlone && context.request.engine == runtime::Engine::Programs;
+}
+
 std::vector<FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot) {
   std::vector<FuncOp> methods;
-  const bool isOfClassicAlone = std::string_view(slot.method) == "diffuseTransmittance";
-  if (isOfClassicAlone && context.request.engine == runtime::Engine::Programs)
+  if (isOfOtherEngines(context, slot))
     return methods;
   Black black(context);
   for (const LinkedClass &linked : context.classes)
@@ -133,6 +144,24 @@ std::vector<FuncOp> methodsThatPassLight(const LinkContext &context, const Slot 
         if (!black.isWrittenBy(method))
           methods.push_back(method);
   return methods;
+}
+
+std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &context,
+                                                             const LinkedClass &material) {
+  std::set<MemberKey> members;
+  Black black(context, &members);
+  for (const Slot &slot : passingSlots) {
+    FuncOp method =
+        isOfOtherEngines(context, slot) ? FuncOp() : findMethod(context, material, slot.method);
+    if (method && !black.isWrittenBy(method))
+      return std::nullopt;
+  }
+  if (!members.empty() && !context.request.editable.empty()) // the values may change
+    return std::nullopt;
+  std::vector<runtime::MemberName> names;
+  for (const auto &[className, member] : members)
+    names.push_back({className, member});
+  return names;
 }
 
 bool lightPasses(const LinkContext &context) {

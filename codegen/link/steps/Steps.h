@@ -257,6 +257,9 @@ bool sendsRaysToLights(mlir::Operation *op);
 /// The methods of a slot of passingSlots that let light of the scene's lights pass surfaces. Runs
 /// after resolveSlots.
 std::vector<mlir::func::FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot);
+/// ClassInfo::opaqueIfZero.
+std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &context,
+                                                             const LinkedClass &material);
 /// Whether any rays to lights may pass surfaces. Runs after unreached methods have been dropped.
 bool lightPasses(const LinkContext &context);
 /// The outputs that functions of the program read; the runtime computes no others.

@@ -78,6 +78,17 @@ inline void startShadowRay(RtslState &state, const ShadowRay &ray) {
   state.dimension = 0;
 }
 
+/// ArrivingLight::found if the surfaces that were hit let light pass.
+constexpr uint32_t hitThatMayPass = 4;
+static_assert(hitThatMayPass != RTSL_MISS && hitThatMayPass != RTSL_HIT &&
+              hitThatMayPass != RTSL_BAD_RAY);
+
+/// May light pass the surface that was hit?
+inline bool mayLightPass(const RtslState &state) {
+  return rtsl_light_passes(state.launch) &&
+         !(instanceAt(*state.launch, state.instance).needs & RTSL_IS_OPAQUE);
+}
+
 /// Is there anything between the ray's origin and `distance`? On a GPU it is a separate function.
 #ifdef __NVPTX__
 __attribute__((noinline))
@@ -110,30 +121,49 @@ inline void findTransmittance(RtslState &state, uint32_t components) {
   forEachComponent(components, [&](uint32_t i) { state.SampleColor[i] += straight[i]; });
 }
 
-/// The share of light that surfaces between the ray's origin and `distance` let pass, the product
-/// of what their methods say. On a GPU it is a separate function, and its result a value, as that
-/// of lookAtBackground.
+/// What a ray to a light has found.
+struct ArrivingLight {
+  uint32_t found;       // as rtsl_traverse says, or hitThatMayPass
+  PassingLight passing; // if that is hitThatMayPass
+};
+
+/// Follows a ray to a light through surfaces that let some pass: the share that arrives is the
+/// product of what their methods say. Before it looks for one surface after the other, it looks for
+/// any that lets nothing pass; both in the same code, as the traversal is long. On a GPU this is a
+/// separate function, and its result a value, as that of lookAtBackground.
 #ifdef __NVPTX__
 __attribute__((noinline))
 #endif
-inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, float distance) {
+inline ArrivingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, float distance) {
   const RtslLaunch &launch = *ray.launch;
   const uint32_t components = rtsl_color_components(&launch);
-  PassingLight light;
-  setColor(light.share, components, 1);
+  ArrivingLight light;
+  light.found = RTSL_MISS;
+  float *share = light.passing.share;
+  setColor(share, components, 1);
   RtslState state;
   startShadowRay(state, ray);
   Vec3 origin = ray.origin;
-  for (int passed = 0; start.epsilon < distance; ++passed) {
+  uint32_t how = RTSL_FIRST_HIT;
+  for (int passed = 0; start.epsilon < distance;) {
     setDefaults(state, components);
     setRay(state, origin, direction, start, distance);
-    if (rtsl_traverse(&state, 0) != RTSL_HIT)
+    const uint32_t found = rtsl_traverse(&state, how);
+    if (found != RTSL_HIT || !mayLightPass(state) || passed == mostPassed) {
+      if (found != RTSL_MISS || how == RTSL_FIRST_HIT)
+        light.found = found;
       return light;
+    }
+    if (how == RTSL_FIRST_HIT) {
+      how = 0;
+      light.found = hitThatMayPass;
+      continue;
+    }
+    ++passed;
     describeHit(state);
-    if (passed != mostPassed)
-      findTransmittance(state, components);
-    forEachComponent(components, [&](uint32_t i) { light.share[i] *= state.SampleColor[i]; });
-    if (isBlack(light.share, components))
+    findTransmittance(state, components);
+    forEachComponent(components, [&](uint32_t i) { share[i] *= state.SampleColor[i]; });
+    if (isBlack(share, components))
       return light;
     origin = load(state.HitPoint);
     start = startOf(state, origin, direction);
@@ -144,18 +174,12 @@ inline PassingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start, 
   return light;
 }
 
-/// What a ray to a light has found.
-struct ArrivingLight {
-  uint32_t found;       // as rtsl_traverse says
-  PassingLight passing; // if surfaces have been hit, and light may pass any
-};
-
 inline ArrivingLight followToLight(const ShadowRay &ray, Vec3 direction, RayStart start,
                                    float distance) {
+  if (rtsl_light_passes(ray.launch))
+    return passSurfaces(ray, direction, start, distance);
   ArrivingLight light;
   light.found = traverseShadow(ray, direction, start, distance);
-  if (light.found == RTSL_HIT && rtsl_light_passes(ray.launch))
-    light.passing = passSurfaces(ray, direction, start, distance);
   return light;
 }
 
@@ -167,14 +191,13 @@ RTSL_WHERE_LIGHTS_ARE_KNOWN inline bool findKnown(RtslState &shading, Vec3 point
   LightQuestion question(LightQuestion::Light, point, direction, ray.randomKey);
   question.add(start.epsilon);
   question.add(distance);
-  const uint32_t passing =
-      rtsl_light_passes(shading.launch) ? rtsl_color_components(shading.launch) : 0;
+  const uint32_t components = rtsl_color_components(shading.launch);
   return lookForLight(
       shading, question, light, [&] { return followToLight(ray, direction, start, distance); },
       [&](auto &answer, auto visit) {
         visit(0, &answer.found);
-        if (answer.found == RTSL_HIT)
-          forEachComponent(passing, [&](uint32_t i) { visit(1 + i, &answer.passing.share[i]); });
+        if (answer.found == hitThatMayPass)
+          forEachComponent(components, [&](uint32_t i) { visit(1 + i, &answer.passing.share[i]); });
       });
 }
 
@@ -196,10 +219,9 @@ inline bool isLit(RtslState &shading, Vec3 point) {
     return false;
   if (light.found == RTSL_BAD_RAY)
     raise(shading, RTSL_EXCEPTION_BAD_RAY);
-  const RtslLaunch &launch = *shading.launch;
-  if (light.found != RTSL_HIT || !rtsl_light_passes(&launch))
+  if (light.found != hitThatMayPass)
     return light.found == RTSL_MISS; // no light arrives along a bad ray
-  const uint32_t components = rtsl_color_components(&launch);
+  const uint32_t components = rtsl_color_components(shading.launch);
   forEachComponent(components,
                    [&](uint32_t i) { shading.LightColor[i] *= light.passing.share[i]; });
   return !isBlack(shading.LightColor, components);

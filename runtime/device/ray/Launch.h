@@ -32,7 +32,8 @@ typedef struct RtslInstance {
   // index into RtslLaunch::meshes when primitive is 0; of an object that holds several primitives,
   // its number among such objects
   uint32_t mesh;
-  uint32_t needs;     // RTSL_NEEDS_* of its material, and RTSL_HAS_NO_BACKS of the instance
+  // RTSL_NEEDS_* and RTSL_IS_OPAQUE of its material, and RTSL_HAS_NO_BACKS of the instance
+  uint32_t needs;
   uint32_t mask;      // visible to rays whose mask has a common bit
   uint32_t anyHit;    // rtslRayTypeBit of the payloads for which its material has `anyHit`
   uint32_t transform; // index into RtslLaunch::transforms; 0: object space is world space

@@ -42,6 +42,8 @@
 #define RTSL_HAS_STRETCH 1073741824u // some transform is no rotation with a uniform scale
 // Some transform is more than a translation.
 #define RTSL_HAS_LINEAR (RTSL_HAS_SCALE | RTSL_HAS_TURNS | RTSL_HAS_STRETCH)
+// RtslInstance::needs only: no light of the scene's lights passes its material. Absent: some may.
+#define RTSL_IS_OPAQUE RTSL_HAS_LIGHT_TREE
 #define RTSL_HAS_ALL                                                                               \
   (RTSL_HAS_TRANSFORMS | RTSL_HAS_ROOTS | RTSL_HAS_COUNTS | RTSL_HAS_SELECTORS | RTSL_HAS_MOTION | \
    RTSL_HAS_MESH_KEYS | RTSL_HAS_SHUTTER | RTSL_HAS_SAMPLED_BACKGROUND | RTSL_HAS_NO_BACKS |       \
