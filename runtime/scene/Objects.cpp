@@ -270,6 +270,17 @@ bool Objects::isOpaque(RtslRef material) const {
   });
 }
 
+bool Objects::isConditionOfOpacity(RtslRef reference, const std::string &member) const {
+  const std::string &className = at(reference).classInfo->name;
+  const auto isIt = [&](const MemberName &condition) {
+    return condition.className == className && condition.member == member;
+  };
+  return std::any_of(code->classes.begin(), code->classes.end(), [&](const ClassInfo &info) {
+    return info.opaqueIfZero &&
+           std::any_of(info.opaqueIfZero->begin(), info.opaqueIfZero->end(), isIt);
+  });
+}
+
 std::uint32_t Objects::attributesOf(RtslRef reference) const {
   std::uint32_t attributes = 0;
   for (RtslRef one : reachedFrom({reference}))

@@ -66,6 +66,8 @@ public:
   std::uint32_t needsOf(RtslRef reference) const;
   /// Does no light of the scene's lights pass this material (ClassInfo::opaqueIfZero)?
   bool isOpaque(RtslRef material) const;
+  /// May that depend on the value of this member?
+  bool isConditionOfOpacity(RtslRef reference, const std::string &member) const;
   /// Which of Program::meshAttributes these methods read, as bits.
   std::uint32_t attributesOf(RtslRef reference) const;
   /// The longest chain of references from object to object.

@@ -140,14 +140,19 @@ std::uint32_t Scene::addMeshInstance(std::uint32_t mesh, RtslRef material,
 void Scene::setMember(RtslRef object, const NamedValue &value) {
   self->emitters.reset();
   const std::vector<std::uint8_t> before = self->objects.setMember(object, value);
+  const bool isReference = value.value.kind == Value::Kind::Reference;
   try {
     if (classOf(object).root == "rt_Primitive")
       self->geometry.updatePrimitive(
           self->objects, object, [this] { return self->launch(); }, self->warnings);
-    if (classOf(object).root == "rt_Material")
+    if (isReference)
+      self->geometry.useProgram(self->objects);
+    else if (self->objects.isConditionOfOpacity(object, value.name))
       self->geometry.updateNeeds(self->objects);
   } catch (...) {
     self->objects.setRecord(object, before);
+    if (isReference)
+      self->geometry.useProgram(self->objects);
     throw;
   }
 }

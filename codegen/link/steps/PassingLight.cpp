@@ -34,6 +34,8 @@ public:
   /// With `assumed`, members that the scene sets count as black, too, and are added to it.
   explicit Black(const LinkContext &context, std::set<MemberKey> *assumed = nullptr)
       : context(context), assumed(assumed) {
+    if (assumed)
+      return; // all members may be 0
     mlir::ModuleOp(context.ir).walk([&](ir::MemberOp member) {
       if (!isStoredTo(member)) // by a constructor, or as the default
         written.insert(keyOf(member));
@@ -82,7 +84,7 @@ private:
         })
         .Case([&](ir::LoadOp load) {
           if (auto member = load.getAddress().getDefiningOp<ir::MemberOp>())
-            return isBlackInAllObjects(member) || isAssumed(member);
+            return assumed ? assumed->insert(keyOf(member)), true : isBlackInAllObjects(member);
           return load.getAddress().getDefiningOp<ir::VarOp>() && isStoredTo(load.getAddress());
         })
         .Case([&](mlir::arith::MulFOp) { return llvm::any_of(op->getOperands(), isBlack); })
@@ -101,12 +103,6 @@ private:
     const auto given = request.givenMembers.find(key.first);
     return given != request.givenMembers.end() && !given->second.count(key.second) &&
            !written.count(key) && request.editable.empty() && !request.keep.has(Item::Parameters);
-  }
-
-  bool isAssumed(ir::MemberOp member) {
-    if (assumed)
-      assumed->insert(keyOf(member));
-    return assumed;
   }
 
   const LinkContext &context;

@@ -83,10 +83,9 @@ constexpr uint32_t hitThatMayPass = 4;
 static_assert(hitThatMayPass != RTSL_MISS && hitThatMayPass != RTSL_HIT &&
               hitThatMayPass != RTSL_BAD_RAY);
 
-/// May light pass the surface that was hit?
+/// May light pass the surface that was hit, in a program where it passes some?
 inline bool mayLightPass(const RtslState &state) {
-  return rtsl_light_passes(state.launch) &&
-         !(instanceAt(*state.launch, state.instance).needs & RTSL_IS_OPAQUE);
+  return !(instanceAt(*state.launch, state.instance).needs & RTSL_IS_OPAQUE);
 }
 
 /// Is there anything between the ray's origin and `distance`? On a GPU it is a separate function.
@@ -103,11 +102,6 @@ inline uint32_t traverseShadow(ShadowRay ray, Vec3 direction, RayStart start, fl
 /// At most so many surfaces let the light of one ray pass.
 constexpr int mostPassed = 64;
 
-/// The share of a light that arrives.
-struct PassingLight {
-  float share[RTSL_MAX_COLOR];
-};
-
 /// Sets the state's SampleColor to the share of light that passes the surface that was hit.
 inline void findTransmittance(RtslState &state, uint32_t components) {
   const RtslRef material = instanceAt(*state.launch, state.instance).material;
@@ -123,8 +117,8 @@ inline void findTransmittance(RtslState &state, uint32_t components) {
 
 /// What a ray to a light has found.
 struct ArrivingLight {
-  uint32_t found;       // as rtsl_traverse says, or hitThatMayPass
-  PassingLight passing; // if that is hitThatMayPass
+  uint32_t found;              // as rtsl_traverse says, or hitThatMayPass
+  float share[RTSL_MAX_COLOR]; // of the light that arrives, if that is hitThatMayPass
 };
 
 /// Follows a ray to a light through surfaces that let some pass: the share that arrives is the
@@ -139,7 +133,7 @@ inline ArrivingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start,
   const uint32_t components = rtsl_color_components(&launch);
   ArrivingLight light;
   light.found = RTSL_MISS;
-  float *share = light.passing.share;
+  float *share = light.share;
   setColor(share, components, 1);
   RtslState state;
   startShadowRay(state, ray);
@@ -197,7 +191,7 @@ RTSL_WHERE_LIGHTS_ARE_KNOWN inline bool findKnown(RtslState &shading, Vec3 point
       [&](auto &answer, auto visit) {
         visit(0, &answer.found);
         if (answer.found == hitThatMayPass)
-          forEachComponent(components, [&](uint32_t i) { visit(1 + i, &answer.passing.share[i]); });
+          forEachComponent(components, [&](uint32_t i) { visit(1 + i, &answer.share[i]); });
       });
 }
 
@@ -222,8 +216,7 @@ inline bool isLit(RtslState &shading, Vec3 point) {
   if (light.found != hitThatMayPass)
     return light.found == RTSL_MISS; // no light arrives along a bad ray
   const uint32_t components = rtsl_color_components(shading.launch);
-  forEachComponent(components,
-                   [&](uint32_t i) { shading.LightColor[i] *= light.passing.share[i]; });
+  forEachComponent(components, [&](uint32_t i) { shading.LightColor[i] *= light.share[i]; });
   return !isBlack(shading.LightColor, components);
 }
 

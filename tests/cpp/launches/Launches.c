@@ -425,6 +425,7 @@ int main(int count, char **arguments) {
   parts();
   passesOfFile();
   sources();
+  references();
   mistakes();
   return 0;
 }

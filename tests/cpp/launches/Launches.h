@@ -20,6 +20,9 @@ void need(int good, const char *what);
   }                                                                                                \
   printf("%s\n", rtslError())
 
+/* References.c: objects that others refer to, and that are replaced. */
+void references(void);
+
 /* Sources.c: values of files and of key frames. */
 void sources(void);
 void mistakesOfSources(RtslScene *scene);
