@@ -122,6 +122,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     ir::attr::singlePrimitives.set(ir);
   const linking::ImageChannels imageChannels = linking::findImageChannels(context);
   linking::resolveSlots(context);
+  linking::replaceLightMayPass(context);
   linking::findMeshMaterials(context);
   linking::dropUnknownChanges(context);
   linking::dropUnreached(context);
@@ -143,6 +144,8 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
   assert(mlir::succeeded(mlir::verify(ir)) && "linking produced invalid IR");
 
   const std::uint32_t needs = linking::findNeeds(context);
+  if (!(needs & RTSL_NEEDS_EMITTERS && program.lightPasses))
+    ir::attr::noPassedDistances.set(ir);
   const std::vector<std::uint32_t> needsOfClasses = linking::findNeedsOfClasses(context, needs);
   const llvm::StringSet<> membersOfProgram = membersRead(ir);
   RequiredMembers required(module);

@@ -66,6 +66,8 @@ std::optional<ModuleFacts> linkModule(mlir::ModuleOp ir, const typed::Module &mo
   facts.needs = linking::findNeeds(context);
   if (!linking::usesSurfacesAsLights(context)) // those that call it never run (light.surfaces)
     facts.needs &= ~RTSL_NEEDS_EMITTERS;
+  if (!(facts.needs & RTSL_NEEDS_EMITTERS))
+    ir::attr::noPassedDistances.set(ir);
   const std::vector<std::uint32_t> needs = linking::findNeedsOfClasses(context, facts.needs);
   for (const auto &[index, linked] : llvm::enumerate(context.classes)) {
     facts.needsOfClass[linked.info] = needs[index];

@@ -54,6 +54,11 @@ Parts FunctionLowering::lowerLightCount(const typed::BuiltinExpr &expr) {
   return {emitter.make<ir::LightCountOp>(emitter.getI32Type())};
 }
 
+Parts FunctionLowering::lowerLightMayPass(const typed::BuiltinExpr &expr) {
+  emitter.setLoc(module.location(expr.range));
+  return {emitter.make<ir::LightMayPassOp>(emitter.getI1Type())};
+}
+
 /// sema/derive has replaced all calls.
 Parts FunctionLowering::lowerDerivative(const typed::BuiltinExpr &) {
   llvm_unreachable("a derivative is an expression");

@@ -274,6 +274,7 @@ private:
   Parts lowerIlluminate(const typed::BuiltinExpr &expr);
   Parts lowerIlluminateBySurface(const typed::BuiltinExpr &expr);
   Parts lowerLightCount(const typed::BuiltinExpr &expr);
+  Parts lowerLightMayPass(const typed::BuiltinExpr &expr);
   Parts lowerDerivative(const typed::BuiltinExpr &expr);
   Parts lowerPrint(const typed::BuiltinExpr &expr);
   Parts lowerSpaceChange(const typed::BuiltinExpr &expr);

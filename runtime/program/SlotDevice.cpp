@@ -67,6 +67,8 @@ uint32_t rtsl_features(RtslState *state) {
 }
 
 uint32_t rtsl_light_passes(const RtslLaunch *launch) {
+  if (!launch->host) // while a scene is built
+    return 0;
   const auto &slots = slotsOf(launch);
   return slots.rt_Material_transmittance || slots.rt_Material_diffuseTransmittance;
 }

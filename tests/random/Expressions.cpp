@@ -375,6 +375,8 @@ NodePtr Generator::ofObject(const Type *type, unsigned depth) {
   if (type == types.color && context.traces >= context.weight && chance(60)) {
     context.traces -= context.weight;
     const Type *vec3 = types.vector(types.floatType, 3);
+    if (context.illuminance && chance(20))
+      return make(type, "trace(rt_HitPoint, rt_RayDirection)");
     NodePtr origin = converted(vec3, chance(50) ? 0 : depth - 1);
     return make(type, "trace($, $)", std::move(origin), direction(depth - 1));
   }

@@ -365,6 +365,10 @@ NodePtr Generator::payloadRay() {
   context.traces -= context.weight;
   const Type *vec3 = types.vector(types.floatType, 3);
   NodePtr origin = converted(vec3, 1), towards = direction(1);
+  if (context.illuminance && chance(20)) { // straight on through the surface
+    origin = makeNode(Role::Fixed, "rt_HitPoint");
+    towards = makeNode(Role::Fixed, chance(70) ? "rt_RayDirection" : "(0.5 * rt_RayDirection)");
+  }
   NodePtr tMin = chance(70) ? makeNode(Role::Fixed, "0.0") : converted(types.floatType, 1);
   NodePtr tMax = chance(70) ? makeNode(Role::Fixed, "64.0") : converted(types.floatType, 1);
   NodePtr payload = target(pick(payloads));

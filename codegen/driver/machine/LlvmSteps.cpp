@@ -120,14 +120,16 @@ static Schedule scheduleFor(const CompileOptions &options, const runtime::Progra
 /// before optimisation.
 constexpr unsigned largeShaders = 3500;
 
-/// docs/gpu.md compares the organisations.
+/// docs/gpu.md compares the organisations. Where light passes surfaces, its rays go from one to the
+/// next, some lanes more often than others.
 static Organisation organisationFor(const CompileOptions &options, const runtime::Program &program,
                                     const llvm::Module &module) {
   if (options.organisation)
     return *options.organisation;
   if (options.countsSteps)
     return Organisation::Megakernel;
-  const bool isLarge = hasTree(module) || module.getInstructionCount() >= largeShaders;
+  const bool isLarge =
+      hasTree(module) || program.lightPasses || module.getInstructionCount() >= largeShaders;
   return followsPaths(program, module) && isLarge ? Organisation::Wavefront
                                                   : Organisation::Megakernel;
 }

@@ -337,6 +337,12 @@ def singlePrimitives : DiscardableAttribute<"single_primitives", Unit, ["builtin
   let readBy = "states/KeptState";
 }
 
+def noPassedDistances : DiscardableAttribute<"no_passed_distances", Unit, ["builtin.module"]> {
+  let meaning = "no light of surfaces that shine passes a surface: rays have no passedDistance";
+  let setBy = "link/Link";
+  let readBy = "states/KeptState";
+}
+
 def records : DiscardableAttribute<"records", DenseI32Array, ["builtin.module"]> {
   let meaning = "the records of all objects of a bound scene, at their references";
   let setBy = "link/BindTables";

@@ -169,6 +169,17 @@ def Rtsl_LightCountOp : Rtsl_Op<"light_count", [Pure]> {
   let assemblyFormat = "attr-dict";
 }
 
+def Rtsl_LightMayPassOp : Rtsl_Op<"light_may_pass", [Pure]> {
+  let summary = "false: no light of surfaces that shine passes a surface";
+  let description = [{
+    Constant for a launch. Linking for a scene replaces it.
+
+    Example: `%b = rtsl.light_may_pass`
+  }];
+  let results = (outs I1:$result);
+  let assemblyFormat = "attr-dict";
+}
+
 def Rtsl_IlluminateOp : Rtsl_Op<"illuminate", [AttrSizedOperandSegments]> {
   let summary = "lights a point with one light; true if any arrives";
   let description = [{

@@ -136,13 +136,14 @@ private:
         addMethods("rt_Material", "closestHit." + type, by("for rays of"));
         addMethods("rt_Material", "anyHit." + type, by("for rays of"));
         addMethods("rt_Miss", "miss." + type, by("for rays of"));
-      } else if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex()) {
-        for (const Slot &slot : surfaceSlots)
-          addMethods(slot.base, slot.method, by("for `illuminate` in"));
       } else if (llvm::isa<ir::IlluminanceOp, ir::IlluminateOp>(op)) {
         const bool isOne = llvm::isa<ir::IlluminateOp>(op);
         const char *does = isOne ? "for `illuminate` in" : "for `illuminance` in";
-        addMethods("rt_Light", "illumination", by(does));
+        if (isLitByLights(op))
+          addMethods("rt_Light", "illumination", by(does));
+        else
+          for (const Slot &slot : surfaceSlots)
+            addMethods(slot.base, slot.method, by(does));
         if (sendsRaysToLights(op) && !std::exchange(areRaysToLights, true))
           for (const Slot &slot : passingSlots)
             for (FuncOp method : methodsThatPassLight(context, slot))
@@ -241,6 +242,11 @@ bool isLitByLights(mlir::Operation *op) {
   return llvm::isa<ir::IlluminanceOp>(op) || (light && light.getIndex());
 }
 
+bool isLitBySurface(mlir::Operation *op) {
+  auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
+  return light && !light.getIndex();
+}
+
 /// Does a function that rendering runs have such an operation?
 static bool anyThatRenders(const LinkContext &context,
                            llvm::function_ref<bool(mlir::Operation *)> holds) {
@@ -256,10 +262,7 @@ bool usesLights(const LinkContext &context) {
 }
 
 bool usesSurfacesAsLights(const LinkContext &context) {
-  return anyThatRenders(context, [](mlir::Operation *op) {
-    auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
-    return light && !light.getIndex();
-  });
+  return anyThatRenders(context, isLitBySurface);
 }
 
 void dropUnreached(LinkContext &context) {

@@ -104,13 +104,6 @@ void emptyRegion(mlir::Region &region) {
   ir::YieldOp::create(builder, region.getLoc());
 }
 
-void dropBranches(FuncOp function) {
-  function.walk<mlir::WalkOrder::PreOrder>([](ir::IfOp choice) {
-    if (const std::optional<bool> condition = known(choice.getCondition()))
-      emptyRegion(*condition ? choice.getElseRegion() : choice.getThenRegion());
-  });
-}
-
 /// A call through a null reference does nothing, and its result is zero.
 void dropCalls(FuncOp function) {
   function.walk([](ir::CallMethodOp call) {
@@ -124,6 +117,13 @@ void dropCalls(FuncOp function) {
 }
 
 } // namespace
+
+void dropBranches(FuncOp function) {
+  function.walk<mlir::WalkOrder::PreOrder>([](ir::IfOp choice) {
+    if (const std::optional<bool> condition = known(choice.getCondition()))
+      emptyRegion(*condition ? choice.getElseRegion() : choice.getThenRegion());
+  });
+}
 
 MemberKey keyOf(ir::MemberOp member) {
   return {llvm::cast<ir::RefType>(member.getObject().getType()).getClassName().str(),

@@ -128,7 +128,7 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op) {
   if (auto trace = llvm::dyn_cast<ir::TracePayloadOp>(op);
       trace && trace.getHow().value_or(0) & RTSL_INVOKE_ANY_HIT)
     return RTSL_NEEDS_ANY_HIT | (mayStartAtHits(reader) ? ofRaysFromHits : 0);
-  if (auto light = llvm::dyn_cast<ir::IlluminateOp>(op); light && !light.getIndex())
+  if (isLitBySurface(op))
     return RTSL_NEEDS_EMITTERS | RTSL_NEEDS_SAMPLING | ofRaysFromHits;
   return ir::sendsRays(op) && mayStartAtHits(reader) ? ofRaysFromHits : 0;
 }

@@ -115,6 +115,8 @@ private:
 
 // `illuminate(light, P, false)` sends none.
 bool sendsRaysToLights(mlir::Operation *op) {
+  if (isLitBySurface(op))
+    return true;
   auto light = llvm::dyn_cast<ir::IlluminateOp>(op);
   llvm::APFloat cosine(0.0f);
   const bool isWithoutShadows =
@@ -160,11 +162,31 @@ std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &
   return names;
 }
 
+static bool anyPassesLight(const LinkContext &context) {
+  return llvm::any_of(
+      passingSlots, [&](const Slot &slot) { return !methodsThatPassLight(context, slot).empty(); });
+}
+
+void replaceLightMayPass(LinkContext &context) {
+  if (!ir::anyOperation(context.ir, [](auto *op) { return llvm::isa<ir::LightMayPassOp>(op); }))
+    return;
+  const bool mayPass = ir::anyOperation(context.ir, isLitBySurface) && anyPassesLight(context);
+  for (auto function : context.ir.getOps<FuncOp>()) {
+    bool found = false;
+    function.walk([&](ir::LightMayPassOp op) {
+      mlir::OpBuilder builder(op);
+      op.replaceAllUsesWith(
+          mlir::arith::ConstantIntOp::create(builder, op.getLoc(), mayPass, 1).getResult());
+      op.erase();
+      found = true;
+    });
+    if (found)
+      dropBranches(function);
+  }
+}
+
 bool lightPasses(const LinkContext &context) {
-  return ir::anyOperation(context.ir, sendsRaysToLights) &&
-         llvm::any_of(passingSlots, [&](const Slot &slot) {
-           return !methodsThatPassLight(context, slot).empty();
-         });
+  return ir::anyOperation(context.ir, sendsRaysToLights) && anyPassesLight(context);
 }
 
 } // namespace rtsl::linking

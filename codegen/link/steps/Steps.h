@@ -91,6 +91,8 @@ void findUsedObjects(LinkContext &context);
 /// Whether an operation lights a point with lights of the scene, and not with a surface that
 /// shines.
 bool isLitByLights(mlir::Operation *op);
+/// Whether it lights a point with such a surface: `illuminate(P)`.
+bool isLitBySurface(mlir::Operation *op);
 
 /// Whether a method that rendering runs loops over lights. Runs before slots are resolved.
 bool usesLights(const LinkContext &context);
@@ -107,6 +109,8 @@ MemberKey keyOf(ir::MemberOp member);
 /// Treats optional members that no object of the scene sets as empty, and removes code that depends
 /// on their being set.
 void emptyReferences(LinkContext &context);
+/// Removes what is run only under conditions that are known to be false.
+void dropBranches(mlir::func::FuncOp function);
 
 /// The errors of the elementary functions of a program.
 ElementaryErrors elementaryErrorsOf(FloatingPoint floatingPoint);
@@ -252,7 +256,7 @@ std::uint32_t needsOf(const Reader &reader, mlir::Operation *op);
 bool isOfScratchChanges(std::uint32_t needs);
 /// Whether an operation uses the address other than to store to it.
 bool isRead(mlir::Value address);
-/// Whether an operation sends rays to the scene's lights.
+/// Whether an operation sends rays to the scene's lights, or to surfaces that shine.
 bool sendsRaysToLights(mlir::Operation *op);
 /// The methods of a slot of passingSlots that let light of the scene's lights pass surfaces. Runs
 /// after resolveSlots.
@@ -260,6 +264,9 @@ std::vector<mlir::func::FuncOp> methodsThatPassLight(const LinkContext &context,
 /// ClassInfo::opaqueIfZero.
 std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &context,
                                                              const LinkedClass &material);
+/// Replaces LightMayPassOp by what is known of the scene, and removes what then never runs. Runs
+/// after resolveSlots.
+void replaceLightMayPass(LinkContext &context);
 /// Whether any rays to lights may pass surfaces. Runs after unreached methods have been dropped.
 bool lightPasses(const LinkContext &context);
 /// The outputs that functions of the program read; the runtime computes no others.

@@ -149,6 +149,11 @@ inline int lightCount(const State<N> &rt) {
   return static_cast<int>(rt.launch->lightCount);
 }
 
+template <int N>
+inline bool lightMayPass(const State<N> &rt) {
+  return rtsl_light_passes(rt.launch) != 0;
+}
+
 /// The cosine of an angle of `illuminance`, which is in [0, pi]; for larger angles every light
 /// counts.
 inline float cosOfAngle(float angle) {

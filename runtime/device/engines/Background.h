@@ -93,9 +93,12 @@ inline EmittedLight lookAtBackground(ShadowRay ray, LeftHit left, Vec3 side) {
   if (!(density > 0 && density < infinity) || isBehind(side, light.direction))
     return light;
   copyColor(light.radiance, state.SampleColor, components);
-  const RayStart start = startOf(left, ray.origin, light.direction);
-  if (traverseShadow(ray, light.direction, start, infinity) == RTSL_MISS)
+  const ArrivingLight arriving =
+      followToLight(ray, light.direction, startOf(left, ray.origin, light.direction), infinity);
+  if (arriving.found == RTSL_MISS || arriving.found == hitThatMayPass)
     light.density = density;
+  if (arriving.found == hitThatMayPass)
+    forEachComponent(components, [&](uint32_t i) { light.radiance[i] *= arriving.share[i]; });
   return light;
 }
 

@@ -76,6 +76,25 @@ inline void beginChild(RtslState &child, const RtslState &parent, Make make) {
   make(before);
 }
 
+/// Do rays have a passedDistance? If light of emitters passes surfaces.
+inline bool hasPassedDistance(const RtslLaunch &launch) {
+  return rtsl_needs(&launch) & RTSL_NEEDS_EMITTERS && rtsl_light_passes(&launch) &&
+         rtsl_emitter_count(&launch) != 0;
+}
+
+/// RtslState::passedDistance of a ray that a shader sends after `from` has hit a surface: straight
+/// on is within 1e-5 of the old direction, which materials may compute in the surface's frame.
+inline float passedDistance(const RtslState &from, Vec3 origin, Vec3 direction) {
+  if (!hasPassedDistance(*from.launch) || !startsAtHit(leftHit(from), origin))
+    return 0;
+  const Vec3 before = load(from.RayDirection), across = cross(before, direction);
+  const float squares = dot(before, before) * dot(direction, direction);
+  if (!(dot(across, across) <= 1e-10f * squares && dot(before, direction) > 0))
+    return 0;
+  return (from.passedDistance + from.HitDistance) *
+         squareRoot(dot(before, before) / dot(direction, direction));
+}
+
 /// Initialises state's ray: nothing hit yet, visible up to `distance` in units of the direction.
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
                    float distance) {
@@ -86,6 +105,8 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart
               1.0f / direction.z);
   state.Epsilon = start.epsilon;
   state.HitDistance = distance;
+  if (hasPassedDistance(*state.launch))
+    state.passedDistance = 0;
   state.isEasy = start.isEasy;
   if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
     state.hitAnswer = RTSL_ACCEPT;

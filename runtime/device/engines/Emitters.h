@@ -132,13 +132,18 @@ inline float chanceOfPart(const RtslLaunch &launch, uint32_t number, uint32_t pa
 }
 
 /// The density with which `illuminate` at the ray's origin chooses the direction of this ray, by
-/// solid angle, because of the point that it has hit, which is on this emitter.
+/// solid angle, because of the point that it has hit, which is on this emitter. Of a ray that went
+/// straight on through surfaces, at the origin that it had before.
 inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
   const RtslLaunch &launch = *hit.launch;
   const RtslInstance &instance = instanceAt(launch, hit.instance);
   const Vec3 direction = load(hit.RayDirection), normal = load(hit.GeometricNormal);
-  float density = (1 - backgroundChance(launch)) *
-                  chanceOfPart(launch, emitter, hit.primitive, load(hit.RayOrigin));
+  const float passed = hasPassedDistance(launch) ? hit.passedDistance : 0;
+  Vec3 origin = load(hit.RayOrigin);
+  if (passed != 0)
+    origin = origin - direction * passed;
+  float density =
+      (1 - backgroundChance(launch)) * chanceOfPart(launch, emitter, hit.primitive, origin);
   if (isMesh(launch, instance)) {
     const Vec3 twice = doubleArea(verticesInWorld(launch, instance, hit.primitive, hit.Time));
     density *= 2 / squareRoot(dot(twice, twice));
@@ -169,9 +174,9 @@ inline float densityOfEmitter(const RtslState &hit, uint32_t emitter) {
   }
   const float along = absolute(dot(direction, normal));
   const float square = dot(direction, direction);
+  const float distance = passed != 0 ? passed + hit.HitDistance : hit.HitDistance;
   // distance^2 / cosine
-  density *= hit.HitDistance * hit.HitDistance * square *
-             (squareRoot(square * dot(normal, normal)) / along);
+  density *= distance * distance * square * (squareRoot(square * dot(normal, normal)) / along);
   return isFiniteFromZero(density) ? density : 0; // edge-on, or not a number
 }
 
@@ -256,6 +261,7 @@ __attribute__((noinline))
 #endif
 inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, EmitterChoice choice) {
   const RtslLaunch &launch = *ray.launch;
+  const uint32_t components = rtsl_color_components(&launch);
   EmittedLight light;
   light.density = 0;
   light.direction = {0, 0, 0};
@@ -266,8 +272,8 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   const RtslInstance &instance = instanceAt(launch, emitter.instance);
   RtslState state;
   startShadowRay(state, ray);
-  light.direction =
-      pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v) - ray.origin;
+  const Vec3 point = pointOnInstance(state, launch, instance, chosen.part, choice.u, choice.v);
+  light.direction = point - ray.origin;
   if (isBehind(side, light.direction))
     return light;
 
@@ -275,15 +281,45 @@ inline EmittedLight lookAtEmitter(ShadowRay ray, LeftHit left, Vec3 side, Emitte
   if (!(start.epsilon < hiddenBefore))
     return light;
   setRay(state, ray.origin, light.direction, start, 2 - hiddenBefore);
-  if (traverseWithDefaults(state, towardsPoint) != RTSL_HIT || isPointHidden(state) ||
-      state.instance != emitter.instance)
+  // First whatever hides the point is looked for; if light may pass that, one surface after the
+  // other.
+  PassedSurfaces passed(components);
+  for (uint32_t how = towardsPoint;; how = 0) {
+    if (traverseWithDefaults(state, how) != RTSL_HIT)
+      return light;
+    if (!isPointHidden(state))
+      break;
+    if (!rtsl_light_passes(&launch) || !mayLightPass(state))
+      return light;
+    if (how == towardsPoint) {
+      setRay(state, ray.origin, light.direction, start, 2 - hiddenBefore);
+      continue;
+    }
+    if (!passed.add(state, components))
+      return light;
+    const Vec3 origin = load(state.HitPoint), direction = point - origin;
+    const RayStart next = startOf(state, origin, direction);
+    if (!(next.epsilon < hiddenBefore))
+      return light;
+    setRay(state, origin, direction, next, 2 - hiddenBefore);
+  }
+  if (state.instance != emitter.instance)
     return light;
   describeHitAtEnd(state, rtsl_emitters_have_parts(&launch) != 0);
   light.distance = state.HitDistance;
+  if (passed.count != 0) {
+    const Vec3 way = load(state.RayOrigin) - ray.origin, direction = load(state.RayDirection);
+    const float square = dot(direction, direction);
+    state.passedDistance = squareRoot(dot(way, way) / square);
+    light.distance = (state.passedDistance + state.HitDistance) *
+                     squareRoot(square / dot(light.direction, light.direction));
+  }
   light.density = densityOfEmitter(state, chosen.emitter);
   if (light.density > 0)
     rtsl_rt_Material_emission(&state, instance.material);
-  copyColor(light.radiance, state.EmissionColor, rtsl_color_components(&launch));
+  copyColor(light.radiance, state.EmissionColor, components);
+  if (passed.count != 0)
+    forEachComponent(components, [&](uint32_t i) { light.radiance[i] *= passed.share[i]; });
   return light;
 }
 

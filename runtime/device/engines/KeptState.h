@@ -19,6 +19,7 @@ enum KeptField : uint32_t {
 #include "language/StateVariables.def"
   keptInstance,
   keptHitPointError,
+  keptPassedDistance,
   keptPayload,
   keptRayType,
   keptRayMask,
@@ -103,6 +104,8 @@ inline void forEachKeptWord(RtslState &state, char *base, Visit visit) {
     visit(&state.instance);
   if (isKept(keptHitPointError))
     forEachWord<1>(&state.hitPointError, 1, visit);
+  if (isKept(keptPassedDistance))
+    forEachWord<1>(&state.passedDistance, 1, visit);
   if (isKept(keptPayload)) {
     auto distance =
         uint32_t(reinterpret_cast<uintptr_t>(state.payload) - reinterpret_cast<uintptr_t>(base));

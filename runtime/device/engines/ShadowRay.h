@@ -115,6 +115,26 @@ inline void findTransmittance(RtslState &state, uint32_t components) {
   forEachComponent(components, [&](uint32_t i) { state.SampleColor[i] += straight[i]; });
 }
 
+/// The surfaces that a ray to a light has passed.
+struct PassedSurfaces {
+  float share[RTSL_MAX_COLOR]; // of the light, that passes them all
+  int count = 0;
+
+  explicit PassedSurfaces(uint32_t components) { setColor(share, components, 1); }
+
+  /// Lets light pass the surface that state's ray has hit. False if none does.
+  bool add(RtslState &state, uint32_t components) {
+    if (++count > mostPassed)
+      return false;
+    describeHit(state);
+    findTransmittance(state, components);
+    forEachComponent(components, [&](uint32_t i) { share[i] *= state.SampleColor[i]; });
+    if (rtsl_needs(state.launch) & RTSL_NEEDS_FOOTPRINT)
+      state.coneAtOrigin = state.ConeWidth;
+    return !isBlack(share, components);
+  }
+};
+
 /// What a ray to a light has found.
 struct ArrivingLight {
   uint32_t found;              // as rtsl_traverse says, or hitThatMayPass
@@ -133,38 +153,31 @@ inline ArrivingLight passSurfaces(ShadowRay ray, Vec3 direction, RayStart start,
   const uint32_t components = rtsl_color_components(&launch);
   ArrivingLight light;
   light.found = RTSL_MISS;
-  float *share = light.share;
-  setColor(share, components, 1);
+  PassedSurfaces passed(components);
   RtslState state;
   startShadowRay(state, ray);
   Vec3 origin = ray.origin;
-  uint32_t how = RTSL_FIRST_HIT;
-  for (int passed = 0; start.epsilon < distance;) {
+  for (uint32_t how = RTSL_FIRST_HIT; start.epsilon < distance; how = 0) {
     setDefaults(state, components);
     setRay(state, origin, direction, start, distance);
     const uint32_t found = rtsl_traverse(&state, how);
-    if (found != RTSL_HIT || !mayLightPass(state) || passed == mostPassed) {
-      if (found != RTSL_MISS || how == RTSL_FIRST_HIT)
+    if (found != RTSL_HIT || !mayLightPass(state)) {
+      if (found != RTSL_MISS)
         light.found = found;
-      return light;
+      break;
     }
-    if (how == RTSL_FIRST_HIT) {
-      how = 0;
-      light.found = hitThatMayPass;
+    light.found = hitThatMayPass;
+    if (how == RTSL_FIRST_HIT)
       continue;
+    if (!passed.add(state, components)) {
+      light.found = RTSL_HIT;
+      break;
     }
-    ++passed;
-    describeHit(state);
-    findTransmittance(state, components);
-    forEachComponent(components, [&](uint32_t i) { share[i] *= state.SampleColor[i]; });
-    if (isBlack(share, components))
-      return light;
     origin = load(state.HitPoint);
     start = startOf(state, origin, direction);
     distance -= state.HitDistance;
-    if (rtsl_needs(&launch) & RTSL_NEEDS_FOOTPRINT)
-      state.coneAtOrigin = state.ConeWidth;
   }
+  copyColor(light.share, passed.share, components);
   return light;
 }
 

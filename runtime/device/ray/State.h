@@ -33,6 +33,9 @@ typedef struct RtslState {
   uint32_t leaves;          // the instance whose surface the ray starts on; RTSL_NO_HIT: none
   uint32_t leavesPrimitive; // and which of its primitives, if objects may hold several
   uint32_t isEasy; // 1: every traversal is known to handle the ray (isEasySpawn in Spawn.h)
+  // How far before RayOrigin it went straight on through surfaces that let light pass, in units of
+  // RayDirection: `illuminate(P)` may have found from there what the ray finds (Emitters.h).
+  float passedDistance;
 
   // What the ray carries (docs/language.md, "Tracing and light").
   void *payload; // the struct of the ray's type; undefined if rayType is 0

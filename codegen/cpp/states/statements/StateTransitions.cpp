@@ -21,6 +21,9 @@ bool StateTransitions::print(mlir::Operation &op, Statements &out) {
       .Case([&](ir::LightCountOp) {
         state.values.makeAnywhere(op, onState("rtsl::lightCount"), out);
       })
+      .Case([&](ir::LightMayPassOp) {
+        state.values.makeAnywhere(op, onState("rtsl::lightMayPass"), out);
+      })
       .Default([&](mlir::Operation *) { isKnown = false; });
   return isKnown;
 }

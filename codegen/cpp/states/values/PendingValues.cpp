@@ -143,7 +143,7 @@ void PendingValues::define(mlir::Operation &op, Code code, ir::MemoryAccesses ac
   const bool isRead =
       llvm::isa<ir::LoadOp, ir::FrameLoadOp, ir::CallArgumentOp, ir::CallReturnedOp>(op);
   auto expression = llvm::dyn_cast<ir::ExpressionOp>(op);
-  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp>(op) ||
+  const bool isTrivial = isRead || llvm::isa<ir::LightCountOp, ir::LightMayPassOp>(op) ||
                          (expression && expression.getNumOperands() == 0 &&
                           expression.getCost() <= cost::withoutVariable);
   pending[value] = {std::move(code), std::move(accesses), uses, isPure, isTrivial};

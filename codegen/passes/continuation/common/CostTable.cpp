@@ -64,7 +64,7 @@ std::int64_t recomputeCost(mlir::Operation *op) {
       .Case([](ir::ElementOp op) { return op.constantIndex() ? 0 : cost::elementAddress; })
       .Case<ir::AtomicOp>([](auto) { return cost::atomic; })
       .Case<ir::BufferElementOp>([](auto) { return cost::bufferElementAddress; })
-      .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp>(
+      .Case<ir::BufferLengthOp, ir::ClassIdOp, ir::LightCountOp, ir::LightMayPassOp>(
           [](auto) { return cost::sizeQuery; })
       .Case(
           [](vector::ExtractOp op) { return op.hasDynamicPosition() ? cost::dynamicComponent : 0; })

@@ -109,6 +109,14 @@ Fields readsOfSending(mlir::ModuleOp module) {
   return fields;
 }
 
+/// What it reads of one that may go straight on through surfaces (passedDistance in BeginRay.h).
+Fields readsOfGoingOn(mlir::ModuleOp module) {
+  return ir::attr::noPassedDistances.isOn(module)
+             ? Fields()
+             : Fields::of(
+                   {device::keptPassedDistance, device::keptHitDistance, device::keptRayDirection});
+}
+
 llvm::StringRef symbolOf(FuncOp function) {
   return function ? function.getSymName() : llvm::StringRef();
 }
@@ -155,10 +163,12 @@ Fields KeptStateFinder::implicitReads(mlir::Operation *op) const {
   llvm::TypeSwitch<mlir::Operation *>(op)
       .Case([&](ir::SpawnOp) {
         fields = readsOfSending(module);
+        fields.add(readsOfGoingOn(module));
         fields.add(inherited);
       })
       .Case([&](ir::SpawnPayloadOp spawn) {
         fields = readsOfSending(module);
+        fields.add(readsOfGoingOn(module));
         if (!spawn.getTime())
           fields.add(Fields::of({device::keptTime}));
         if (!spawn.getMask())

@@ -122,15 +122,17 @@ class Organisations(Case):
             )
             self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
-    def test_paths_through_a_tree_or_long_shaders_are_a_wavefront(self):
+    def test_paths_through_trees_panes_or_long_shaders_are_a_wavefront(self):
+        cornell = json.loads((EXAMPLES / "cornell" / "scene.json").read_text())
+        cornell["materials"]["white"] = {"class": "ThinGlass"}
+        panes = self.write("panes.json", json.dumps(cornell))
         for scene, kernel in (
-            ("cornell/room.json", "rtsl_wave_begin"),
-            ("cornell/scene.json", "rtsl_render"),
-            ("cook/scene.json", "rtsl_wave_begin"),
+            (EXAMPLES / "cornell" / "room.json", "rtsl_wave_begin"),
+            (EXAMPLES / "cornell" / "scene.json", "rtsl_render"),
+            (EXAMPLES / "cook" / "scene.json", "rtsl_wave_begin"),
+            (panes, "rtsl_wave_begin"),
         ):
-            ptx, _ = self.run_rtslc(
-                "compile", EXAMPLES / scene, "--emit=ptx", "-O0", "-Wno-depth-limit"
-            )
+            ptx, _ = self.run_rtslc("compile", scene, "--emit=ptx", "-O0", "-Wno-depth-limit")
             self.assertIn(f".entry {kernel}(", ptx)
 
     def test_the_name_is_one_of_those_listed(self):

@@ -70,16 +70,24 @@ class LightThatPasses(Case):
         self.write("Below.rtsl", SHADERS)
 
     def scene(
-        self, *objects, floor="Floor", lights=(DOWN,), engine="classic", size=(1, 1), depth=1
+        self,
+        *objects,
+        floor="Floor",
+        lights=(DOWN,),
+        engine="classic",
+        size=(1, 1),
+        depth=1,
+        **more,
     ):
         return {
             "rtsl": 1,
-            "import": ["std.primitives", "std.materials", "std.lights", "Below.rtsl"],
+            "import": ["std", "Below.rtsl"],
             "camera": {"class": "Below"},
             "textures": {"halves": {"class": "Halves"}},
             "objects": [{"primitive": FLOOR, "material": {"class": floor}}, *objects],
             "lights": list(lights),
             "render": {"engine": engine, "size": size, "spp": 1, "depth": depth},
+            **more,
         }
 
     def color(self, *objects, spp=1, **more):
@@ -91,6 +99,14 @@ class LightThatPasses(Case):
             for c in "RGB"
         ]
         return [sum(of_channel) / len(of_channel) for of_channel in values]
+
+    def sun_in_an_image(self):
+        """A background that is black but for one texel near the zenith."""
+        texels = [0.0] * (4 * 64 * 32)
+        texels[4 * (64 * 29 + 32) : 4 * (64 * 29 + 33)] = [1e3] * 4
+        self.write("sun.raw", struct.pack(f"<{len(texels)}f", *texels))
+        image = {"raw": "sun.raw", "size": [64, 32], "format": "float32", "channels": 4}
+        return {"class": "EnvironmentMap", "image": {**image, "filter": "nearest"}}
 
     def assert_passes(self, expected, *objects, **more):
         for value, share in zip(self.color(*objects, **more), expected):
@@ -177,8 +193,63 @@ class LightThatPasses(Case):
             with self.subTest(material):
                 self.assert_passes_everywhere([0] * 3, pane(1, material))
 
+    def test_searches_pass_as_rays_to_lamps_do(self):
+        """A far ball and a small sun in an image, which rays of paths rarely find: what passes of
+        them is what passes of lamps in their place."""
+        far = {"center": [1, 40, -12], "radius": 0.3}
+        bright = [3e4] * 3
+        shining = {
+            "primitive": {"class": "Sphere", **far},
+            "material": {"class": "Emitter", "radiance": bright},
+        }
+        sky = self.sun_in_an_image()
+        lamp = {"class": "SphereLight", **far, "radiance": bright}
+        glass = {"class": "ThinGlass", "transmission": [0.5, 0.7, 0.9]}
+        fog = {"class": "HomogeneousMedium", "scattering": 0, "absorption": [0.5, 1, 2]}
+        both = {"class": "MixMaterial", "first": glass, "second": {"class": "MediumBoundary"}}
+        leaf = {"class": "Cutout", "material": {"class": "Lambert"}, "opacity": 0.3}
+        box = {
+            "primitive": {"class": "Box", "low": [-3, 1, -3], "high": [3, 1.5, 3]},
+            "material": {"class": "MediumBoundary", "interior": fog},
+        }
+        clear = pane(2, "Principled", transmission=0.5, roughness=0)
+        panes = {
+            "path": [
+                [pane(1, "", **glass)],
+                [pane(1, "NormalMap", material=glass)],
+                [pane(1, "", **leaf), clear],
+            ],
+            "volume": [[pane(1, "", **both), clear], [box]],
+        }
+        for engine in PATHS:
+            more = {"floor": "Matte", "engine": engine, "size": (16, 16), "spp": 128}
+            ways = {
+                "lamp": ((), {"lights": [lamp]}),
+                "ball": ((shining,), {"lights": []}),
+                "sun": ((), {"lights": [], "background": sky}),
+                "both": ((shining,), {"lights": [], "background": sky}),
+            }
+            bare = {
+                way: self.color(*objects, **light, **more) for way, (objects, light) in ways.items()
+            }
+            for number, above in enumerate(panes[engine]):
+                [expected, *others] = [
+                    [
+                        lit / full
+                        for lit, full in zip(
+                            self.color(*above, *objects, **light, **more), bare[way]
+                        )
+                    ]
+                    for way, (objects, light) in ways.items()
+                ]
+                for way, shares in zip(list(ways)[1:], others):
+                    with self.subTest(f"{engine} {number} {way}"):
+                        for share, of_lamp in zip(shares, expected):
+                            self.assertGreater(of_lamp, 0.05)
+                            self.assertAlmostEqual(share / of_lamp, 1, delta=0.03)
+
     def test_a_lamp_lights_as_a_surface_that_shines_does(self):
-        """Which paths find behind the pane, where they find no lamp of the scene's lights."""
+        """The rays of paths find it, and so does the search: each counts in part."""
         place = {"center": [0.5, 3, 0], "radius": 0.5}
         lamp = {"class": "SphereLight", **place, "radiance": [9, 9, 9]}
         ball = {
@@ -189,7 +260,8 @@ class LightThatPasses(Case):
         clear = {"class": "Principled", "transmission": 1, "roughness": 0, "clearcoat": 1}
         leaf = {"class": "Cutout", "material": clear, "opacity": 0.6}
         mixed = {"class": "MixMaterial", "first": glass, "second": leaf}
-        for material in (glass, clear, leaf, mixed):
+        turned = {"class": "NormalMap", "material": glass}
+        for material in (glass, clear, leaf, mixed, turned):
             for engine in PATHS:
                 with self.subTest(f"{material['class']} {engine}"):
                     above = {**pane(1, ""), "material": material}
@@ -209,8 +281,9 @@ class LightThatPasses(Case):
                 entry["subject"].removesuffix(".transmittance")
                 for item in json.loads(said)["items"]
                 for entry in item["entries"]
-                if entry["needed"] and entry["subject"].endswith(".transmittance")
-            } - {"rt_Material"}
+                if entry["subject"].endswith(".transmittance")
+                and entry["reason"].startswith("for `illuminate`")
+            }
 
         opaque = {"class": "Principled", "roughness": 0}
         pairs = {"first": opaque, "second": {"class": "Lambert"}, "amount": 0.5}
@@ -249,10 +322,36 @@ class LightThatPasses(Case):
             "constructor": {"eye": [0.5, 1.2, 4], "target": [0, 0.4, 0], "up": [0, 1, 0]},
         }
         scene["import"].append("std.cameras")
-        picture, _ = self.render_scene(scene, "-q")
-        for way in WAYS:
-            other, _ = self.render_scene(scene, "-q", *way)
-            self.assert_same_bits(picture, other, way)
+        searched = json.loads(json.dumps(scene))
+        searched["render"]["engine"] = "volume"
+        searched["helpers"] = {"fog": {"class": "HomogeneousMedium", "anisotropy": 0.5}}
+        searched["background"] = self.sun_in_an_image()
+        searched["objects"] += [
+            {
+                "primitive": {"class": "Box", "low": [-0.2, 0.9, 0.5], "high": [1, 1.5, 1]},
+                "material": {"class": "MediumBoundary", "interior": "fog"},
+            },
+            *(
+                {
+                    "primitive": {"class": "Sphere", "center": [x, 2.5, 0], "radius": 0.1},
+                    "material": {"class": "Emitter", "radiance": [9, 9, 9]},
+                }
+                for x in (-0.5, 0.5)
+            ),
+        ]
+        # Nothing passes, but that is not known if parameters are kept.
+        fog_alone = json.loads(json.dumps(searched))
+        fog_alone["objects"] = [
+            searched["objects"][0],
+            {**scene["objects"][-1], "material": {"class": "Principled"}},
+            ball({"class": "Dielectric", "alpha": 0.2, "interior": "fog"}),
+            searched["objects"][-1],
+        ]
+        for one, spp in ((scene, 1), (searched, 8), (fog_alone, 1)):
+            picture, _ = self.render_scene(one, "-q", f"--spp={spp}")
+            for way in WAYS:
+                other, _ = self.render_scene(one, "-q", f"--spp={spp}", *way)
+                self.assert_same_bits(picture, other, way)
 
 
 if __name__ == "__main__":

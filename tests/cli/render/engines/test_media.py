@@ -192,45 +192,44 @@ class ClosedForms(MediaCase):
             self.scene(medium, depth=200, background=SKY, spp=256)
             self.assert_color([1, 1, 1], 0.01)
 
-    @deep
-    def test_ways_to_find_light(self):
-        """A lamp in the medium, found by the search and by chance; and one behind the boundary, by
-        chance alone."""
-        ball = {"class": "Sphere", "center": [0.5, 0.2, 0], "radius": 0.25}
+    def found_in_both_ways(self, center, radius, spp, relative):
+        """The light of a lamp, in fog or behind its boundary, that the search and paths find, and
+        that of one which no search knows: the color of a ray."""
+        self.write(
+            "shone.rtsl",
+            "class Shone : rt_Material { void shade() { rt_SampleColor = color(9.0); } };",
+        )
         fog = {
             "class": "HomogeneousMedium",
             "scattering": [0.5, 0.6, 0.7],
             "absorption": 0.2,
             "anisotropy": 0.3,
         }
-        lamp = {"primitive": ball, "material": {"class": "Emitter", "radiance": 9}}
-        self.scene(fog, ([-2, -2, -2], [2, 2, 2]), spp=4096, objects=[lamp], height=3)
-        inside, bounds = self.estimate_by_seeds()
-        self.scene(
-            fog,
-            ([-2, -2, -2], [2, 2, 2]),
-            spp=4096,
-            height=3,
-            objects=[{"primitive": ball, "material": {"class": "Shone"}}],
-            **{
-                "import": [
-                    "std.cameras",
-                    "std.primitives",
-                    "std.materials",
-                    "std.media",
-                    "shone.rtsl",
-                ]
-            },
-        )
-        # The same light, which no search knows: the color of a ray.
-        self.write(
-            "shone.rtsl",
-            "class Shone : rt_Material { void shade() { rt_SampleColor = color(9.0); } };",
-        )
-        by_chance, other_bounds = self.estimate_by_seeds()
-        for one, other, *both in zip(inside, by_chance, bounds, other_bounds):
+        ways = []
+        for material in ({"class": "Emitter", "radiance": 9}, {"class": "Shone"}):
+            lamp = {"class": "Sphere", "center": center, "radius": radius}
+            self.scene(
+                fog,
+                ([-2, -2, -2], [2, 2, 2]),
+                spp=spp,
+                height=3,
+                objects=[{"primitive": lamp, "material": material}],
+                **{"import": ["std", "shone.rtsl"]},
+            )
+            ways.append(self.estimate_by_seeds())
+        (found, bounds), (by_chance, other_bounds) = ways
+        for one, other, *both in zip(found, by_chance, bounds, other_bounds):
             self.assertAlmostEqual(one, other, delta=math.hypot(*both))
-            self.assertLess(math.hypot(*both), 0.12 * other)
+            self.assertLess(math.hypot(*both), relative * other)
+            self.assertLess(both[0], both[1])
+
+    def test_ways_to_find_light_beyond_a_boundary(self):
+        self.found_in_both_ways([0, 0.5, 4], 1, 256, 0.2)
+
+    @deep
+    def test_ways_to_find_light(self):
+        self.found_in_both_ways([0.5, 0.2, 0], 0.25, 4096, 0.12)
+        self.found_in_both_ways([0.5, 0.2, 2.5], 0.25, 4096, 0.2)
 
 
 # Rough glass that sends out what its mirrors lose by masking each other: as the engine draws
