@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <linux/sockios.h>
 #include <memory>
 #include <netdb.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
@@ -99,6 +101,12 @@ bool TevConnection::fail(int error) {
   return false;
 }
 
+/// The bytes that the viewer has not accepted yet.
+static int queuedBytes(int socket) {
+  int bytes = 0;
+  return ioctl(socket, SIOCOUTQ, &bytes) == 0 ? bytes : 0;
+}
+
 bool TevConnection::send(const std::string &bytes) {
   for (std::size_t sent = 0; sent < bytes.size() && whyNot.empty();) {
     const ssize_t count =
@@ -106,8 +114,10 @@ bool TevConnection::send(const std::string &bytes) {
     if (count >= 0) {
       sent += static_cast<std::size_t>(count);
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+      // There is room when a third of the queue is free, for which a slow viewer may take longer.
+      const int before = queuedBytes(socket);
       pollfd waiting = {socket, POLLOUT, 0};
-      if (poll(&waiting, 1, 1000 * longestSeconds) == 0)
+      if (poll(&waiting, 1, 1000 * longestSeconds) == 0 && queuedBytes(socket) >= before)
         return fail(EAGAIN);
     } else if (errno != EINTR) {
       return fail(errno);

@@ -31,10 +31,11 @@ SKY = {
 
 class Viewer:
     """Takes one connection, and keeps the pictures that its messages make. With `most`, hangs up
-    after that many bytes. With `reads`, an event, reads nothing before it is set."""
+    after that many bytes. With `reads`, an event, reads nothing before it is set, and for
+    `slow_seconds` after that some bytes at a time."""
 
-    def __init__(self, most=None, reads=None, family=socket.AF_INET):
-        self.most, self.reads = most, reads
+    def __init__(self, most=None, reads=None, family=socket.AF_INET, slow_seconds=0):
+        self.most, self.reads, self.slow_seconds = most, reads, slow_seconds
         self.pictures, self.updates, self.order = {}, 0, []
         self.server = socket.socket(family)
         if reads:
@@ -51,6 +52,11 @@ class Viewer:
             if self.reads:
                 self.reads.wait()
             data = b""
+            end = time.monotonic() + self.slow_seconds
+            while time.monotonic() < end:
+                data += connection.recv(1024)
+                time.sleep(0.05)
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
             while self.most is None or len(data) < self.most:
                 part = connection.recv(1 << 16)
                 if not part:
@@ -196,9 +202,10 @@ class Tev(Case):
         return error
 
     def test_a_slow_viewer_delays_nothing(self):
-        """It reads nothing before the file is there, and then shows the last picture."""
-        for options in (("--spp", "1"), ("--time", "1500ms")):
-            viewer = Viewer(reads=threading.Event())
+        """It reads nothing before the file is there, and shows the last picture in the end, also if
+        it accepts little for longer than one that accepts nothing is waited for."""
+        for seconds, options in ((7, ("--spp", "1")), (0, ("--time", "1500ms"))):
+            viewer = Viewer(reads=threading.Event(), slow_seconds=seconds)
             error = self.until_the_file_is_there(viewer, *options)
             self.assertNotIn("W2869", error)
             _, _, channels = viewer.pictures["a.exr"]
