@@ -187,6 +187,7 @@ class ClosedForms(MediaCase):
         """A medium that absorbs nothing cannot be told from a sky of 1, however it scatters."""
         for medium in (
             {"class": "HomogeneousMedium", "scattering": 2, "anisotropy": 0.7},
+            {"class": "HomogeneousMedium", "scattering": [3, 2.5, 0.5], "anisotropy": 0.3},
             self.grid([0, 1, 0.5, 0.25] * 4, [4, 2, 2], scattering=3, anisotropy=-0.5),
         ):
             self.scene(medium, depth=200, background=SKY, spp=256)
