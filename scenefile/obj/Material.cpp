@@ -28,7 +28,8 @@ struct Map {
   std::array<double, 2> scale{1, 1}, offset{0, 0};
   bool isClamped = false;
   double bump = 1;
-  int channel = 0; // red, green, blue, alpha
+  int channel = 0;              // red, green, blue, alpha
+  std::optional<bool> isLinear; // unless the use decides
 };
 
 class MaterialMaker {
@@ -153,6 +154,8 @@ private:
         const std::string channels = "rgbm"; // m: the matte channel, alpha
         const std::size_t found = channels.find(words[at++]);
         map.channel = found == std::string::npos ? 0 : int(found);
+      } else if (option == "-colorspace") { // not in the format's description, but in use
+        map.isLinear = words[at++] == "linear";
       } else {
         unknown += fmt::format("{}`{}`", unknown.empty() ? "" : ", ", option);
         std::array<double, 2> ignored;
@@ -194,7 +197,7 @@ private:
     JsonValue path = text(source, mention.beside(beside));
     path.fromOverride = mention.isFromOverride;
     JsonValue made = gltf::object(source, {{"file", std::move(path)}});
-    set(made, "colorSpace", text(source, isColor ? "srgb" : "linear"));
+    set(made, "colorSpace", text(source, map.isLinear.value_or(!isColor) ? "linear" : "srgb"));
     if (map.isClamped)
       set(made, "wrap", list(source, {text(source, "clamp"), text(source, "clamp")}));
     return made;

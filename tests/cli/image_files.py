@@ -63,3 +63,40 @@ def tiff(width, height, pixel, form, sample_format):
         + struct.pack("<3H", *[sample_format] * 3)
     )
     return (head + directory).ljust(200, b"\0") + data
+
+
+def jpeg(width, height, pixel):
+    """A baseline JPEG file of three channels: each block of 8 by 8 pixels has one color, that of
+    its upper left pixel, within a rounding error."""
+    bits = ""
+    before = [0, 0, 0]
+    for y in range(0, height, 8):
+        for x in range(0, width, 8):
+            red, green, blue = pixel(x, y)
+            luma = 0.299 * red + 0.587 * green + 0.114 * blue
+            for i, value in enumerate((luma, (blue - luma) / 1.772, (red - luma) / 1.402)):
+                mean = round(8 * (value - 128 if i == 0 else value))  # of a block: 8 times its mean
+                change, before[i] = mean - before[i], mean
+                size = abs(change).bit_length()
+                bits += f"{size:04b}"
+                if size:
+                    bits += f"{change if change > 0 else change + 2**size - 1:0{size}b}"
+                bits += "0"  # no other frequencies
+    bits += "1" * (-len(bits) % 8)
+    data = bytes(int(bits[i : i + 8], 2) for i in range(0, len(bits), 8))
+
+    def segment(marker, content):
+        return bytes([0xFF, marker]) + struct.pack(">H", 2 + len(content)) + content
+
+    components = b"".join(bytes([i, 0x11, 0]) for i in (1, 2, 3))  # none has fewer pixels
+    return (
+        b"\xff\xd8"
+        + segment(0xE0, b"JFIF\0\x01\x01" + bytes([0, 0, 1, 0, 1, 0, 0]))
+        + segment(0xDB, b"\0" + bytes([1] * 64))  # nothing is quantised but by rounding
+        + segment(0xC0, struct.pack(">BHHB", 8, height, width, 3) + components)
+        + segment(0xC4, b"\x00" + bytes([0, 0, 0, 12] + [0] * 12) + bytes(range(12)))  # 4 bits each
+        + segment(0xC4, b"\x10" + bytes([1] + [0] * 15) + b"\0")
+        + segment(0xDA, bytes([3, 1, 0, 2, 0, 3, 0, 0, 63, 0]))
+        + data.replace(b"\xff", b"\xff\0")
+        + b"\xff\xd9"
+    )

@@ -92,10 +92,13 @@ OIIO::TypeDesc typeFor(const OIIO::ImageSpec &spec) {
   }
 }
 
-/// Opens bytes in memory; OpenImageIO chooses a reader by the ending of a name, or tries all.
+/// Opens bytes in memory; OpenImageIO chooses a reader by the ending of a name, or tries all. Where
+/// there is a configuration, its reader of JPEG files takes the memory only from there.
 std::unique_ptr<OIIO::ImageInput> openBytes(const void *bytes, std::uint64_t size,
-                                            const OIIO::ImageSpec &config,
+                                            OIIO::ImageSpec config,
                                             OIIO::Filesystem::IOMemReader &memory) {
+  OIIO::Filesystem::IOProxy *const proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   constexpr unsigned char jpeg[] = {0xff, 0xd8, 0xff};
   const bool isJpeg = size > sizeof jpeg && std::memcmp(bytes, jpeg, sizeof jpeg) == 0;
   auto input = OIIO::ImageInput::open(isJpeg ? "bytes.jpg" : "bytes", &config, &memory);

@@ -10,7 +10,7 @@ import unittest
 
 from harness import numbers_of
 from image_case import ImageCase
-from image_files import png, hdr, tiff
+from image_files import hdr, jpeg, png, tiff
 from image_oracle import Oracle, decode_srgb, encode_srgb
 
 
@@ -94,6 +94,20 @@ class Images(ImageCase):
             "tiff of floats",
             tiff(5, 4, lambda x, y: [v * 1e20 for v in pixel(x, y)], "f", 3),
             lambda x, y, z: (*(v * 1e20 for v in pixel(x, 3 - y)), 1.0),
+        )
+        block = lambda x, y: pixel(x // 8, y // 8)
+        self.write("jpeg", jpeg(24, 16, block))
+        cases.append(
+            (
+                Oracle(
+                    (24, 16, 1),
+                    lambda x, y, z: (*(decode_srgb(v / 255) for v in block(x, 15 - y)), 1.0),
+                    ["repeat"] * 3,
+                    "bilinear",
+                ),
+                {"file": "jpeg", "filter": "bilinear"},
+                0.01,  # a code or two: luma and chroma are rounded
+            )
         )
         self.write_exr("exr", 5, 4, 0.25)
         add("exr", None, lambda x, y, z: (0.25, 0.25, 0.25, 1.0))

@@ -10,6 +10,8 @@ import unittest
 
 from exr_files import channels
 from harness import DIAGNOSED, EXAMPLES, Case
+from image_files import jpeg, png
+from image_oracle import encode_srgb
 
 MODEL = EXAMPLES / "gltf"
 SMALL = ("--size", "24x16", "--spp", "2", "-O", "0", "-q")
@@ -164,7 +166,7 @@ class Gltf(Case):
         self.write("front.rtsl", FRONT)
         scene = {
             "rtsl": 1,
-            "import": ["front.rtsl"],
+            "import": ["std", "front.rtsl"],
             "camera": {"class": "Front"},
             "objects": objects,
             "background": [1, 1, 1],
@@ -210,6 +212,48 @@ class Gltf(Case):
             for one, other in zip(*means):
                 self.assertAlmostEqual(one, other, delta=1e-3)
             self.assertLess(max(means[0]), 0.99)
+
+    def test_images_wherever_they_are(self):
+        """A file, its bytes in the JSON, and in a buffer."""
+        colors = {(0, 0): (250, 20, 60), (1, 0): (0, 128, 255)}
+        pixel = lambda x, y: colors[x // 8, y // 8]
+        for name, mime, data in (
+            ("a.png", "image/png", png(16, 8, pixel)),
+            ("a.jpg", "image/jpeg", jpeg(16, 8, pixel)),
+        ):
+            self.write(name, data)
+            text = base64.b64encode(bytes(8) + data).decode()
+            document = {
+                "asset": {"version": "2.0"},
+                "buffers": [
+                    {
+                        "byteLength": 8 + len(data),
+                        "uri": f"data:application/octet-stream;base64,{text}",
+                    }
+                ],
+                "bufferViews": [{"buffer": 0, "byteOffset": 8, "byteLength": len(data)}],
+                "images": [
+                    {"uri": name},
+                    {"uri": f"data:{mime};base64,{base64.b64encode(data).decode()}"},
+                    {"bufferView": 0, "mimeType": mime},
+                ],
+            }
+            self.write("images.gltf", json.dumps(document))
+            square = {"class": "Parallelogram", "constructor": [[0, 0, 0], [2, 0, 0], [0, 1, 0]]}
+            pictures = []
+            for image in (
+                {"file": name},
+                *({"file": "images.gltf", "part": f"images.{i}"} for i in range(1, 3)),
+            ):
+                pattern = {"class": "ImageTexture", "image": {**image, "filter": "nearest"}}
+                material = {"class": "Emitter", "radianceMap": pattern, "isTwoSided": True}
+                pictures.append(self.front({"primitive": square, "material": material}))
+            self.assertEqual(pictures[1], pictures[0], name)
+            self.assertEqual(pictures[2], pictures[0], name)
+            for i, channel in enumerate("RGB"):
+                for at, side in enumerate((colors[0, 0], colors[1, 0])):
+                    seen = pictures[0][channel][4 * at]
+                    self.assertAlmostEqual(encode_srgb(seen) * 255, side[i], delta=2.5)
 
     def test_all_mistakes_are_told_at_once(self):
         self.document["materials"][1]["pbrMetallicRoughness"]["metallicFactor"] = 2

@@ -131,6 +131,17 @@ class Materials(ObjCase):
         )
         means = json.loads(self.run_rtslc("compare", "p.exr", "p.exr", "--json")[0])["means"][0]
         self.assert_color(means, [0.5, 0, 0])
+        # A gray of half the code, as a color of the screen and as a number.
+        (self.folder / "gray.png").write_bytes(png([[(128, 128, 128)]]))
+        for option, value in (
+            ("", 0.2159),
+            ("-colorspace sRGB", 0.2159),
+            ("-colorspace linear", 0.502),
+        ):
+            self.materials(f"map_Kd {option} -s 1 1 1 gray.png")
+            left, _, warnings = self.halves()
+            self.assert_color(left, [value] * 3)
+            self.assertEqual(warnings, "")
         # Twice as often: the same quarter at each corner.
         self.materials("map_Kd -s 2 2 2 -o 0 0 0 textures/four squares.png")
         left, _, _ = self.halves()
@@ -311,7 +322,7 @@ class Models(ObjCase):
                     "camera": {"model": "squares.obj"},
                     "objects": [{"model": "squares.obj"}],
                     "background": {"class": "GradientSky", "ground": [0.42, 0.42, 0.4]},
-                    "render": {"engine": "path", "depth": 8},
+                    "render": {"engine": "path", "depth": 8, "sampler": "sobol"},
                 }
             ),
         )
