@@ -216,6 +216,7 @@ struct SceneDescription {
   RenderSettings render;
   std::optional<std::array<float, 2>> shutter; // `render.shutter`: when it opens and closes
   runtime::LampChoice lampChoice = runtime::LampChoice::Automatic; // `render.lightSampler`
+  std::optional<runtime::Sampler> sampler;                         // `render.sampler`
   /// `render.editable`: classes, or members of a class as "Class.member".
   std::vector<LocatedName> editable;
   std::vector<Warning> warnings;

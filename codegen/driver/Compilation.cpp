@@ -24,7 +24,9 @@ const MachineCode &Compilation::machineCode() const {
 static bool linkForScene(Compilation &compilation) {
   const CompileOptions &options = compilation.options;
   LinkRequest request = *compilation.input.scene;
-  request.features |= options.undefined | options.sampler;
+  request.features |= options.undefined;
+  if (options.sampler)
+    request.features = (request.features & ~RTSL_FEATURE_SAMPLERS) | *options.sampler;
   return link(*compilation.ir, *compilation.input.module, request, options.colorComponents,
               compilation.diagnostics, *compilation.program, compilation.findings,
               options.floatingPoint);

@@ -87,8 +87,8 @@ struct CompileOptions {
   bool rendersPicture = true;
   /// Megakernels count the steps of warps (runtime/device/organisations/StepCounts.h).
   bool countsSteps = false;
-  /// RTSL_FEATURE_SAMPLER_*, or 0: what the numbers that samples draw are.
-  std::uint32_t sampler = 0;
+  /// RTSL_FEATURE_SAMPLER_*, or 0, in place of the scene's: what the numbers that samples draw are.
+  std::optional<std::uint32_t> sampler = {};
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.
   std::uint32_t undefined = 0;
   /// Machine code for the host that earlier programs had is used again; null: none is kept.

@@ -306,6 +306,11 @@ typedef enum RtslLightSampler {
   RTSL_LIGHTS_BY_TREE
 } RtslLightSampler;
 int rtslSceneSetLightSampler(RtslScene *scene, RtslLightSampler sampler);
+/* The random numbers of samples: independent of each other, or spread evenly among the samples of a
+ * pixel by the sequence R2, or by Sobol's with Owen's scrambling; as the shaders were compiled
+ * unless it is set. */
+typedef enum RtslSampler { RTSL_INDEPENDENT, RTSL_R2, RTSL_SOBOL } RtslSampler;
+int rtslSceneSetSampler(RtslScene *scene, RtslSampler sampler);
 int rtslSceneSetCamera(RtslScene *scene, RtslObject camera);
 /* Samples have times between these two, 0 <= open <= close <= 1. Without it they have times from 0
  * to 1 if something moves. */

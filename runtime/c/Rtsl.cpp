@@ -295,6 +295,19 @@ int rtslSceneSetLightSampler(RtslScene *scene, RtslLightSampler sampler) {
   });
 }
 
+int rtslSceneSetSampler(RtslScene *scene, RtslSampler sampler) {
+  return guarded(0, {{scene, "scene"}}, [&] {
+    constexpr runtime::Sampler samplers[] = {runtime::Sampler::Independent, runtime::Sampler::R2,
+                                             runtime::Sampler::Sobol};
+    rtsl::c::requireChoice(sampler, unsigned(std::size(samplers)), "sampler");
+    if (scene->renderer)
+      scene->kept = scene->renderer->takeTrees();
+    scene->renderer.reset(); // before the program that it runs
+    scene->scene.setSampler(samplers[sampler]);
+    return 1;
+  });
+}
+
 int rtslSceneSetException(RtslScene *scene, RtslObject exception) {
   return guarded(0, {{scene, "scene"}}, [&] {
     scene->scene.setException(exception);

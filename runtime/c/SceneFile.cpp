@@ -82,6 +82,8 @@ RtslScene load(const std::shared_ptr<const runtime::Program> &program, const std
       return findBuffer(program->find(name), member);
     });
     RtslScene made(scene::buildScene(description, program));
+    if (description.sampler)
+      made.scene.setSampler(*description.sampler);
     made.file = file;
     made.program = program;
     made.hasShutter = description.shutter.has_value();

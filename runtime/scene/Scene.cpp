@@ -228,6 +228,12 @@ void Scene::setLampChoice(LampChoice choice) {
   self->emitters.reset();
   self->lampChoice = choice;
 }
+void Scene::setSampler(Sampler sampler) {
+  auto changed = std::make_shared<Program>(program());
+  std::uint32_t &features = changed->slots.features;
+  features = (features & ~RTSL_FEATURE_SAMPLERS) | featuresOf(sampler);
+  useProgram(std::move(changed));
+}
 void Scene::setException(RtslRef exception) {
   self->cameraAndLights.setException(self->objects, exception);
 }

@@ -109,6 +109,8 @@ public:
   void setBackground(RtslRef miss);
   /// How `illuminate(P)` chooses one of the surfaces that shine.
   void setLampChoice(LampChoice choice);
+  /// Changes the sampler of a program that is compiled C++; in others it is a constant of the code.
+  void setSampler(Sampler sampler);
   /// Sets the object that determines the color of samples that end with an exception, in programs
   /// with RTSL_FEATURE_EXCEPTIONS.
   void setException(RtslRef exception);

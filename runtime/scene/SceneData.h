@@ -41,6 +41,17 @@ struct Placement {
 /// or by a tree if there are many.
 enum class LampChoice : std::uint8_t { Automatic, ByPower, ByTree };
 
+/// The random numbers of samples: independent of each other, or spread evenly among the samples of
+/// a pixel (runtime/device/ray/Sampler.h).
+enum class Sampler : std::uint8_t { Independent, R2, Sobol };
+
+/// RTSL_FEATURE_SAMPLER_* of programs with this sampler, or 0.
+constexpr std::uint32_t featuresOf(Sampler sampler) {
+  return sampler == Sampler::R2      ? RTSL_FEATURE_SAMPLER_R2
+         : sampler == Sampler::Sobol ? RTSL_FEATURE_SAMPLER_SOBOL
+                                     : 0;
+}
+
 /// A box. A side may be infinite.
 using Bounds = RtslBox;
 

@@ -39,6 +39,21 @@ static void readLightSampler(const JsonValue &value, SceneDescription &scene) {
   throw Error(message::noSuchLightSampler(value.string), value.place());
 }
 
+/// The random numbers of samples.
+static void readSampler(const JsonValue &value, SceneDescription &scene) {
+  expect(value, Kind::String, "`sampler`");
+  constexpr std::pair<const char *, runtime::Sampler> samplers[] = {
+      {"independent", runtime::Sampler::Independent},
+      {"r2", runtime::Sampler::R2},
+      {"sobol", runtime::Sampler::Sobol}};
+  for (const auto &[name, sampler] : samplers)
+    if (value.string == name) {
+      scene.sampler = sampler;
+      return;
+    }
+  throw Error(message::noSuchRandomSampler(value.string), value.place());
+}
+
 static void readEditable(const JsonValue &value, SceneDescription &scene) {
   expect(value, Kind::Array, "`editable`");
   for (const JsonValue &name : value.elements) {
@@ -71,12 +86,15 @@ const JsonValue *readRender(const JsonValue &value, const JsonValue *rayGenerati
   expect(value, Kind::Object, "`render`");
   errors.attempt([&] {
     checkKeys(value,
-              {"engine", "size", "spp", "depth", "seed", "shutter", "lightSampler", "editable"},
+              {"engine", "size", "spp", "depth", "seed", "sampler", "shutter", "lightSampler",
+               "editable"},
               "`render`");
   });
   const JsonValue *libraryEngine = nullptr;
   if (const JsonValue *shutter = value.find("shutter"))
     errors.attempt([&] { readShutter(*shutter, scene); });
+  if (const JsonValue *sampler = value.find("sampler"))
+    errors.attempt([&] { readSampler(*sampler, scene); });
   if (const JsonValue *sampler = value.find("lightSampler"))
     errors.attempt([&] { readLightSampler(*sampler, scene); });
   if (const JsonValue *editable = value.find("editable"))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """interface.py SOURCE: docs/cpp-interface.md shows the example as it is, and says for each key of
-the scene schema how a program says the same."""
+the scene schema how a program says the same; tests call every function."""
 import json
 import pathlib
 import re
@@ -54,5 +54,14 @@ def check_program():
         assert f"\n{text}```\n" in page, f"docs/cpp-interface.md shows another {file}"
 
 
+def check_calls():
+    """Every function is called by a test in C or C++, or by an example, which tests run."""
+    files = [*source.glob("tests/cpp/**/*.c*"), *source.glob("examples/c*-api/*.c*")]
+    called = set(re.findall(r"\b(rtsl[A-Z]\w*)\(", "".join(file.read_text() for file in files)))
+    declared = set(re.findall(r"\b(rtsl[A-Z]\w*)\(", header))
+    assert declared and declared <= called, declared - called
+
+
 check_table()
 check_program()
+check_calls()

@@ -53,7 +53,7 @@ cpp::Options printingOptions(const CppRequest &request, const CompileOptions &op
   printing.prints = request.features & RTSL_FEATURE_PRINT;
   printing.exceptions = request.features & RTSL_FEATURE_EXCEPTIONS;
   printing.undefined = options.undefined;
-  printing.sampler = options.sampler;
+  printing.sampler = options.sampler.value_or(0);
   printing.checkIndices = options.checkIndices;
   printing.fast = options.floatingPoint == FloatingPoint::Fast;
   printing.name = request.name;

@@ -55,6 +55,7 @@ extern "C" {
 // What random numbers are (Sampler.h); without any of these they are independent.
 #define RTSL_FEATURE_SAMPLER_R2 32u
 #define RTSL_FEATURE_SAMPLER_SOBOL 64u
+#define RTSL_FEATURE_SAMPLERS (RTSL_FEATURE_SAMPLER_R2 | RTSL_FEATURE_SAMPLER_SOBOL)
 
 /// A set of RTSL_FEATURE_*; a constant.
 uint32_t rtsl_features(RtslState *state);

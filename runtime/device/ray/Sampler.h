@@ -27,11 +27,9 @@
 
 namespace rtsl::device {
 
-constexpr uint32_t evenSamplers = RTSL_FEATURE_SAMPLER_R2 | RTSL_FEATURE_SAMPLER_SOBOL;
-
 /// The sampler of the program of `state`; 0: independent numbers.
 inline uint32_t evenSampler(const RtslState &state) {
-  return rtsl_features(const_cast<RtslState *>(&state)) & evenSamplers;
+  return rtsl_features(const_cast<RtslState *>(&state)) & RTSL_FEATURE_SAMPLERS;
 }
 
 /// A permutation of words in which a bit depends on the bits below it: applied to a word with its

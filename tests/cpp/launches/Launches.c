@@ -243,7 +243,8 @@ static void picture(RtslScene *scene, const char *file) {
 
 /* A scene of a file, at two frames and by two cameras, and another one that writes a buffer. */
 static void files(void) {
-  const char *first[] = {"camera=side", "frame=1"}, *second[] = {"camera=front", "frame=2"};
+  const char *first[] = {"camera=side", "frame=1"},
+             *second[] = {"camera=front", "frame=2", "render.sampler=r2"};
   const char *nowhere = "camera=nowhere";
   const double level = 0.25;
   uint32_t sizes[3];
@@ -254,7 +255,7 @@ static void files(void) {
   picture(scene, "first.exr");
   need(rtslSetMember(scene, rtslSceneFind(scene, "clay"), "level", &level, 1), "a named object");
   picture(scene, "level.exr");
-  need(rtslSceneReload(scene, second, 2), "another frame");
+  need(rtslSceneReload(scene, second, 3), "another frame");
   picture(scene, "second.exr");
   need(!rtslSceneReload(scene, &nowhere, 1), "a setting of a camera that is not there");
   picture(scene, "same.exr"); /* after a mistake the scene is as it was */
@@ -395,6 +396,7 @@ static void mistakes(void) {
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneLoadMeshPart(scene, "morph.gltf", "meshes.0.primitives.0", &one, 1) >= 0);
   EXPECT_FAILURE(rtslSceneSetLightSampler(scene, (RtslLightSampler)3));
+  EXPECT_FAILURE(rtslSceneSetSampler(scene, (RtslSampler)3));
   EXPECT_FAILURE(rtslMeshAttribute(scene, "grain", 1, &texel, 1, 0, (RtslAttributeSpace)5));
   sampling.wrap[2] = (RtslWrap)4;
   EXPECT_FAILURE(rtslSceneAddTexels(scene, &texel, 1, 1, 0, 1, &sampling));
@@ -425,6 +427,7 @@ int main(int count, char **arguments) {
   parts();
   passesOfFile();
   sources();
+  values();
   references();
   mistakes();
   return 0;

@@ -20,6 +20,9 @@ void need(int good, const char *what);
   }                                                                                                \
   printf("%s\n", rtslError())
 
+/* Given.c: references, colors and integers that a scene gives to objects. */
+void values(void);
+
 /* References.c: objects that others refer to, and that are replaced. */
 void references(void);
 

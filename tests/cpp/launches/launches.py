@@ -56,6 +56,7 @@ WORDS = (
     "meshes.0",
     "`weights` of `meshes.0.primitives.0` takes 2 numbers, not 1",
     "no light sampler has the number 3",
+    "no sampler has the number 3",
     "no space of attributes has the number 5",
     "no wrap has the number 4",
     "`scene` is null",
@@ -291,6 +292,42 @@ def write_sources(folder):
         )
 
 
+def write_given(folder):
+    """The scene that Given.c makes."""
+    (folder / "square.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 2\nproperty int stripe\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        "-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n3 3 0 1 2\n-2 3 0 2 3\n"
+    )
+
+    def square(x, material, **more):
+        return {
+            "mesh": "square.ply",
+            "material": material,
+            "transform": {"translate": [x, 0, 0]},
+            **more,
+        }
+
+    chosen = {"class": "Chosen", "constructor": [{"class": "Lit", "level": 0.75}]}
+    striped = {"class": "Striped"}
+    scene = {
+        "rtsl": 1,
+        "import": [f"{source}/tests/cpp/launches/Launches.rtsl"],
+        "camera": {"class": "Eye"},
+        "variables": {"tone": {"class": "Lit", "level": 0.5}},
+        "objects": [
+            square(-2.5, striped),
+            square(0, striped, variables={"tone": {"class": "Lit", "level": 2}}),
+            square(2.5, chosen),
+        ],
+        "background": [0.25, 0.5, 0.75],
+        "ambient": [0.5, 0.25, 0.125],
+        "render": {"size": [48, 32], "spp": 4, "sampler": "sobol"},
+    }
+    (folder / "given.json").write_text(json.dumps(scene))
+
+
 def write_model(folder):
     """An OBJ file with two materials of an MTL file, which are the library's, and a scene with it
     and two lamps."""
@@ -422,6 +459,7 @@ def compare(picture, *options, scene="scene.json"):
 with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
     write_scenes(pathlib.Path(name))
     write_sources(pathlib.Path(name))
+    write_given(pathlib.Path(name))
     os.chdir(name)
     said = run(launches, f"{source}/examples/bindless/tiles/00.png", 64).splitlines()
     run(rtslc, "run", "passes.json", "--out", "total=total.npy", "-q")
@@ -431,10 +469,11 @@ with tempfile.TemporaryDirectory(prefix="rtsl-launches-") as name:
         assert word in line, (word, said)
     compare("first.exr", "--camera=side", "--frame=1")
     compare("level.exr", "--camera=side", "--frame=1", "--set=materials.clay.level=0.25")
-    compare("second.exr", "--camera=front", "--frame=2")
-    compare("same.exr", "--camera=front", "--frame=2")
+    compare("second.exr", "--camera=front", "--frame=2", "--sampler=r2")
+    compare("same.exr", "--camera=front", "--frame=2", "--sampler=r2")
     compare("moving.exr", scene="moving.json")
     compare("parts.exr", scene="parts.json")
+    compare("given.exr", scene="given.json")
     write_model(pathlib.Path(name))
     run(models, "model.json", "model.exr")
     compare("model.exr", scene="model.json")

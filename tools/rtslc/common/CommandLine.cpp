@@ -188,7 +188,8 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
                                    {"r2", RTSL_FEATURE_SAMPLER_R2},
                                    {"sobol", RTSL_FEATURE_SAMPLER_SOBOL}},
             "the random numbers of samples: independent of each other, or spread evenly among the "
-            "samples of a pixel by the sequence R2, or by Sobol's with Owen's scrambling");
+            "samples of a pixel by the sequence R2, or by Sobol's with Owen's scrambling. Default: "
+            "the scene's");
   addChoice(command, "--undefined", options.compile.undefined,
             Choices<std::uint32_t>{{"leave", 0},
                                    {"bytes", RTSL_FEATURE_UNDEFINED_BYTES},

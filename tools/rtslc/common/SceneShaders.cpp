@@ -376,6 +376,8 @@ LinkRequest linkRequest(const scene::SceneDescription &description) {
   for (const scene::LocatedName &name : description.editable)
     request.editable.insert(name.text);
   request.engine = description.render.engine;
+  if (description.sampler)
+    request.features |= featuresOf(*description.sampler);
   if (description.exception)
     request.features |= RTSL_FEATURE_EXCEPTIONS;
   request.hasCounts = false;

@@ -108,9 +108,11 @@ runtime::Identity identityOf(const RenderInput &input) {
   all.push_back(
       {"the number of components of a color", fmt::format("{}", compile.colorComponents)});
   all.push_back({"`--fp`", nameOf(compile.floatingPoint)});
-  all.push_back({"the sampler", compile.sampler & RTSL_FEATURE_SAMPLER_SOBOL ? "sobol"
-                                : compile.sampler & RTSL_FEATURE_SAMPLER_R2  ? "r2"
-                                                                             : "independent"});
+  const std::uint32_t sampler = compile.sampler.value_or(
+      featuresOf(input.description.sampler.value_or(runtime::Sampler::Independent)));
+  all.push_back({"the sampler", sampler == RTSL_FEATURE_SAMPLER_SOBOL ? "sobol"
+                                : sampler == RTSL_FEATURE_SAMPLER_R2  ? "r2"
+                                                                      : "independent"});
   all.push_back({"`--adaptive`", yesOrNo(render.isAdaptive)});
   if (render.isAdaptive)
     all.push_back({"`--noise`", fmt::format("{}", input.noise)});

@@ -1,4 +1,4 @@
-"""`--sampler`: the same bits everywhere, the same picture with less noise, and no trace of it
+"""Samplers: the same bits everywhere, the same picture with less noise, and no trace of it
 without."""
 
 import json
@@ -68,6 +68,22 @@ class Samplers(Case):
             "render", self.scene, "-o", "b.exr", *SIZE, "--spp=2", "--checkpoint=a.ckpt"
         )
         self.assert_message(messages, "E0907", "the sampler is sobol there and independent here")
+
+    def test_a_scene_says_its_sampler(self):
+        """An option says another one; the scene's is part of a checkpoint."""
+        for sampler in ("independent", "r2", "sobol"):
+            self.render("a.exr", "--spp=3", f"--sampler={sampler}")
+            self.render("b.exr", "--spp=3", f"--set=render.sampler={sampler}")
+            self.assert_same_bits("a.exr", "b.exr", sampler)
+            self.render("b.exr", "--spp=3", f"--sampler={sampler}", "--set=render.sampler=r2")
+            self.assert_same_bits("a.exr", "b.exr", sampler)
+        self.render("a.exr", "--spp=1", "--checkpoint=a.ckpt", "--set=render.sampler=r2")
+        messages = self.diagnose(
+            "render", self.scene, "-o", "b.exr", *SIZE, "--spp=2", "--checkpoint=a.ckpt"
+        )
+        self.assert_message(messages, "E0907", "the sampler is r2 there and independent here")
+        messages = self.diagnose("check", self.scene, "--set=render.sampler=halton")
+        self.assert_message(messages, "E0808", "there is no sampler `halton`")
 
     def test_bad_values(self):
         _, error = self.run_rtslc(

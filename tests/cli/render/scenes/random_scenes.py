@@ -242,6 +242,8 @@ class RandomScene:
             scene["background"] = self.object("rt_Miss")
         if self.chance(0.2):
             scene["ambient"] = 0.1
+        if self.chance(0.4):
+            scene["render"]["sampler"] = self.rng.choice(["r2", "sobol"])
         return scene
 
 
