@@ -5,9 +5,11 @@
 find_program(RTSL_CLANG NAMES clang++-22 PATHS /usr/lib/llvm-22/bin REQUIRED)
 find_program(RTSL_LLVM_LINK NAMES llvm-link-22 llvm-link PATHS /usr/lib/llvm-22/bin REQUIRED)
 
-# No errno: a square root is then one instruction.
+# No errno: a square root is then one instruction. Loops that are to be unrolled may wait for the
+# program that makes their bounds constant.
 set(RTSL_BITCODE_FLAGS -std=c++17 -O2 -ffreestanding -nostdlib -ffp-contract=off -fno-math-errno
-    -fno-exceptions -fno-rtti -fno-threadsafe-statics -DRTSL_IN_PROGRAM -Wall -Wextra)
+    -fno-exceptions -fno-rtti -fno-threadsafe-statics -DRTSL_IN_PROGRAM -Wall -Wextra
+    -Wno-pass-failed)
 # The features are those of the host's baseline and no others, so that the code generator may inline
 # these functions into shaders. For a GPU the code generator replaces them by those of the requested
 # architecture.

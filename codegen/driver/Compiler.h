@@ -91,9 +91,13 @@ struct CompileOptions {
   std::optional<std::uint32_t> sampler = {};
   /// RTSL_FEATURE_UNDEFINED_*: fill uninitialised memory with a pattern. For tests.
   std::uint32_t undefined = 0;
-  /// Machine code for the host that earlier programs had is used again; null: none is kept.
+  /// Code that earlier programs had is used again; null: none is kept.
   std::shared_ptr<CodeCache> codeCache = {};
 };
+
+/// For CompileOptions::codeCache: with the code of earlier runs, if the user keeps it. Defined in
+/// rtslMachineCode.
+std::shared_ptr<CodeCache> keptCode();
 
 /// Makes the objects of a scene with a program that contains only constructors, defaults and
 /// bounds.

@@ -12,10 +12,7 @@
 #include "llvm/ExecutionEngine/JITLink/ELF_x86_64.h"
 #include "llvm/ExecutionEngine/JITLink/JITLinkMemoryManager.h"
 #include "llvm/ExecutionEngine/JITLink/x86_64.h"
-#include "llvm/IR/Module.h"
 #include "llvm/Support/MemoryBuffer.h"
-#include "llvm/Support/raw_ostream.h"
-#include "llvm/Target/TargetMachine.h"
 
 namespace rtsl::codegen {
 
@@ -167,14 +164,10 @@ private:
 
 } // namespace
 
-llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMachine &machine,
+llvm::Expected<NativeImage> makeNativeImage(const ObjectCode &object,
                                             llvm::ArrayRef<std::string> entries) {
-  llvm::Expected<ObjectCode> object = makeObjectCode(module, machine);
-  if (!object)
-    return object.takeError();
   auto graph = jitlink::createLinkGraphFromELFObject_x86_64(
-      llvm::MemoryBufferRef(llvm::StringRef(object->bytes.data(), object->bytes.size()),
-                            "host code"),
+      llvm::MemoryBufferRef(llvm::StringRef(object.bytes.data(), object.bytes.size()), "host code"),
       std::make_shared<orc::SymbolStringPool>());
   if (!graph)
     return graph.takeError();
@@ -183,7 +176,7 @@ llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMa
   if (result.error)
     return std::move(result.error);
   result.image.stackBytes =
-      object->stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
+      object.stackUse.bytes(/*rays=*/1, /*referenceChain=*/0); // it does not recurse
   return std::move(result.image);
 }
 

@@ -13,11 +13,6 @@
 #include <string>
 #include <vector>
 
-namespace llvm {
-class Module;
-class TargetMachine;
-} // namespace llvm
-
 namespace rtsl::codegen {
 
 struct NativeImage {
@@ -26,9 +21,11 @@ struct NativeImage {
   std::uint64_t stackBytes = 0;       // of the calling thread, at most
 };
 
-/// Compiles an optimised module for the host. It is an error if the module calls undefined
-/// functions, has writable data, or lacks an entry point.
-llvm::Expected<NativeImage> makeNativeImage(llvm::Module &module, llvm::TargetMachine &machine,
+struct ObjectCode;
+
+/// Links code for the host. It is an error if it calls undefined functions, has writable data, or
+/// lacks an entry point.
+llvm::Expected<NativeImage> makeNativeImage(const ObjectCode &object,
                                             llvm::ArrayRef<std::string> entries);
 
 } // namespace rtsl::codegen

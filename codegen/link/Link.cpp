@@ -122,6 +122,7 @@ bool link(mlir::ModuleOp ir, const typed::Module &module, const LinkRequest &req
     ir::attr::singlePrimitives.set(ir);
   const linking::ImageChannels imageChannels = linking::findImageChannels(context);
   linking::resolveSlots(context);
+  linking::findMethodsThatPassLight(context);
   linking::replaceLightMayPass(context);
   linking::findMeshMaterials(context);
   linking::dropUnknownChanges(context);

@@ -42,7 +42,7 @@ bool FunctionChecker::recordState(Use::Kind kind, typed::StateVariable variable,
                         variable == typed::StateVariable::LightDistance ||
                         variable == typed::StateVariable::LightColor;
   if (kind == Use::Kind::ReadState && ofALight && rules && rules->name == "shade" &&
-      illuminances == 0 && !isLit)
+      illuminances == 0 && !isLit && !written.has(variable))
     diagnostics.report(Code::lightOutsideIlluminance, range,
                        std::string("rt_") + typed::name(variable));
   use.what = std::string("rt_") + typed::name(variable);
@@ -210,6 +210,8 @@ ExprPtr FunctionChecker::checkState(const std::string &name, SourceRange range, 
     return errorExpr(range);
   if (access != Access::Write && !recordState(Use::Kind::ReadState, variable, range))
     return errorExpr(range);
+  if (access != Access::Read)
+    written = written | StateSet{variable};
   auto node = makeExpr<typed::StateExpr>(typeOf(variable, types), range);
   node->variable = variable;
   return node;

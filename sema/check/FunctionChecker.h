@@ -201,6 +201,7 @@ private:
   unsigned recursion = 0, treeDepth = 0;
   unsigned loops = 0, switches = 0, illuminances = 0;
   bool isLit = false; // a light was selected before, by its number
+  StateSet written;   // before, by the function itself
 };
 
 /// `+`, `<<`, ...

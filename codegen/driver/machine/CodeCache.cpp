@@ -1,7 +1,7 @@
 #include "codegen/driver/machine/CodeCache.h"
 
+#include "codegen/driver/Compiler.h"
 #include "codegen/driver/machine/CodeFiles.h"
-#include "codegen/emit/ObjectCode.h"
 
 #include <atomic>
 #include <map>
@@ -20,7 +20,7 @@ constexpr std::uint64_t programsOfPicture = 7;
 
 struct CodeCache::Implementation {
   struct Entry {
-    codegen::ObjectCode code;
+    std::string code;
     std::uint64_t program; // the last that used it
   };
 
@@ -37,6 +37,10 @@ CodeCache::CodeCache(std::unique_ptr<const CodeFiles> files)
 }
 CodeCache::~CodeCache() = default;
 
+std::shared_ptr<CodeCache> keptCode() {
+  return std::make_shared<CodeCache>(CodeFiles::open());
+}
+
 void CodeCache::beginProgram() {
   const std::lock_guard<std::mutex> lock(self->mutex);
   for (auto entry = self->entries.begin(); entry != self->entries.end();)
@@ -46,8 +50,8 @@ void CodeCache::beginProgram() {
   self->reused = self->read = 0;
 }
 
-codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
-                                      const std::function<codegen::ObjectCode()> &make) {
+std::string CodeCache::codeOf(const std::string &identity,
+                              const std::function<std::string()> &make) {
   {
     const std::lock_guard<std::mutex> lock(self->mutex);
     if (const auto found = self->entries.find(identity); found != self->entries.end()) {
@@ -56,10 +60,9 @@ codegen::ObjectCode CodeCache::codeOf(const std::string &identity,
       return found->second.code;
     }
   }
-  std::optional<codegen::ObjectCode> known =
-      self->files ? self->files->read(identity) : std::nullopt;
+  std::optional<std::string> known = self->files ? self->files->read(identity) : std::nullopt;
   self->read += known.has_value();
-  codegen::ObjectCode code = known ? std::move(*known) : make();
+  std::string code = known ? std::move(*known) : make();
   if (self->files && !known)
     self->files->write(identity, code);
   const std::lock_guard<std::mutex> lock(self->mutex);

@@ -1,8 +1,9 @@
-//===- CodeCache.h - machine code of earlier programs ---------------------===//
+//===- CodeCache.h - code of earlier programs -----------------------------===//
 //
 // Frames of a sequence, and pictures that are rendered again after a change, often have the same
-// code, or parts of it: what moves is in tables that the code reads. So machine code is kept by the
-// module that it was made of, from one program to the next, and in files from one run to the next.
+// code, or parts of it: what moves is in tables that the code reads. So machine code and PTX are
+// kept by the module that they were made of, from one program to the next, and in files from one
+// run to the next.
 //
 //===----------------------------------------------------------------------===//
 #pragma once
@@ -13,10 +14,6 @@
 #include <string>
 
 namespace rtsl {
-
-namespace codegen {
-struct ObjectCode;
-} // namespace codegen
 
 class CodeFiles;
 
@@ -30,10 +27,9 @@ public:
   /// A new program begins: forgets code that the programs of the previous picture did not use.
   void beginProgram();
 
-  /// The code of a module, which `identity` names with all that decides what code it gets. Calls
-  /// `make` if it is not known.
-  codegen::ObjectCode codeOf(const std::string &identity,
-                             const std::function<codegen::ObjectCode()> &make);
+  /// What is made of a module, as bytes; `identity` names the module with all that decides what
+  /// that is. Calls `make` if it is not known.
+  std::string codeOf(const std::string &identity, const std::function<std::string()> &make);
 
   /// How many modules of the program were found because an earlier program of this run had them.
   std::uint64_t reused() const;

@@ -1,6 +1,5 @@
 #include "codegen/driver/machine/CodeFiles.h"
 
-#include "codegen/emit/ObjectCode.h"
 #include "support/AtomicFile.h"
 
 #include "llvm/ADT/StringExtras.h"
@@ -93,7 +92,7 @@ std::string CodeFiles::pathOf(const std::string &identity) const {
   return fmt::format("{}/llvmcache-{}", folder, llvm::toHex(hash.final(), /*LowerCase=*/true));
 }
 
-std::optional<codegen::ObjectCode> CodeFiles::read(const std::string &identity) const {
+std::optional<std::string> CodeFiles::read(const std::string &identity) const {
   const auto file = llvm::MemoryBuffer::getFile(pathOf(identity), /*IsText=*/false,
                                                 /*RequiresNullTerminator=*/false,
                                                 /*IsVolatile=*/true); // read, not mapped
@@ -103,14 +102,13 @@ std::optional<codegen::ObjectCode> CodeFiles::read(const std::string &identity) 
   const llvm::StringRef code = text.drop_front(std::min(checksumDigits, text.size()));
   if (text.take_front(checksumDigits) != checksumOf({code.data(), code.size()}))
     return std::nullopt;
-  return codegen::readObjectCode(code);
+  return code.str();
 }
 
-void CodeFiles::write(const std::string &identity, const codegen::ObjectCode &code) const {
-  const std::string text = codegen::textOf(code);
-  const std::string checksum = checksumOf(text);
+void CodeFiles::write(const std::string &identity, const std::string &code) const {
+  const std::string checksum = checksumOf(code);
   try {
-    writeFileAtomically(pathOf(identity), {checksum, text});
+    writeFileAtomically(pathOf(identity), {checksum, code});
   } catch (const Error &) { // a full disk
   }
 }

@@ -1,8 +1,8 @@
-//===- CodeFiles.h - machine code of earlier runs -------------------------===//
+//===- CodeFiles.h - code of earlier runs ---------------------------------===//
 //
-// Half of the time until a small picture is there goes into generating machine code, and a scene
-// that is rendered again mostly gets the same. So it is kept in a folder of the user's, in a file
-// for each module, named by all that decides what code the module gets. No failure here is an
+// Half of the time until a small picture is there goes into generating code, and a scene that is
+// rendered again mostly gets the same. So it is kept in a folder of the user's, in a file for each
+// module, named by all that decides what code the module gets. No failure here is an
 // error: code that cannot be read is made again, and code that cannot be kept is not.
 //
 //===----------------------------------------------------------------------===//
@@ -13,10 +13,6 @@
 #include <string>
 
 namespace rtsl {
-
-namespace codegen {
-struct ObjectCode;
-} // namespace codegen
 
 /// May be used by several threads and processes at once.
 class CodeFiles {
@@ -31,9 +27,9 @@ public:
   ~CodeFiles();
 
   /// The code of the module that `identity` names; nothing if there is none, or it is damaged.
-  std::optional<codegen::ObjectCode> read(const std::string &identity) const;
+  std::optional<std::string> read(const std::string &identity) const;
 
-  void write(const std::string &identity, const codegen::ObjectCode &code) const;
+  void write(const std::string &identity, const std::string &code) const;
 
 private:
   explicit CodeFiles(std::string folder);

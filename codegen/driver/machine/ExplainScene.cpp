@@ -9,6 +9,8 @@
 #include "llvm/IR/Module.h"
 #include "llvm/IR/StructuralHash.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string>
@@ -74,8 +76,16 @@ void describeEvents(const typed::Module &module, const LinkRequest &request,
 }
 
 /// A hash of the structure of a program in LLVM IR.
-llvm::stable_hash fingerprint(const Compilation &compilation) {
-  return llvm::StructuralHash(*compilation.llvm->module, /*DetailedHash=*/true);
+llvm::stable_hash fingerprint(const LlvmCode &code) {
+  return llvm::StructuralHash(*code.module, /*DetailedHash=*/true);
+}
+
+/// The same once it is optimised, as text.
+std::string optimizedFingerprint(LlvmCode &code, const CompileOptions &options) {
+  return madeOf(code, "fingerprint", options, [&] {
+    optimize(code);
+    return fmt::format("{}", fingerprint(code));
+  });
 }
 
 /// Whether index checks change the program of a scene with these objects: the GPU's program, or, in
@@ -87,35 +97,41 @@ bool hasIndexChecks(const CompileInput &input, const CompileOptions &options,
   CompileOptions withoutChecks = options;
   withoutChecks.checkIndices = false;
   Diagnostics unheard(sources);
-  Compilation checked(input, options, unheard), unchecked(input, withoutChecks, unheard);
-  for (Compilation *compilation : {&checked, &unchecked}) {
-    compilation->facts = &facts;
-    reachMachine(*compilation);
-    compilation->llvm = std::make_shared<LlvmCode>(
-        megakernel(*compilation->ir, compilation->options, *compilation->program,
-                   options.floatingPoint != FloatingPoint::Double));
-  }
+  const auto code = [&](const CompileOptions &compile) {
+    Compilation compilation(input, compile, unheard);
+    compilation.facts = &facts;
+    reachMachine(compilation);
+    return megakernel(*compilation.ir, compilation.options, *compilation.program,
+                      options.floatingPoint != FloatingPoint::Double);
+  };
+  LlvmCode checked = code(options), unchecked = code(withoutChecks);
   // Optimisation takes most of the time, and most scenes have no index that needs a check.
-  if (fingerprint(checked) == fingerprint(unchecked))
-    return false;
-  optimize(*checked.llvm);
-  optimize(*unchecked.llvm);
-  return fingerprint(checked) != fingerprint(unchecked);
+  return fingerprint(checked) != fingerprint(unchecked) &&
+         optimizedFingerprint(checked, options) != optimizedFingerprint(unchecked, options);
 }
 
 /// The size of a scene's bound program on a GPU. Nothing if it cannot be linked.
 std::optional<ProgramSize> measure(Compilation &compilation) {
-  if (!machineCode().reachLlvm(compilation))
+  if (!reachMachine(compilation))
     return std::nullopt;
   ProgramSize size;
   size.frameBytes = compilation.report.frameSize();
   size.states = compilation.report.stateCount();
-  const llvm::Module &code = *compilation.llvm->module;
-  for (const llvm::Function &function : code)
-    size.instructions += function.getInstructionCount();
-  for (const llvm::GlobalVariable &global : code.globals())
-    if (global.isConstant() && global.hasInitializer())
-      size.constantBytes += code.getDataLayout().getTypeAllocSize(global.getValueType());
+  LlvmCode code = megakernel(*compilation.ir, compilation.options, *compilation.program,
+                             /*forGpu=*/false);
+  const std::string text = madeOf(code, "size", compilation.options, [&] {
+    optimize(code);
+    std::uint64_t instructions = 0, constantBytes = 0;
+    for (const llvm::Function &function : *code.module)
+      instructions += function.getInstructionCount();
+    for (const llvm::GlobalVariable &global : code.module->globals())
+      if (global.isConstant() && global.hasInitializer())
+        constantBytes += code.module->getDataLayout().getTypeAllocSize(global.getValueType());
+    return fmt::format("{} {}", instructions, constantBytes);
+  });
+  const auto [instructions, constantBytes] = llvm::StringRef(text).split(' ');
+  instructions.getAsInteger(10, size.instructions);
+  constantBytes.getAsInteger(10, size.constantBytes);
   return size;
 }
 

@@ -15,11 +15,6 @@
 
 #include "mlir/IR/Threading.h"
 #include "mlir/Transforms/Passes.h"
-#include "llvm/ADT/StringExtras.h"
-#include "llvm/Bitcode/BitcodeWriter.h"
-#include "llvm/Support/SHA256.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -131,28 +126,6 @@ void load(std::vector<codegen::ObjectCode> parts, std::vector<codegen::HostSymbo
 //===----------------------------------------------------------------------===//
 // Machine code
 //===----------------------------------------------------------------------===//
-
-/// All that decides what machine code a module gets: its bits, and how it is compiled.
-std::string identityOf(const LlvmCode &code) {
-  llvm::SmallVector<char, 0> bits;
-  llvm::raw_svector_ostream stream(bits);
-  llvm::WriteBitcodeToFile(*code.module, stream);
-  llvm::SHA256 hash;
-  hash.update(llvm::StringRef(bits.data(), bits.size()));
-  const codegen::MachineOptions &options = code.options;
-  return fmt::format("{} {} {} {} {} {}", llvm::toHex(hash.final()), options.optimization,
-                     options.isMegakernel, int(options.floatingPoint),
-                     code.machine->getTargetCPU().str(),
-                     code.machine->getTargetFeatureString().str());
-}
-
-codegen::ObjectCode toObject(LlvmCode code, const CompileOptions &options) {
-  const auto make = [&] {
-    codegen::optimize(*code.module, *code.machine, code.options);
-    return take(codegen::makeObjectCode(*code.module, *code.machine));
-  };
-  return options.codeCache ? options.codeCache->codeOf(identityOf(code), make) : make();
-}
 
 /// Calls `work(0)` ... `work(count - 1)`, on several threads if the context allows it. Rethrows an
 /// exception of one of them.

@@ -3,6 +3,7 @@
 
 #include "codegen/driver/Compilation.h"
 #include "codegen/driver/Steps.h"
+#include "codegen/driver/machine/CodeCache.h"
 #include "codegen/emit/Ptx.h"
 #include "codegen/emit/SceneTables.h"
 #include "codegen/emit/StepCosts.h"
@@ -15,6 +16,12 @@
 #include "codegen/emit/rewrites/gpu/AlignMembers.h"
 #include "codegen/link/Link.h"
 #include "runtime/program/DeviceBitcode.h"
+
+#include "llvm/ADT/StringExtras.h"
+#include "llvm/Bitcode/BitcodeWriter.h"
+#include "llvm/Support/SHA256.h"
+
+#include <fmt/format.h>
 
 #include <array>
 #include <cerrno>
@@ -368,16 +375,56 @@ void optimize(LlvmCode &code) {
   codegen::optimize(*code.module, *code.machine, code.options);
 }
 
-std::string toPtx(LlvmCode code, runtime::WaveFacts *facts) {
+/// All that decides what a module becomes: its bits, and how it is compiled.
+static std::string identityOf(const LlvmCode &code) {
+  llvm::SmallVector<char, 0> bits;
+  llvm::raw_svector_ostream stream(bits);
+  llvm::WriteBitcodeToFile(*code.module, stream);
+  llvm::SHA256 hash;
+  hash.update(llvm::StringRef(bits.data(), bits.size()));
+  const codegen::MachineOptions &options = code.options;
+  return fmt::format("{} {} {} {} {} {}", llvm::toHex(hash.final()), options.optimization,
+                     options.isMegakernel, int(options.floatingPoint),
+                     code.machine->getTargetCPU().str(),
+                     code.machine->getTargetFeatureString().str());
+}
+
+std::string madeOf(const LlvmCode &code, const char *kind, const CompileOptions &options,
+                   const std::function<std::string()> &make) {
+  if (!options.codeCache)
+    return make();
+  return options.codeCache->codeOf(fmt::format("{} {}", kind, identityOf(code)), make);
+}
+
+codegen::ObjectCode toObject(LlvmCode code, const CompileOptions &options) {
+  const std::string text = madeOf(code, "object", options, [&] {
+    optimize(code);
+    return codegen::textOf(take(codegen::makeObjectCode(*code.module, *code.machine)));
+  });
+  return codegen::readObjectCode(text).value();
+}
+
+// The facts of a wavefront are in a line before its PTX.
+std::string toPtx(LlvmCode code, const CompileOptions &options, runtime::WaveFacts *facts) {
+  const bool hasFacts = facts && code.organisation != Organisation::Megakernel;
   codegen::nameForPtx(*code.module);
-  optimize(code);
-  if (facts && code.organisation != Organisation::Megakernel) {
-    facts->groups = codegen::takeConstant(*code.module, "rtsl_record_groups").value();
-    // Not known of code that is not optimised.
-    facts->hasStacks =
-        codegen::takeConstant(*code.module, "rtsl_slots_have_stacks").value_or(1) != 0;
-  }
-  return take(codegen::printPtx(*code.module, *code.machine));
+  std::string text = madeOf(code, hasFacts ? "wavefront" : "ptx", options, [&] {
+    optimize(code);
+    std::string line;
+    if (hasFacts)
+      line = fmt::format(
+          "{} {}\n", codegen::takeConstant(*code.module, "rtsl_record_groups").value(),
+          // Not known of code that is not optimised.
+          int(codegen::takeConstant(*code.module, "rtsl_slots_have_stacks").value_or(1) != 0));
+    return line + take(codegen::printPtx(*code.module, *code.machine));
+  });
+  if (!hasFacts)
+    return text;
+  const auto [line, ptx] = llvm::StringRef(text).split('\n');
+  const auto [groups, hasStacks] = line.split(' ');
+  groups.getAsInteger(10, facts->groups);
+  facts->hasStacks = hasStacks == "1";
+  return ptx.str();
 }
 
 } // namespace rtsl::driver

@@ -7,6 +7,7 @@
 
 #include "codegen/driver/Compiler.h"
 #include "codegen/emit/LlvmModule.h"
+#include "codegen/emit/ObjectCode.h"
 #include "support/Error.h"
 
 #include "mlir/IR/BuiltinOps.h"
@@ -15,6 +16,7 @@
 #include "llvm/Support/Error.h"
 #include "llvm/Target/TargetMachine.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -107,7 +109,16 @@ codegen::MachineOptions gpuOptions(const CompileOptions &options);
 
 void optimize(LlvmCode &code);
 
+/// What `make` makes of code that is not optimised yet, and of nothing else: as
+/// CompileOptions::codeCache has it, if `kind` has been made of the same code before.
+std::string madeOf(const LlvmCode &code, const char *kind, const CompileOptions &options,
+                   const std::function<std::string()> &make);
+
+/// Optimises and compiles for the host.
+codegen::ObjectCode toObject(LlvmCode code, const CompileOptions &options);
+
 /// Optimises and prints. Sets the facts of a wavefront, if it is one.
-std::string toPtx(LlvmCode code, runtime::WaveFacts *facts = nullptr);
+std::string toPtx(LlvmCode code, const CompileOptions &options,
+                  runtime::WaveFacts *facts = nullptr);
 
 } // namespace rtsl::driver

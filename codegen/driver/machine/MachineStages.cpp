@@ -81,7 +81,7 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
   for (llvm::Function &function : *code.module)
     if (!function.hasLocalLinkage())
       function.addFnAttr(llvm::Attribute::NoInline); // the switch over states calls them
-  return toPtx(std::move(code));
+  return toPtx(std::move(code), options);
 }
 
 /// The PTX of a scene. Its last line is for those who assemble it themselves: a package states the
@@ -89,7 +89,7 @@ static std::string modulePtx(mlir::ModuleOp ir, const CompileOptions &options) {
 static std::string scenePtx(Compilation &compilation) {
   LlvmCode code = gpuKernel(compilation);
   const std::uint32_t registers = code.registers;
-  return toPtx(std::move(code)) +
+  return toPtx(std::move(code), compilation.options) +
          fmt::format("// rtslc: a thread may have {} registers (ptxas -maxrregcount={})\n",
                      registers, registers);
 }

@@ -19,9 +19,8 @@ static runtime::NativeImage hostImage(const Compilation &compilation) {
   bitcodes.push_back(runtime::hostMemoryBitcode());
   linkDeviceCode(code, bitcodes, kept);
   code.options.isMegakernel = true;
-  optimize(code);
   codegen::NativeImage image =
-      take(codegen::makeNativeImage(*code.module, *code.machine, hostEntries()));
+      take(codegen::makeNativeImage(toObject(std::move(code), options), hostEntries()));
   return {std::move(image.bytes), image.entries[0], image.entries[1],
           static_cast<std::uint32_t>(image.stackBytes)};
 }
@@ -42,7 +41,7 @@ bool compilePackage(const typed::Module &module, const LinkRequest &request,
   LlvmCode code = gpuKernel(compilation);
   const Organisation organisation = code.organisation;
   package.registers = code.registers;
-  package.ptx = toPtx(std::move(code), &package.wave);
+  package.ptx = toPtx(std::move(code), options, &package.wave);
   if (organisation != Organisation::Megakernel) {
     package.wave.states = std::uint32_t(compilation.program->stateNames.size());
     package.wave.isPersistent = organisation == Organisation::Persistent;

@@ -145,8 +145,8 @@ private:
           for (const Slot &slot : surfaceSlots)
             addMethods(slot.base, slot.method, by(does));
         if (sendsRaysToLights(op) && !std::exchange(areRaysToLights, true))
-          for (const Slot &slot : passingSlots)
-            for (FuncOp method : methodsThatPassLight(context, slot))
+          for (const auto &[slot, passing] : context.methodsThatPassLight)
+            for (FuncOp method : passing)
               add(method, by(does));
       }
       if (const std::uint32_t needs = needsOf(reader, op))

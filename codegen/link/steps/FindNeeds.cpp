@@ -180,9 +180,8 @@ std::vector<std::uint32_t> findNeedsOfClasses(const LinkContext &context, std::u
 
   llvm::SmallPtrSet<mlir::Operation *, 8> passing;
   if (lightPasses(context))
-    for (const Slot &slot : passingSlots)
-      for (mlir::func::FuncOp method : methodsThatPassLight(context, slot))
-        passing.insert(method);
+    for (const auto &[slot, found] : context.methodsThatPassLight)
+      passing.insert(found.begin(), found.end());
 
   std::vector<std::uint32_t> all;
   for (const LinkedClass &linked : context.classes) {

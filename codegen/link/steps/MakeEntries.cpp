@@ -114,7 +114,7 @@ void makeEntries(LinkContext &context) {
       makeSlot(context, slot);
   if (!context.request.isSampled && lightPasses(context))
     for (const Slot &slot : passingSlots)
-      if (!methodsThatPassLight(context, slot).empty())
+      if (context.methodsThatPassLight.count(slot.method))
         makeSlot(context, slot);
   makePayloadSlots(context);
   makeFeatures(context);

@@ -131,17 +131,14 @@ static bool isOfOtherEngines(const LinkContext &context, const Slot &slot) {
   return isOfClassicAlone && context.request.engine == runtime::Engine::Programs;
 }
 
-std::vector<FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot) {
-  std::vector<FuncOp> methods;
-  if (isOfOtherEngines(context, slot))
-    return methods;
+void findMethodsThatPassLight(LinkContext &context) {
   Black black(context);
-  for (const LinkedClass &linked : context.classes)
-    if (linked.isMet && linked.info->root == slot.base)
-      if (FuncOp method = findMethod(context, linked, slot.method))
-        if (!black.isWrittenBy(method))
-          methods.push_back(method);
-  return methods;
+  for (const Slot &slot : passingSlots)
+    for (const LinkedClass &linked : context.classes)
+      if (!isOfOtherEngines(context, slot) && linked.isMet && linked.info->root == slot.base)
+        if (FuncOp method = findMethod(context, linked, slot.method))
+          if (!black.isWrittenBy(method))
+            context.methodsThatPassLight[slot.method].push_back(method);
 }
 
 std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &context,
@@ -162,15 +159,11 @@ std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &
   return names;
 }
 
-static bool anyPassesLight(const LinkContext &context) {
-  return llvm::any_of(
-      passingSlots, [&](const Slot &slot) { return !methodsThatPassLight(context, slot).empty(); });
-}
-
 void replaceLightMayPass(LinkContext &context) {
   if (!ir::anyOperation(context.ir, [](auto *op) { return llvm::isa<ir::LightMayPassOp>(op); }))
     return;
-  const bool mayPass = ir::anyOperation(context.ir, isLitBySurface) && anyPassesLight(context);
+  const bool mayPass =
+      ir::anyOperation(context.ir, isLitBySurface) && !context.methodsThatPassLight.empty();
   for (auto function : context.ir.getOps<FuncOp>()) {
     bool found = false;
     function.walk([&](ir::LightMayPassOp op) {
@@ -186,7 +179,7 @@ void replaceLightMayPass(LinkContext &context) {
 }
 
 bool lightPasses(const LinkContext &context) {
-  return ir::anyOperation(context.ir, sendsRaysToLights) && anyPassesLight(context);
+  return ir::anyOperation(context.ir, sendsRaysToLights) && !context.methodsThatPassLight.empty();
 }
 
 } // namespace rtsl::linking

@@ -67,6 +67,9 @@ struct LinkContext {
   std::vector<RayType> rayTypes = {};
   std::set<std::string> meshMaterials = {}; // classes of materials that may be on a mesh
   std::vector<MeshAttribute> meshAttributes = {};
+  // of materials, by the name of the slot of passingSlots: those that let light of the scene's
+  // lights pass surfaces
+  std::map<std::string, std::vector<mlir::func::FuncOp>> methodsThatPassLight = {};
   /// The symbols of `ir`. Functions are added and erased through this table, so that lookups remain
   /// fast.
   mlir::SymbolTable symbols = mlir::SymbolTable(ir);
@@ -258,14 +261,13 @@ bool isOfScratchChanges(std::uint32_t needs);
 bool isRead(mlir::Value address);
 /// Whether an operation sends rays to the scene's lights, or to surfaces that shine.
 bool sendsRaysToLights(mlir::Operation *op);
-/// The methods of a slot of passingSlots that let light of the scene's lights pass surfaces. Runs
-/// after resolveSlots.
-std::vector<mlir::func::FuncOp> methodsThatPassLight(const LinkContext &context, const Slot &slot);
+/// Fills in LinkContext::methodsThatPassLight. Runs after resolveSlots.
+void findMethodsThatPassLight(LinkContext &context);
 /// ClassInfo::opaqueIfZero.
 std::optional<std::vector<runtime::MemberName>> opaqueIfZero(const LinkContext &context,
                                                              const LinkedClass &material);
 /// Replaces LightMayPassOp by what is known of the scene, and removes what then never runs. Runs
-/// after resolveSlots.
+/// after findMethodsThatPassLight.
 void replaceLightMayPass(LinkContext &context);
 /// Whether any rays to lights may pass surfaces. Runs after unreached methods have been dropped.
 bool lightPasses(const LinkContext &context);

@@ -96,8 +96,9 @@ inline float passedDistance(const RtslState &from, Vec3 origin, Vec3 direction) 
 }
 
 /// Initialises state's ray: nothing hit yet, visible up to `distance` in units of the direction.
+/// `passed`: RtslState::passedDistance.
 inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart &start,
-                   float distance) {
+                   float distance, float passed = 0) {
   store(state.RayOrigin, origin);
   store(state.RayDirection, direction);
   if (rtsl_needs(state.launch) & RTSL_NEEDS_INVERSE_DIRECTION)
@@ -106,7 +107,7 @@ inline void setRay(RtslState &state, Vec3 origin, Vec3 direction, const RayStart
   state.Epsilon = start.epsilon;
   state.HitDistance = distance;
   if (hasPassedDistance(*state.launch))
-    state.passedDistance = 0;
+    state.passedDistance = passed;
   state.isEasy = start.isEasy;
   if (rtsl_needs(state.launch) & RTSL_NEEDS_ANY_HIT)
     state.hitAnswer = RTSL_ACCEPT;

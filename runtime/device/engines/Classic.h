@@ -100,10 +100,8 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
   beginChild(child, parent, [&](const RtslState &from) {
     descend(child, from, dimension);
     child.rayType = 0;
-    const float passed = passedDistance(from, origin, direction);
-    setRay(child, origin, direction, startOf(from, origin, direction), infinity);
-    if (hasPassedDistance(*from.launch))
-      child.passedDistance = passed;
+    setRay(child, origin, direction, startOf(from, origin, direction), infinity,
+           passedDistance(from, origin, direction));
   });
 }
 

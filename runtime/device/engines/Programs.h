@@ -41,10 +41,8 @@ inline void spawn(RtslState &child, const RtslState &parent, uint32_t dimension,
       start.isEasy = 0;
     if (!(ray.tmin < start.epsilon))
       start.epsilon = ray.tmin;
-    const float passed = passedDistance(from, ray.origin, ray.direction);
-    setRay(child, ray.origin, ray.direction, start, ray.tmax);
-    if (hasPassedDistance(*from.launch))
-      child.passedDistance = passed;
+    setRay(child, ray.origin, ray.direction, start, ray.tmax,
+           passedDistance(from, ray.origin, ray.direction));
   });
 }
 

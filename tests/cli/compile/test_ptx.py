@@ -9,7 +9,7 @@ import unittest
 from harness import EXAMPLES, USAGE, Case, example_scenes
 
 PTXAS = shutil.which("ptxas") or shutil.which("/usr/local/cuda/bin/ptxas")
-SCENES = example_scenes(part=0, parts=6)
+SCENES = example_scenes(part=0, parts=8)
 
 
 class Ptx(Case):

@@ -268,7 +268,7 @@ class Explain(Case):
         ]
         rows += [
             (scene, f"--trace={traces[number % 2]}")
-            for number, scene in enumerate(example_scenes(part=1))
+            for number, scene in enumerate(example_scenes(part=1, parts=6))
         ]
         for scene, *options in rows:
             for picture, kept in (("a.exr", []), ("b.exr", ["--keep=all"])):

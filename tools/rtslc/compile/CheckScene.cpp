@@ -175,8 +175,10 @@ void checkKeyFrame(const std::string &file, const CheckOptions &options,
 
 } // namespace
 
-void checkScene(const std::string &file, const CheckOptions &options, Messages &messages,
+void checkScene(const std::string &file, const CheckOptions &given, Messages &messages,
                 std::vector<std::string> &filesRead) {
+  CheckOptions options = given;
+  options.common.compile.codeCache = keptCode();
   const auto kept = std::make_shared<scene::KeptFiles>();
   ErrorCollector errors;
   const scene::SceneDescription description =

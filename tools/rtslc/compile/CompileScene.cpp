@@ -18,6 +18,7 @@ std::optional<std::string> translateScene(const CompileCommandOptions &options, 
     return std::nullopt;
   filesRead = withFiles(description, filesRead);
   CompileOptions compile = options.common.compile;
+  compile.codeCache = keptCode();
   LinkRequest request = linkRequest(description);
   request.features |= features(options.prints, options.exceptions);
   keep(options.common.keep, request, compile);

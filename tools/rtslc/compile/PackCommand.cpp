@@ -84,6 +84,7 @@ void packScene(const PackOptions &options, Messages &messages) {
   filesRead = withFiles(description, filesRead);
   checkOutputs(options.output, options.common.dependencies, {options.scene}, filesRead);
   CompileOptions compile = options.common.compile;
+  compile.codeCache = keptCode();
   LinkRequest request = linkRequest(description);
   keep(options.common.keep, request, compile);
   runtime::Package package;

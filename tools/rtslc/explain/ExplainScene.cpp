@@ -23,6 +23,7 @@ struct LoadedScene {
         module(loadShaders(description, options.common, messages, &filesRead)),
         request(linkRequest(description)), compile(options.common.compile),
         makeObjects(storeScene(builder(), scene)) {
+    compile.codeCache = keptCode();
     keep(options.common.keep, request, compile);
     filesRead = withFiles(description, filesRead);
   }

@@ -3,8 +3,6 @@
 
 #include "Preview.h"
 #include "RenderOnChange.h"
-#include "codegen/driver/machine/CodeCache.h"
-#include "codegen/driver/machine/CodeFiles.h"
 #include "runtime/image/Layers.h"
 #include "scenefile/LibraryEngines.h"
 #include "scenefile/files/KeptFiles.h"
@@ -86,7 +84,7 @@ int renderFrames(const RenderCommandOptions &options) {
 }
 
 int render(RenderCommandOptions options) {
-  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
+  options.common.compile.codeCache = keptCode();
   if (options.watches || options.frames || !options.aovs.empty())
     options.keptFiles = std::make_shared<scene::KeptFiles>();
   if (options.watches || options.frames) {

@@ -5,8 +5,6 @@
 //===----------------------------------------------------------------------===//
 #include "RunCommand.h"
 
-#include "codegen/driver/machine/CodeCache.h"
-#include "codegen/driver/machine/CodeFiles.h"
 #include "runtime/buffers/BufferOutput.h"
 #include "runtime/program/PrintLog.h"
 #include "scenefile/SceneFile.h"
@@ -378,7 +376,7 @@ void runScene(const RunOptions &options, Messages &messages) {
 } // namespace
 
 int runLaunches(RunOptions options) {
-  options.common.compile.codeCache = std::make_shared<CodeCache>(CodeFiles::open());
+  options.common.compile.codeCache = keptCode();
   Messages messages(options.common);
   try {
     runScene(options, messages);

@@ -109,12 +109,14 @@ Fields readsOfSending(mlir::ModuleOp module) {
   return fields;
 }
 
-/// What it reads of one that may go straight on through surfaces (passedDistance in BeginRay.h).
-Fields readsOfGoingOn(mlir::ModuleOp module) {
-  return ir::attr::noPassedDistances.isOn(module)
-             ? Fields()
-             : Fields::of(
-                   {device::keptPassedDistance, device::keptHitDistance, device::keptRayDirection});
+/// What it reads to send a ray that a shader traces, which may go straight on through surfaces
+/// (passedDistance in BeginRay.h).
+Fields readsOfTracing(mlir::ModuleOp module) {
+  Fields fields = readsOfSending(module);
+  if (!ir::attr::noPassedDistances.isOn(module))
+    fields.add(Fields::of(
+        {device::keptPassedDistance, device::keptHitDistance, device::keptRayDirection}));
+  return fields;
 }
 
 llvm::StringRef symbolOf(FuncOp function) {
@@ -162,13 +164,11 @@ Fields KeptStateFinder::implicitReads(mlir::Operation *op) const {
   Fields fields;
   llvm::TypeSwitch<mlir::Operation *>(op)
       .Case([&](ir::SpawnOp) {
-        fields = readsOfSending(module);
-        fields.add(readsOfGoingOn(module));
+        fields = readsOfTracing(module);
         fields.add(inherited);
       })
       .Case([&](ir::SpawnPayloadOp spawn) {
-        fields = readsOfSending(module);
-        fields.add(readsOfGoingOn(module));
+        fields = readsOfTracing(module);
         if (!spawn.getTime())
           fields.add(Fields::of({device::keptTime}));
         if (!spawn.getMask())

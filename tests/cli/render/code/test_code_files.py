@@ -1,5 +1,5 @@
-"""Machine code that is kept for the next run (codegen/driver/machine/CodeFiles.h): it changes no
-picture, and whatever happens to its files is no error."""
+"""Code that is kept for the next run (codegen/driver/machine/CodeFiles.h): it changes no picture,
+and whatever happens to its files is no error."""
 
 import json
 import os
@@ -35,6 +35,27 @@ class CodeFiles(Case):
         self.assertEqual(self.cache.stat().st_mode & 0o777, 0o700)
         self.assertTrue(self.code())
         self.assertEqual(self.picture(), (first[0], True))
+
+    def test_commands_without_pictures_use_it(self):
+        def made(name, *arguments):
+            """What the command prints and writes."""
+            out, _ = self.run_rtslc(*arguments, "-o", name)
+            return out, pathlib.Path(self.folder, name).read_bytes()
+
+        for command in (
+            ("compile", SCENE, "--emit=ptx"),
+            ("pack", SCENE, "-q", "--organisation=wavefront"),
+            ("pack", SCENE, "-q", "--organisation=megakernel"),
+            ("explain", SCENE, "--no-savings"),
+        ):
+            with self.subTest(command=command):
+                os.environ["RTSL_CACHE"] = "off"
+                expected = made("x", *command)
+                os.environ["RTSL_CACHE"] = str(self.cache)
+                self.assertEqual(made("x", *command), expected)
+                files = {file: file.stat().st_ino for file in self.code()}
+                self.assertEqual(made("x", *command), expected)
+                self.assertEqual({file: file.stat().st_ino for file in self.code()}, files)
 
     def test_other_options_have_other_code(self):
         host, _ = self.picture()

@@ -2,6 +2,7 @@
 does, to the bit, because distances along it are exact."""
 
 import json
+import os
 import struct
 import unittest
 
@@ -111,10 +112,11 @@ class RayLengths(Case):
         self.run_rtslc("render", "scene.json", "-o", picture, "-q", "-O0", *options)
 
     def test_of_each_primitive(self):
-        for one in PRIMITIVES:
+        powers = (40, -67, 120, -40, 67, -110)
+        for number, one in enumerate(PRIMITIVES):
             self.render("1.exr", [one], 1)
             with self.subTest(primitive=one["class"]):
-                for power in (40, 67, 120, -40, -67, -110):
+                for power in powers if "RTSL_DEEP" in os.environ else powers[number % 2 :: 2]:
                     self.render(f"{power}.exr", [one], 2.0**power)
                     self.assert_same_bits("1.exr", f"{power}.exr")
 

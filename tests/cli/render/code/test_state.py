@@ -178,7 +178,7 @@ class State(Case):
         """The ways that differ in how state is stored, in every example; the others in turn, two in
         each."""
         rendered = set()
-        for turn, scene in enumerate(example_scenes(part=1, parts=2)):
+        for turn, scene in enumerate(example_scenes(part=1, parts=3)):
             others = tuple(IN_TURN[(2 * turn + i) % len(IN_TURN)] for i in range(2))
             rendered |= self.pictures_are_one(
                 scene, "--size", "48x27", "--spp", "1", ways=(*IN_EVERY_EXAMPLE, *others), turn=turn
