@@ -194,7 +194,7 @@ void read(OIIO::ImageInput *input, std::uint64_t fileBytes, std::uint64_t mostBy
   file.isSecondAlpha = spec.alpha_channel == 1;
   // Files of 8 bits that do not say otherwise are for screens.
   const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-  file.isSrgb = space == "sRGB" || (space.empty() && type == OIIO::TypeDesc::UINT8);
+  file.isSrgb = space == "sRGB" || (space != "Linear" && type == OIIO::TypeDesc::UINT8);
   const std::uint64_t pixelBytes = std::uint64_t(file.channels) * file.bytesPerChannel;
   if (std::uint64_t(file.width) * file.height > mostBytes / pixelBytes)
     return fail(file, ImageFile::Problem::TooLarge, "");

@@ -109,6 +109,12 @@ class Images(ImageCase):
                 0.01,  # a code or two: luma and chroma are rounded
             )
         )
+        rows = b"".join(bytes(pixel(x, y)) for y in range(4) for x in range(5))
+        add(
+            "portable pixmap",
+            b"P6 5 4 255\n" + rows,
+            lambda x, y, z: (*(decode_srgb(v / 255) for v in pixel(x, 3 - y)), 1.0),
+        )
         self.write_exr("exr", 5, 4, 0.25)
         add("exr", None, lambda x, y, z: (0.25, 0.25, 0.25, 1.0))
         self.check(cases, 2)
