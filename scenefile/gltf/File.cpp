@@ -21,11 +21,12 @@ constexpr std::array lists = {"accessors", "animations", "buffers",   "bufferVie
                               "cameras",   "images",     "materials", "meshes",
                               "nodes",     "samplers",   "scenes",    "textures"};
 
-constexpr std::array extensions = {
-    "KHR_lights_punctual",        "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_sheen",     "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",     "KHR_mesh_quantization",
-    "KHR_texture_transform"};
+constexpr std::array extensions = {"EXT_texture_webp",        "KHR_lights_punctual",
+                                   "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
+                                   "KHR_materials_ior",       "KHR_materials_sheen",
+                                   "KHR_materials_specular",  "KHR_materials_transmission",
+                                   "KHR_materials_unlit",     "KHR_mesh_quantization",
+                                   "KHR_texture_transform"};
 
 bool isKnown(const std::string &extension) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();

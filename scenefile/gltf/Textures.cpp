@@ -46,9 +46,12 @@ std::string partOfImage(std::size_t image) {
 
 JsonValue Textures::texture(const JsonValue &info, const std::string &what, Use use) {
   expect(info, Kind::Object, what);
-  if (const JsonValue *set = info.find("texCoord");
-      set && readInteger(*set, 0, mostWhole, "`texCoord` of " + what) != 0)
-    warnings.push_back({message::texcoordIgnored(what, set->number), set->place()});
+  const JsonValue *transform = extension(info, "KHR_texture_transform");
+  const JsonValue *coordinates = transform ? transform->find("texCoord") : nullptr;
+  if (!coordinates) // otherwise that is for programs that do not know the extension
+    coordinates = info.find("texCoord");
+  if (coordinates && readInteger(*coordinates, 0, mostWhole, "`texCoord` of " + what) != 0)
+    warnings.push_back({message::texcoordIgnored(what, coordinates->number), coordinates->place()});
   const bool isColor = use == Use::Color || use == Use::Alpha;
   JsonValue pattern = valueAt(info, Kind::Object);
   switch (use) {
@@ -65,7 +68,7 @@ JsonValue Textures::texture(const JsonValue &info, const std::string &what, Use 
     set(pattern, "channel", number(info, int(use) - int(Use::Red)));
   }
   set(pattern, "image", image(info, what, isColor));
-  if (const JsonValue *transform = extension(info, "KHR_texture_transform"))
+  if (transform)
     return transformed(std::move(pattern), *transform, "`KHR_texture_transform` of " + what);
   return pattern;
 }
@@ -75,8 +78,11 @@ JsonValue Textures::image(const JsonValue &info, const std::string &what, bool i
       file.index("textures", require(info, "index", what), "`index` of " + what);
   const JsonValue &texture = file.list("textures")[textureIndex];
   const std::string textureName = fmt::format("`textures.{}`", textureIndex);
+  const JsonValue *webp = extension(texture, "EXT_texture_webp");
+  const bool hasOther = texture.find("source") != nullptr; // for programs that do not read WebP
   const std::size_t index =
-      file.index("images", require(texture, "source", textureName), "`source` of " + textureName);
+      file.index("images", require(webp && !hasOther ? *webp : texture, "source", textureName),
+                 "`source` of " + textureName);
   const JsonValue &source = file.list("images")[index];
   const JsonValue *uri = source.find("uri");
   if (uri)

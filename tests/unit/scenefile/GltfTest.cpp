@@ -208,6 +208,34 @@ TEST_F(Gltf, TexturesAreTransformed) {
             "rotation=180 scale=[1 -1] offset=[0.25 0.5] pattern=");
 }
 
+TEST_F(Gltf, TexturesMayBeWebP) {
+  const auto hasFile = [&](const std::string &texture, const std::string &file) {
+    const std::string text =
+        material(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})",
+                 ", \"textures\": [" + texture +
+                     R"(], "images": [{"uri": "a.png"}, {"uri": "b.webp"}],
+"extensionsRequired": ["EXT_texture_webp"])");
+    return text.find("image=(file=" + file) != std::string::npos && warnings.empty();
+  };
+  EXPECT_TRUE(hasFile(R"({"extensions": {"EXT_texture_webp": {"source": 1}}})", "b.webp"));
+  EXPECT_TRUE(
+      hasFile(R"({"source": 0, "extensions": {"EXT_texture_webp": {"source": 1}}})", "a.png"));
+}
+
+TEST_F(Gltf, TexturesHaveTheFirstCoordinates) {
+  const auto warningOf = [&](const std::string &info) {
+    material(R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0)" + info + "}}}", images);
+    return warnings;
+  };
+  const std::string first = R"(, "extensions": {"KHR_texture_transform": {"texCoord": 0}})",
+                    third = R"(, "extensions": {"KHR_texture_transform": {"texCoord": 2}})";
+  EXPECT_EQ(warningOf(R"(, "texCoord": 1)"),
+            "a texture of `materials.0` uses the texture coordinates `TEXCOORD_1`; all textures "
+            "are placed by `TEXCOORD_0`\n");
+  EXPECT_EQ(warningOf(R"(, "texCoord": 1)" + first), ""); // for programs without the extension
+  EXPECT_NE(warningOf(third).find("`TEXCOORD_2`"), std::string::npos);
+}
+
 TEST_F(Gltf, CamerasAreTheFilesOrFrameIt) {
   const std::string cameras =
       R"(, "cameras": [{"name": "wide", "type": "perspective", "perspective": {"yfov": 1.5707963267948966, "znear": 1}},

@@ -152,7 +152,7 @@ class State(Case):
         self.write("shaders.rtsl", SHADERS)
         self.write("launch.rtsl", LAUNCH)
         balls = [[-0.8, 0, 0], [0.8, 0.3, 0.2]]
-        for reader in ("Mirror", "Row", "Columns"):
+        for turn, reader in enumerate(("Mirror", "Row", "Columns")):
             scene = {
                 "rtsl": 1,
                 "import": ["eye.rtsl", "shaders.rtsl", "launch.rtsl", "std.materials"],
@@ -172,7 +172,7 @@ class State(Case):
                 scene["background"] = {"class": "Columns"}
             self.write("scene.json", json.dumps(scene))
             with self.subTest(reader=reader):
-                self.pictures_are_one("scene.json")
+                self.pictures_are_one("scene.json", turn=turn)
 
     def test_examples(self):
         """The ways that differ in how state is stored, in every example; the others in turn, two in
