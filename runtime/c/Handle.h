@@ -77,6 +77,8 @@ struct RtslScene {
   mutable std::unique_ptr<rtsl::runtime::Renderer> renderer;
   mutable RtslRenderSettings settings{};
   mutable bool hadPicture = false;
+  /// Ends the renderer, before the program or the scene that it runs; its trees are kept.
+  void stopRendering();
 
   //===--------------------------------------------------------------------===//
   // Scene files (SceneFile.cpp)

@@ -73,6 +73,13 @@ const runtime::Value::Words &bufferOf(const RtslScene *scene, RtslBufferNumber n
 
 } // namespace
 
+void RtslScene::stopRendering() {
+  if (!renderer)
+    return;
+  kept = renderer->takeTrees();
+  renderer.reset();
+}
+
 extern "C" {
 
 //===----------------------------------------------------------------------===//

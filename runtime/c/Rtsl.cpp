@@ -300,9 +300,7 @@ int rtslSceneSetSampler(RtslScene *scene, RtslSampler sampler) {
     constexpr runtime::Sampler samplers[] = {runtime::Sampler::Independent, runtime::Sampler::R2,
                                              runtime::Sampler::Sobol};
     rtsl::c::requireChoice(sampler, unsigned(std::size(samplers)), "sampler");
-    if (scene->renderer)
-      scene->kept = scene->renderer->takeTrees();
-    scene->renderer.reset(); // before the program that it runs
+    scene->stopRendering();
     scene->scene.setSampler(samplers[sampler]);
     return 1;
   });

@@ -119,8 +119,8 @@ int rtslSceneReload(RtslScene *scene, const char *const *settings, size_t count)
     if (scene->file.empty())
       throw rtsl::Error(rtsl::message::sceneHasNoFile());
     RtslScene next = load(scene->program, scene->file, settings, count);
-    next.kept = scene->renderer ? scene->renderer->takeTrees() : scene->kept;
-    scene->renderer.reset(); // before the scene that it renders
+    scene->stopRendering();
+    next.kept = scene->kept;
     *scene = std::move(next);
     return 1;
   });

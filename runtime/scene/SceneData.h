@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -44,6 +45,10 @@ enum class LampChoice : std::uint8_t { Automatic, ByPower, ByTree };
 /// The random numbers of samples: independent of each other, or spread evenly among the samples of
 /// a pixel (runtime/device/ray/Sampler.h).
 enum class Sampler : std::uint8_t { Independent, R2, Sobol };
+
+/// Their names in scene files and on command lines.
+constexpr std::pair<const char *, Sampler> samplerNames[] = {
+    {"independent", Sampler::Independent}, {"r2", Sampler::R2}, {"sobol", Sampler::Sobol}};
 
 /// RTSL_FEATURE_SAMPLER_* of programs with this sampler, or 0.
 constexpr std::uint32_t featuresOf(Sampler sampler) {

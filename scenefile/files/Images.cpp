@@ -3,6 +3,7 @@
 #include "scenefile/Models.h"
 #include "scenefile/SceneFile.h"
 #include "scenefile/gltf/Textures.h"
+#include "scenefile/json/Choices.h"
 #include "scenefile/json/Reader.h"
 #include "support/ClosestName.h"
 #include "support/ErrorCollector.h"
@@ -25,9 +26,6 @@ using Kind = JsonValue::Kind;
 
 namespace {
 
-template <typename Value>
-using Choice = std::pair<const char *, Value>;
-
 constexpr Choice<Filter> filters[] = {{"nearest", Filter::Nearest},
                                       {"bilinear", Filter::Linear},
                                       {"trilinear", Filter::Trilinear},
@@ -42,21 +40,6 @@ constexpr Choice<TexelFormat> formats[] = {{"unorm8", TexelFormat::Unorm8},
                                            {"unorm16", TexelFormat::Unorm16},
                                            {"float16", TexelFormat::Float16},
                                            {"float32", TexelFormat::Float32}};
-
-template <typename Value, std::size_t count>
-Value choose(const JsonValue &json, const Choice<Value> (&choices)[count], const char *what) {
-  expect(json, Kind::String, what);
-  std::vector<std::string> names;
-  for (const auto &[name, value] : choices) {
-    if (json.string == name)
-      return value;
-    names.emplace_back(name);
-  }
-  Error error(message::notOneOf(what, fmt::join(names, "`, `"), json.string), json.place());
-  if (const std::string near = closestName(json.string, names); !near.empty())
-    error.fix(near);
-  throw error;
-}
 
 class ImageReader {
 public:

@@ -2,7 +2,7 @@
 #include "scenefile/sections/RenderReader.h"
 
 #include "scenefile/LibraryEngines.h"
-#include "scenefile/json/Reader.h"
+#include "scenefile/json/Choices.h"
 #include "scenefile/sections/SettingsReader.h"
 #include "support/ClosestName.h"
 #include "support/ErrorMessages.h"
@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace rtsl::scene {
 
@@ -25,34 +24,9 @@ static void readShutter(const JsonValue &value, SceneDescription &scene) {
 }
 
 /// How surfaces that shine are chosen to light a point.
-static void readLightSampler(const JsonValue &value, SceneDescription &scene) {
-  expect(value, Kind::String, "`lightSampler`");
-  constexpr std::pair<const char *, runtime::LampChoice> choices[] = {
-      {"auto", runtime::LampChoice::Automatic},
-      {"power", runtime::LampChoice::ByPower},
-      {"tree", runtime::LampChoice::ByTree}};
-  for (const auto &[name, choice] : choices)
-    if (value.string == name) {
-      scene.lampChoice = choice;
-      return;
-    }
-  throw Error(message::noSuchLightSampler(value.string), value.place());
-}
-
-/// The random numbers of samples.
-static void readSampler(const JsonValue &value, SceneDescription &scene) {
-  expect(value, Kind::String, "`sampler`");
-  constexpr std::pair<const char *, runtime::Sampler> samplers[] = {
-      {"independent", runtime::Sampler::Independent},
-      {"r2", runtime::Sampler::R2},
-      {"sobol", runtime::Sampler::Sobol}};
-  for (const auto &[name, sampler] : samplers)
-    if (value.string == name) {
-      scene.sampler = sampler;
-      return;
-    }
-  throw Error(message::noSuchRandomSampler(value.string), value.place());
-}
+constexpr Choice<runtime::LampChoice> lightSamplers[] = {{"auto", runtime::LampChoice::Automatic},
+                                                         {"power", runtime::LampChoice::ByPower},
+                                                         {"tree", runtime::LampChoice::ByTree}};
 
 static void readEditable(const JsonValue &value, SceneDescription &scene) {
   expect(value, Kind::Array, "`editable`");
@@ -94,9 +68,9 @@ const JsonValue *readRender(const JsonValue &value, const JsonValue *rayGenerati
   if (const JsonValue *shutter = value.find("shutter"))
     errors.attempt([&] { readShutter(*shutter, scene); });
   if (const JsonValue *sampler = value.find("sampler"))
-    errors.attempt([&] { readSampler(*sampler, scene); });
+    errors.attempt([&] { scene.sampler = choose(*sampler, runtime::samplerNames, "`sampler`"); });
   if (const JsonValue *sampler = value.find("lightSampler"))
-    errors.attempt([&] { readLightSampler(*sampler, scene); });
+    errors.attempt([&] { scene.lampChoice = choose(*sampler, lightSamplers, "`lightSampler`"); });
   if (const JsonValue *editable = value.find("editable"))
     errors.attempt([&] { readEditable(*editable, scene); });
   if (const JsonValue *engine = value.find("engine"))

@@ -4,6 +4,7 @@
 #include "GpuArchitectures.h"
 #include "codegen/driver/LlvmErrors.h"
 #include "runtime/device/ray/Abi.h"
+#include "runtime/scene/SceneData.h"
 #include "support/ClosestName.h"
 #include "support/Error.h"
 #include "tools/common/OptionValues.h"
@@ -38,6 +39,13 @@ std::string parseColor(const std::string &text, CompileOptions &options) {
     return "give rgb, mono, spectral:N or N, with N from 1 to " + std::to_string(RTSL_MAX_COLOR);
   options.colorComponents = static_cast<std::uint32_t>(count);
   return {};
+}
+
+Choices<std::uint32_t> samplerChoices() {
+  Choices<std::uint32_t> choices;
+  for (const auto &[name, sampler] : runtime::samplerNames)
+    choices.emplace_back(name, featuresOf(sampler));
+  return choices;
 }
 
 /// The output of -Whelp: the table of warnings, a line each.
@@ -183,10 +191,7 @@ void addCompileOptions(CLI::App &command, CommonOptions &options) {
             "the one that shades: auto, large states. The picture is the same");
   addWhole(command, "-O", options.compile.optimization, 0, 3, "optimisation level of machine code")
       ->type_name("LEVEL");
-  addChoice(command, "--sampler", options.compile.sampler,
-            Choices<std::uint32_t>{{"independent", 0},
-                                   {"r2", RTSL_FEATURE_SAMPLER_R2},
-                                   {"sobol", RTSL_FEATURE_SAMPLER_SOBOL}},
+  addChoice(command, "--sampler", options.compile.sampler, samplerChoices(),
             "the random numbers of samples: independent of each other, or spread evenly among the "
             "samples of a pixel by the sequence R2, or by Sobol's with Owen's scrambling. Default: "
             "the scene's");

@@ -110,9 +110,9 @@ runtime::Identity identityOf(const RenderInput &input) {
   all.push_back({"`--fp`", nameOf(compile.floatingPoint)});
   const std::uint32_t sampler = compile.sampler.value_or(
       featuresOf(input.description.sampler.value_or(runtime::Sampler::Independent)));
-  all.push_back({"the sampler", sampler == RTSL_FEATURE_SAMPLER_SOBOL ? "sobol"
-                                : sampler == RTSL_FEATURE_SAMPLER_R2  ? "r2"
-                                                                      : "independent"});
+  for (const auto &[name, choice] : runtime::samplerNames)
+    if (featuresOf(choice) == sampler)
+      all.push_back({"the sampler", name});
   all.push_back({"`--adaptive`", yesOrNo(render.isAdaptive)});
   if (render.isAdaptive)
     all.push_back({"`--noise`", fmt::format("{}", input.noise)});

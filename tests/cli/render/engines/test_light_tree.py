@@ -376,8 +376,8 @@ class Programs(LightTreeCase):
         self.sampled_by("random")
         self.assert_message(
             self.diagnose("render", "scene.json", "-o", "a.exr"),
-            "E0808",
-            "there is no light sampler `random`; there are `auto`, `power` and `tree`",
+            "E0805",
+            "`lightSampler` is `auto`, `power`, `tree`, not `random`",
         )
         self.sampled_by(3)
         self.diagnose("render", "scene.json", "-o", "a.exr")

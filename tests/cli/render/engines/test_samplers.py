@@ -83,7 +83,9 @@ class Samplers(Case):
         )
         self.assert_message(messages, "E0907", "the sampler is r2 there and independent here")
         messages = self.diagnose("check", self.scene, "--set=render.sampler=halton")
-        self.assert_message(messages, "E0808", "there is no sampler `halton`")
+        self.assert_message(
+            messages, "E0805", "`sampler` is `independent`, `r2`, `sobol`, not `halton`"
+        )
 
     def test_bad_values(self):
         _, error = self.run_rtslc(
