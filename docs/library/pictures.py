@@ -198,6 +198,11 @@ TEXTURES["ImageChannel"] = {
     "image": {**TEXTURES["ImageTexture"]["image"], "colorSpace": "linear"},
     "channel": 1,
 }
+TEXTURES["Product"] = {
+    "first": {"class": "Checker", "scale": 2},
+    "second": {"class": "Noise", "scale": 4},
+}
+TEXTURES["Scaled"] = {"pattern": {"class": "Noise", "scale": 4}, "scale": -1, "offset": 1}
 TEXTURES["Threshold"] = {"pattern": {"class": "Noise", "scale": 4}}
 TEXTURES["ExponentRoughness"] = {"pattern": {"class": "Noise", "scale": 4}, "exponent": 30}
 NORMALS = {

@@ -46,9 +46,9 @@ void rtslSceneDestroy(RtslScene *scene);
  * must have been compiled with those that the scene needs, by the names of their modules:
  * rtsl_add_shaders(... SHADERS std.materials.Principled std.engines.PathTracer ...). The error for
  * those that are missing lists them. They are, of glTF files:
- *   materials: Principled Emitter NormalMap Cutout
+ *   materials: Principled Emitter NormalMap Cutout Dielectric MixMaterial
  *   materials: VertexColorPrincipled VertexColorEmitter VertexColorCutout
- *   textures:  ImageTexture ImageChannel ImageSlope Threshold TransformedPattern
+ *   textures:  ImageTexture ImageChannel ImageSlope Threshold TransformedPattern Product Scaled
  *   lights:    PointLight SpotLight DistantLight
  *   cameras:   PerspectiveCamera OrthographicCamera
  * and of OBJ and PLY files:

@@ -25,8 +25,8 @@ constexpr std::array extensions = {"EXT_texture_webp",        "KHR_lights_punctu
                                    "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
                                    "KHR_materials_ior",       "KHR_materials_sheen",
                                    "KHR_materials_specular",  "KHR_materials_transmission",
-                                   "KHR_materials_unlit",     "KHR_mesh_quantization",
-                                   "KHR_texture_transform"};
+                                   "KHR_materials_unlit",     "KHR_materials_volume",
+                                   "KHR_mesh_quantization",   "KHR_texture_transform"};
 
 bool isKnown(const std::string &extension) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();

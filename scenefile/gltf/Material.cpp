@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 
 namespace rtsl::scene::gltf {
 
@@ -31,13 +34,16 @@ public:
     JsonValue material = materialObject(json, "Principled", colors, modules);
     set(material, "baseColor", baseColor);
     setMap(material, "baseColorMap", baseMap, Use::Color);
-    set(material, "metallic", factor(*metallicRoughness, "metallicFactor", 1, 1));
-    set(material, "roughness", factor(*metallicRoughness, "roughnessFactor", 1, 1));
+    set(material, "metallic", metallic());
+    set(material, "roughness", roughness());
     const JsonValue *map = metallicRoughness->find("metallicRoughnessTexture");
     setMap(material, "metallicMap", map, Use::Blue);
     setMap(material, "roughnessMap", map, Use::Green);
+    readIndex();
     setExtensions(material);
     setEmission(material);
+    if (const JsonValue *volume = solidVolume())
+      material = withSolid(std::move(material), *volume);
     return covered(withNormals(std::move(material)));
   }
 
@@ -77,7 +83,16 @@ private:
 
   void setMap(JsonValue &object, const char *member, const JsonValue *info, Use use) {
     if (info)
-      set(object, member, textures.texture(*info, fmt::format("a texture of {}", what), use));
+      set(object, member, pattern(*info, use));
+  }
+  JsonValue pattern(const JsonValue &info, Use use) {
+    return textures.texture(info, fmt::format("a texture of {}", what), use);
+  }
+  JsonValue product(JsonValue first, JsonValue second) {
+    JsonValue both = made(first, "textures.Product");
+    set(both, "first", std::move(first));
+    set(both, "second", std::move(second));
+    return both;
   }
 
   void readBase() {
@@ -109,15 +124,16 @@ private:
   }
 
   void setExtensions(JsonValue &material) {
-    if (const JsonValue *ior = extension(json, "KHR_materials_ior"))
-      setIndex(material, *ior);
+    if (index)
+      set(material, "index", *index);
     if (const JsonValue *specular = extension(json, "KHR_materials_specular")) {
       set(material, "specular", factor(*specular, "specularFactor", 1, 1));
       setMap(material, "specularMap", specular->find("specularTexture"), Use::Alpha);
       setSpecularColor(material, *specular);
       setMap(material, "specularColorMap", specular->find("specularColorTexture"), Use::Color);
     }
-    if (const JsonValue *glass = extension(json, "KHR_materials_transmission")) {
+    const JsonValue *glass = extension(json, "KHR_materials_transmission");
+    if (glass && !solidVolume()) {
       set(material, "transmission", factor(*glass, "transmissionFactor", 0, 1));
       setMap(material, "transmissionMap", glass->find("transmissionTexture"), Use::Red);
     }
@@ -137,14 +153,89 @@ private:
     }
   }
 
-  void setIndex(JsonValue &material, const JsonValue &ior) {
-    const JsonValue *found = ior.find("ior");
+  void readIndex() {
+    const JsonValue *ior = extension(json, "KHR_materials_ior");
+    if (!ior)
+      return;
+    const JsonValue *found = ior->find("ior");
     const double wanted = found ? readNumber(*found, of("ior")) : 1.5;
-    const double index = std::clamp(wanted, lowestIndex, highestIndex);
-    if (index != wanted)
+    const double used = std::clamp(wanted, lowestIndex, highestIndex);
+    if (used != wanted)
       warnings.push_back(
-          {message::refractiveIndexClamped(of("ior"), wanted, index), found->place()});
-    set(material, "index", number(ior, index));
+          {message::refractiveIndexClamped(of("ior"), wanted, used), found->place()});
+    index = number(*ior, used);
+  }
+
+  JsonValue metallic() const { return factor(*metallicRoughness, "metallicFactor", 1, 1); }
+  JsonValue roughness() const { return factor(*metallicRoughness, "roughnessFactor", 1, 1); }
+
+  /// The volume of an object that light passes through as through solid glass; null: it is opaque,
+  /// or a thin pane.
+  const JsonValue *solidVolume() const {
+    const JsonValue *volume = extension(json, "KHR_materials_volume");
+    const JsonValue *glass = extension(json, "KHR_materials_transmission");
+    const bool isSolid =
+        volume && glass && factor(*glass, "transmissionFactor", 0, 1).number > 0 &&
+        factor(*volume, "thicknessFactor", 0, std::numeric_limits<double>::max()).number > 0;
+    return isSolid ? volume : nullptr;
+  }
+
+  /// White light's share after one unit of length inside.
+  JsonValue absorption(const JsonValue &volume) const {
+    std::vector<double> left = color(volume, "attenuationColor", 1);
+    const JsonValue *found = volume.find("attenuationDistance");
+    if (!found)
+      return numbers(volume, {1, 1, 1});
+    const double distance = readNumber(*found, of("attenuationDistance"));
+    if (distance <= 0)
+      throw Error(message::notAboveZero("attenuationDistance", what, distance), found->place());
+    constexpr double least = 1e-30; // Dielectric's must be above 0
+    for (double &one : left)
+      one = std::max(std::pow(one, 1 / distance), least);
+    return numbers(volume, left);
+  }
+
+  /// `surface`, which is not transmissive, as much as light does not pass, and otherwise glass.
+  JsonValue withSolid(JsonValue surface, const JsonValue &volume) {
+    JsonValue solid = made(volume, "materials.Dielectric");
+    if (index)
+      set(solid, "index", *index);
+    set(solid, "transmission", absorption(volume));
+    set(solid, "tint", baseColor);
+    setMap(solid, "tintMap", baseMap, Use::Color);
+    const JsonValue rough = roughness();
+    set(solid, "alpha", number(rough, rough.number * rough.number));
+    const JsonValue *map = metallicRoughness->find("metallicRoughnessTexture");
+    if (map)
+      set(solid, "alphaMap", product(pattern(*map, Use::Green), pattern(*map, Use::Green)));
+    const JsonValue &glass = *extension(json, "KHR_materials_transmission");
+    const JsonValue passing = factor(glass, "transmissionFactor", 0, 1);
+    const JsonValue metal = metallic();
+    double share = passing.number;
+    std::optional<JsonValue> shareMap;
+    if (const JsonValue *ofGlass = glass.find("transmissionTexture"))
+      shareMap = pattern(*ofGlass, Use::Red);
+    if (map && metal.number > 0) { // the share is that of what is no metal
+      JsonValue noMetal = made(*map, "textures.Scaled");
+      set(noMetal, "pattern", pattern(*map, Use::Blue));
+      set(noMetal, "scale", number(metal, -metal.number));
+      set(noMetal, "offset", number(metal, 1));
+      shareMap = shareMap ? product(std::move(*shareMap), std::move(noMetal)) : noMetal;
+    } else {
+      share *= 1 - metal.number;
+    }
+    if (share == 1 && !shareMap) {
+      warnOfMember(surface, "emissive", json, "emissiveFactor");
+      warnOfMember(surface, "clearcoat", volume, "KHR_materials_clearcoat");
+      return solid;
+    }
+    JsonValue mix = made(glass, "materials.MixMaterial");
+    set(mix, "first", std::move(surface));
+    set(mix, "second", std::move(solid));
+    set(mix, "amount", number(passing, share));
+    if (shareMap)
+      set(mix, "amountMap", std::move(*shareMap));
+    return mix;
   }
 
   /// The color may be above 1.
@@ -223,6 +314,13 @@ private:
     return wrapper;
   }
 
+  /// What a surface has and glass alone has not.
+  void warnOfMember(const JsonValue &surface, const char *member, const JsonValue &place,
+                    const char *key) {
+    if (surface.find(member))
+      warnings.push_back({message::modelFeatureIgnored(of(key)), place.place()});
+  }
+
   void warnOfMap(const JsonValue &object, const char *key) {
     if (const JsonValue *map = object.find(key))
       warnings.push_back({message::modelFeatureIgnored(of(key)), map->place()});
@@ -236,6 +334,7 @@ private:
   std::vector<Warning> &warnings;
   JsonValue nothing; // a `pbrMetallicRoughness` that is left out
   const JsonValue *metallicRoughness = nullptr;
+  std::optional<JsonValue> index; // of refraction; empty: the default
   JsonValue baseColor;
   double alpha = 1;
   const JsonValue *baseMap = nullptr;

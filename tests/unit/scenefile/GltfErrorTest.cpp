@@ -311,6 +311,10 @@ TEST_F(GltfError, Materials) {
           R"({"emissiveFactor": [1, 1, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": -1}}})"),
       "m.gltf:8:144+2: outOfRange: `emissiveStrength` of `materials.0` must not be negative, but "
       "is -1");
+  EXPECT_EQ(
+      material(
+          R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 0}}})"),
+      "m.gltf:8:186+1: outOfRange: `attenuationDistance` of `materials.0` must be above 0, not 0");
   EXPECT_EQ(material(R"({"normalTexture": {"index": 0}})"),
             "m.gltf:8:71+1: outOfRange: `index` of a texture of `materials.0` is 0, and `textures` "
             "has 0 elements");

@@ -164,6 +164,53 @@ TEST_F(Gltf, MaterialsArePrincipled) {
   EXPECT_EQ(warnings, "`ior` of `materials.0` is 3; 2 is used\n");
 }
 
+TEST_F(Gltf, VolumesAreGlass) {
+  const auto glass = [&](const std::string &volume, const std::string &more = "") {
+    return material(
+        R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 0, "roughnessFactor": 0.2},
+"extensions": {"KHR_materials_ior": {"ior": 1.4}, "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_volume": )" +
+        volume + "}" + more + "}");
+  };
+  const std::string solid = "Dielectric index=1.4 transmission=[{}] tint=[1 0.5 0.25] alpha=0.04";
+  EXPECT_EQ(glass(R"({"thicknessFactor": 1})"), fmt::format(fmt::runtime(solid), "1 1 1"));
+  EXPECT_EQ(
+      glass(
+          R"({"thicknessFactor": 1, "attenuationColor": [0.25, 1, 0], "attenuationDistance": 0.5})"),
+      fmt::format(fmt::runtime(solid), "0.0625 1 1e-30"));
+  EXPECT_EQ(warnings, "");
+  EXPECT_EQ(glass(R"({"thicknessFactor": 1})", R"(, "emissiveFactor": [1, 1, 1])"),
+            fmt::format(fmt::runtime(solid), "1 1 1"));
+  EXPECT_EQ(warnings, "`emissiveFactor` of `materials.0` is not supported, and ignored\n");
+  warnings.clear();
+  // A thin pane.
+  EXPECT_EQ(glass(R"({"attenuationDistance": 0.5})"),
+            "Principled baseColor=[1 0.5 0.25] metallic=0 roughness=0.2 index=1.4 transmission=1");
+  const std::string partly =
+      R"(, "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}, "KHR_materials_volume": {"thicknessFactor": 1}}})";
+  EXPECT_EQ(material(R"({"pbrMetallicRoughness": {"metallicFactor": 0.5})" + partly),
+            "MixMaterial first=(Principled baseColor=[1 1 1] metallic=0.5 roughness=1) "
+            "second=(Dielectric transmission=[1 1 1] tint=[1 1 1] alpha=1) amount=0.25");
+  const auto channel = [](int number) {
+    return fmt::format("(ImageChannel channel={} image=(file=a b.png colorSpace=linear wrap=[clamp "
+                       "mirror] filter=nearest))",
+                       number);
+  };
+  const std::string metal =
+      R"({"pbrMetallicRoughness": {"metallicFactor": 0.5, "metallicRoughnessTexture": {"index": 0}})";
+  const std::string textured =
+      "MixMaterial first=(Principled baseColor=[1 1 1] metallic=0.5 roughness=1 metallicMap=" +
+      channel(2) + " roughnessMap=" + channel(1) +
+      ") second=(Dielectric transmission=[1 1 1] tint=[1 1 1] alpha=1 alphaMap=(Product first=" +
+      channel(1) + " second=" + channel(1) + ")) amount=0.5 amountMap=";
+  const std::string noMetal = "(Scaled pattern=" + channel(2) + " scale=-0.5 offset=1)";
+  EXPECT_EQ(material(metal + partly, images), textured + noMetal);
+  std::string withMap = metal + partly;
+  withMap.replace(withMap.find("0.5}"), 3, R"(0.5, "transmissionTexture": {"index": 0})");
+  EXPECT_EQ(material(withMap, images),
+            textured + "(Product first=" + channel(0) + " second=" + noMetal + ")");
+  EXPECT_EQ(warnings, "");
+}
+
 TEST_F(Gltf, MaterialsMayHaveNormalsAndHoles) {
   const std::string plain = "(Principled baseColor=[1 1 1] metallic=1 roughness=1";
   const std::string image = "(file=a b.png colorSpace={} wrap=[clamp mirror] filter=nearest)";

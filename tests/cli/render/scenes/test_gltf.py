@@ -213,6 +213,69 @@ class Gltf(Case):
                 self.assertAlmostEqual(one, other, delta=1e-3)
             self.assertLess(max(means[0]), 0.99)
 
+    def test_volumes_are_solid_glass(self):
+        """A slab that rays cross straight on, in light from all around: Fresnel's reflectance,
+        Beer's law and the base color at each crossing."""
+        corners = [(x, y, z) for x in (-1, 3) for y in (-1, 2) for z in (-0.5, 0)]
+        sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+        triangles = [i for a, b, c, d in sides for i in (a, b, c, a, c, d)]
+        data = struct.pack("<24f", *(x for corner in corners for x in corner)) + bytes(triangles)
+        base, left = (1, 0.9, 0.5), (0.25, 0.5, 1)
+        extensions = {
+            "KHR_materials_ior": {"ior": 1.8},
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_volume": {
+                "thicknessFactor": 0.1,  # for programs that do not follow rays
+                "attenuationColor": left,
+                "attenuationDistance": 0.25,
+            },
+        }
+        uri = f"data:application/octet-stream;base64,{base64.b64encode(data).decode()}"
+        document = {
+            "asset": {"version": "2.0"},
+            "extensionsUsed": list(extensions),
+            "nodes": [{"mesh": 0}],
+            "meshes": [
+                {"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "material": 0}]}
+            ],
+            "materials": [
+                {
+                    "pbrMetallicRoughness": {
+                        "baseColorFactor": [*base, 1],
+                        "metallicFactor": 0,
+                        "roughnessFactor": 0,
+                    },
+                    "extensions": extensions,
+                }
+            ],
+            "accessors": [
+                {
+                    "bufferView": 0,
+                    "componentType": 5126,
+                    "count": 8,
+                    "type": "VEC3",
+                    "min": corners[0],
+                    "max": corners[-1],
+                },
+                {"bufferView": 1, "componentType": 5121, "count": 36, "type": "SCALAR"},
+            ],
+            "bufferViews": [
+                {"buffer": 0, "byteLength": 96},
+                {"buffer": 0, "byteOffset": 96, "byteLength": 36},
+            ],
+            "buffers": [{"byteLength": len(data), "uri": uri}],
+        }
+        reflected = (0.8 / 2.8) ** 2
+        for scale, thick in (([1, 1, 1], 0.5), ([1, 1, -0.5], 0.25)):
+            document["nodes"][0]["scale"] = scale
+            self.write("slab.gltf", json.dumps(document))
+            seen = self.front({"model": "slab.gltf"}, spp=1024)
+            for channel, tint, after in zip("RGB", base, left):
+                inside = after ** (thick / 0.25)
+                passed = ((1 - reflected) * tint) ** 2 * inside / (1 - reflected * inside)
+                mean = sum(seen[channel]) / 32
+                self.assertAlmostEqual(mean, reflected + passed, delta=0.01, msg=(channel, thick))
+
     def test_images_wherever_they_are(self):
         """A file, its bytes in the JSON, and in a buffer."""
         colors = {(0, 0): (250, 20, 60), (1, 0): (0, 128, 255)}
