@@ -228,7 +228,6 @@ class LightThatPasses(Case):
                 "lamp": ((), {"lights": [lamp]}),
                 "ball": ((shining,), {"lights": []}),
                 "sun": ((), {"lights": [], "background": sky}),
-                "both": ((shining,), {"lights": [], "background": sky}),
             }
             bare = {
                 way: self.color(*objects, **light, **more) for way, (objects, light) in ways.items()
@@ -262,8 +261,8 @@ class LightThatPasses(Case):
         leaf = {"class": "Cutout", "material": clear, "opacity": 0.6}
         mixed = {"class": "MixMaterial", "first": glass, "second": leaf}
         turned = {"class": "NormalMap", "material": glass}
-        for material in (glass, clear, leaf, mixed, turned):
-            for engine in PATHS:
+        for number, material in enumerate((glass, clear, leaf, mixed, turned)):
+            for engine in PATHS[number % 2 :: 2]:
                 with self.subTest(f"{material['class']} {engine}"):
                     above = {**pane(1, ""), "material": material}
                     more = {"floor": "Matte", "engine": engine, "size": (16, 16), "spp": 512}

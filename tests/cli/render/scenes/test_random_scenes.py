@@ -51,7 +51,7 @@ class RandomScenes(Case):
             self.assert_same_bits(self.render(scene, *way), expected, (seed, way))
 
     def test_every_way_gives_the_same_bits(self):
-        for seed in range(1, 4):
+        for seed in range(1, 3):
             with self.subTest(seed=seed):
                 self.assert_same(seed, 2)
 
@@ -64,7 +64,7 @@ class RandomScenes(Case):
             self.assertIn("sqrt(-1.0)", Path(file).read_text().split("\n")[int(line) - 1], seed)
 
     def test_numbers_are_finite(self):
-        for seed in range(5000, 5014):
+        for seed in range(5000, 5009):
             with self.subTest(seed=seed):
                 self.assert_finite(seed)
 

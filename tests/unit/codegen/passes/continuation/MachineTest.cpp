@@ -287,7 +287,7 @@ TEST(Machine, RandomShadersGiveTheSameBitsSplitAndRecursively) {
   unsigned saved = 0, traces = 0;
   raysTraced = 0;
   const unsigned first = asked("RTSL_FIRST_RANDOM_PROGRAM", 0);
-  const unsigned count = asked("RTSL_RANDOM_PROGRAMS", 7);
+  const unsigned count = asked("RTSL_RANDOM_PROGRAMS", 5);
   std::vector<Configuration> ways = configurations();
   for (uint32_t seed = first; seed < first + count; ++seed) {
     std::string text = test::randomModule(seed);
